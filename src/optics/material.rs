@@ -28,160 +28,197 @@ pub const VERTEX_OPACITY: u32 = 4;
 /// Flag: weight and tint of the reflection are the dielectric's alone.
 pub const SPARES_METAL: u32 = 8;
 
-/// A material with its tables' places. The f32 form is what the GPU reads, byte for byte (`shaders/optics/material.wgsl`).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct Material<T> {
-    /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
-    pub base_color: Vec3<T>,
-    /// 0: dielectric over a diffuse base; 1: metal.
-    pub metalness: T,
-    /// Tint of the specular reflection, linear RGB.
-    pub specular_color: Vec3<T>,
-    /// Share of the specular reflection that is kept, in [0, 1].
-    pub specular_weight: T,
-    /// Real part of the conductor's index of refraction.
-    pub eta: Vec3<T>,
-    /// The dielectric's index of refraction.
-    pub ior: T,
-    /// Imaginary part of the conductor's index of refraction.
-    pub k: Vec3<T>,
-    /// Roughness in [0, 1].
-    pub roughness: T,
-    /// Emitted radiance, linear RGB.
-    pub emission: Vec3<T>,
-    /// Stretch of the lobe in [−1, 1].
-    pub anisotropy: T,
-    /// Tint at each refraction, linear RGB in [0, 1].
-    pub transmission_tint: Vec3<T>,
-    /// Share of the base that refracts, in [0, 1].
-    pub transmission_weight: T,
-    /// What a length of 1 of the interior absorbs, as the negative logarithm of what it lets through; linear RGB.
-    pub absorption: Vec3<T>,
-    /// Roughness of the refraction in [0, 1].
-    pub transmission_roughness: T,
-    /// Turn of the tangent, radians.
-    pub rotation_rad: T,
-    /// [`Lobe`] as a number.
-    pub lobe: u32,
-    /// [`Curve`] as a number.
-    pub curve: u32,
-    /// [`Horizon`] as a number.
-    pub horizon: u32,
-    /// [`Fresnel`] as a number.
-    pub fresnel: u32,
-    /// Where the custom curve's table begins.
-    pub curve_table: u32,
-    /// Where the albedo table begins.
-    pub albedo_table: u32,
-    /// Where the albedo table for views from within begins.
-    pub inner_albedo_table: u32,
-    /// What the metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
-    pub edge_tint: Vec3<T>,
-    /// Share of light that the surface stops, in [0, 1].
-    pub opacity: T,
-    /// What a coat of weight 1 leaves of the light that crosses it twice, linear RGB in [0, 1].
-    pub coat_color: Vec3<T>,
-    /// Share of the surface that has a coat, in [0, 1].
-    pub coat_weight: T,
-    /// Roughness of the coat in [0, 1].
-    pub coat_roughness: T,
-    /// Index of refraction of the coat.
-    pub coat_ior: T,
-    /// Where the coat's albedo table begins.
-    pub coat_table: u32,
-    /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
-    pub light_luminance: T,
-    /// Textures of base colour, roughness, normal, emission; [`NO_TEXTURE`] where there is none.
-    pub textures: [u32; 4],
-    /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
-    pub opacity_texture: u32,
-    /// The surface is there where its opacity reaches this; negative where the opacity is a share.
-    pub alpha_cutoff: T,
-    /// Scales the slopes of the normal texture.
-    pub normal_strength: T,
-    /// 1 where the surface is metal in part or changes from point to point: the albedo tables go over the roughness too
-    /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
-    pub has_rough_tables: u32,
-    /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
-    pub texture_roughness: T,
-    /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
-    pub roughness_table: u32,
-    /// [`VERTEX_BASE`] and the others.
-    pub flags: u32,
-    /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
-    /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
-    pub spot_scale: T,
-    /// See `spot_scale`.
-    pub spot_offset: T,
-    /// The texture of the metalness, or [`NO_TEXTURE`].
-    pub metalness_texture: u32,
-    /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
-    pub coat_texture: u32,
-    /// 1 where a texture lies on the surface as on a box.
-    pub has_box_projection: u32,
+/// A field's value in another precision.
+trait Cast<U> {
+    type Output;
+    fn cast(self) -> Self::Output;
 }
 
-// SAFETY: f32 and u32 fields without padding (16 × 16 bytes); any bit pattern is valid.
+impl<T: Scalar, U: Real> Cast<U> for T {
+    type Output = U;
+    fn cast(self) -> U {
+        U::from_f64(self.to_f64())
+    }
+}
+
+impl<T: Scalar, U: Real> Cast<U> for Vec3<T> {
+    type Output = Vec3<U>;
+    fn cast(self) -> Vec3<U> {
+        Vec3::from_f64(self.to_f64())
+    }
+}
+
+impl<U> Cast<U> for u32 {
+    type Output = Self;
+    fn cast(self) -> Self {
+        self
+    }
+}
+
+impl<U> Cast<U> for [u32; 4] {
+    type Output = Self;
+    fn cast(self) -> Self {
+        self
+    }
+}
+
+/// A field of [`Material`] as the GPU reads it.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Its name.
+    pub name: &'static str,
+    /// Its type in Rust, whose numbers are `T`.
+    pub of_type: &'static str,
+    /// Where it begins, bytes.
+    pub offset: usize,
+    /// Its length, bytes.
+    pub size: usize,
+}
+
+macro_rules! material {
+    ($(#[$doc:meta])* Material { $($(#[$of_field:meta])* $field:ident: $type:ty,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[repr(C)]
+        pub struct Material<T> {
+            $($(#[$of_field])* pub $field: $type,)*
+        }
+
+        /// The fields of [`Material`] in their order: the shaders' structure is made of them.
+        pub const FIELDS: &[Field] = {
+            type T = f32;
+            &[$(Field {
+                name: stringify!($field),
+                of_type: stringify!($type),
+                offset: std::mem::offset_of!(Material<T>, $field),
+                size: size_of::<$type>(),
+            }),*]
+        };
+
+        impl<T: Scalar> Material<T> {
+            /// The same material in another precision.
+            pub fn cast<U: Real>(&self) -> Material<U> {
+                Material { $($field: Cast::<U>::cast(self.$field),)* }
+            }
+        }
+    };
+}
+
+material! {
+    /// A material with its tables' places. The f32 form is what the GPU reads, byte for byte. A vector is followed by a
+    /// number or an index, and the whole fills rows of 16 bytes.
+    Material {
+        /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
+        base_color: Vec3<T>,
+        /// 0: dielectric over a diffuse base; 1: metal.
+        metalness: T,
+        /// Tint of the specular reflection, linear RGB.
+        specular_color: Vec3<T>,
+        /// Share of the specular reflection that is kept, in [0, 1].
+        specular_weight: T,
+        /// Real part of the conductor's index of refraction.
+        eta: Vec3<T>,
+        /// The dielectric's index of refraction.
+        ior: T,
+        /// Imaginary part of the conductor's index of refraction.
+        k: Vec3<T>,
+        /// Roughness in [0, 1].
+        roughness: T,
+        /// Emitted radiance, linear RGB.
+        emission: Vec3<T>,
+        /// Stretch of the lobe in [−1, 1].
+        anisotropy: T,
+        /// Tint at each refraction, linear RGB in [0, 1].
+        transmission_tint: Vec3<T>,
+        /// Share of the base that refracts, in [0, 1].
+        transmission_weight: T,
+        /// What a length of 1 of the interior absorbs, as the negative logarithm of what it lets through; linear RGB.
+        absorption: Vec3<T>,
+        /// Roughness of the refraction in [0, 1].
+        transmission_roughness: T,
+        /// Turn of the tangent, radians.
+        rotation_rad: T,
+        /// [`Lobe`] as a number.
+        lobe: u32,
+        /// [`Curve`] as a number.
+        curve: u32,
+        /// [`Horizon`] as a number.
+        horizon: u32,
+        /// [`Fresnel`] as a number.
+        fresnel: u32,
+        /// Where the custom curve's table begins.
+        curve_table: u32,
+        /// Where the albedo table begins.
+        albedo_table: u32,
+        /// Where the albedo table for views from within begins.
+        inner_albedo_table: u32,
+        /// What the metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+        edge_tint: Vec3<T>,
+        /// Share of light that the surface stops, in [0, 1].
+        opacity: T,
+        /// What a coat of weight 1 leaves of the light that crosses it twice, linear RGB in [0, 1].
+        coat_color: Vec3<T>,
+        /// Share of the surface that has a coat, in [0, 1].
+        coat_weight: T,
+        /// Roughness of the coat in [0, 1].
+        coat_roughness: T,
+        /// Index of refraction of the coat.
+        coat_ior: T,
+        /// Where the coat's albedo table begins.
+        coat_table: u32,
+        /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
+        light_luminance: T,
+        /// Textures of base colour, roughness, normal, emission; [`NO_TEXTURE`] where there is none.
+        textures: [u32; 4],
+        /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
+        opacity_texture: u32,
+        /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+        alpha_cutoff: T,
+        /// Scales the slopes of the normal texture.
+        normal_strength: T,
+        /// 1 where the surface is metal in part or changes from point to point: the albedo tables go over the roughness too
+        /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+        has_rough_tables: u32,
+        /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
+        texture_roughness: T,
+        /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
+        roughness_table: u32,
+        /// [`VERTEX_BASE`] and the others.
+        flags: u32,
+        /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
+        /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
+        spot_scale: T,
+        /// See `spot_scale`.
+        spot_offset: T,
+        /// The texture of the metalness, or [`NO_TEXTURE`].
+        metalness_texture: u32,
+        /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
+        coat_texture: u32,
+        /// 1 where a texture lies on the surface as on a box.
+        has_box_projection: u32,
+    }
+}
+
+// SAFETY: f32 and u32 fields without padding, which `has_no_padding` checks; any bit pattern is valid.
 unsafe impl bytemuck::Zeroable for Material<f32> {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Material<f32> {}
 
-impl<T: Real> Material<T> {
-    /// The same material in another precision.
-    pub fn cast<U: Real>(&self) -> Material<U>
-    where
-        T: Scalar,
-    {
-        let number = |x: T| U::from_f64(x.to_f64());
-        let vector = |v: Vec3<T>| Vec3::from_f64(v.to_f64());
-        Material {
-            base_color: vector(self.base_color),
-            metalness: number(self.metalness),
-            specular_color: vector(self.specular_color),
-            specular_weight: number(self.specular_weight),
-            eta: vector(self.eta),
-            ior: number(self.ior),
-            k: vector(self.k),
-            roughness: number(self.roughness),
-            emission: vector(self.emission),
-            anisotropy: number(self.anisotropy),
-            transmission_tint: vector(self.transmission_tint),
-            transmission_weight: number(self.transmission_weight),
-            absorption: vector(self.absorption),
-            transmission_roughness: number(self.transmission_roughness),
-            rotation_rad: number(self.rotation_rad),
-            lobe: self.lobe,
-            curve: self.curve,
-            horizon: self.horizon,
-            fresnel: self.fresnel,
-            curve_table: self.curve_table,
-            albedo_table: self.albedo_table,
-            inner_albedo_table: self.inner_albedo_table,
-            edge_tint: vector(self.edge_tint),
-            opacity: number(self.opacity),
-            coat_color: vector(self.coat_color),
-            coat_weight: number(self.coat_weight),
-            coat_roughness: number(self.coat_roughness),
-            coat_ior: number(self.coat_ior),
-            coat_table: self.coat_table,
-            light_luminance: number(self.light_luminance),
-            textures: self.textures,
-            opacity_texture: self.opacity_texture,
-            alpha_cutoff: number(self.alpha_cutoff),
-            normal_strength: number(self.normal_strength),
-            has_rough_tables: self.has_rough_tables,
-            texture_roughness: number(self.texture_roughness),
-            roughness_table: self.roughness_table,
-            flags: self.flags,
-            spot_scale: number(self.spot_scale),
-            spot_offset: number(self.spot_offset),
-            metalness_texture: self.metalness_texture,
-            coat_texture: self.coat_texture,
-            has_box_projection: self.has_box_projection,
+/// The fields fill the structure, and the structure fills rows of 16 bytes.
+const fn has_no_padding() -> bool {
+    let (mut end, mut index) = (0, 0);
+    while index < FIELDS.len() {
+        if FIELDS[index].offset != end {
+            return false;
         }
+        end += FIELDS[index].size;
+        index += 1;
     }
+    end == size_of::<Material<f32>>() && end.is_multiple_of(16)
+}
+const _: () = assert!(has_no_padding());
 
+impl<T: Real> Material<T> {
     /// The specular lobe. `tables` holds all materials' tables.
     #[inline(always)]
     pub fn shape<'a>(&self, tables: &'a [f32]) -> LobeShape<'a, T> {

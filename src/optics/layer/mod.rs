@@ -38,13 +38,13 @@ macro_rules! visit_upwards {
 }
 
 macro_rules! layers {
-    ($($module:ident $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
+    ($($module:ident $variant:ident, $name:literal, $label:literal, $help:literal;)*) => {
         $(pub mod $module;)*
 
         named! {
             /// A layer of a material; in the order in which light from without meets them.
             Layer {
-                $($variant = $index, $name, $label, $help;)*
+                $($variant, $name, $label, $help;)*
             }
         }
 
@@ -73,12 +73,12 @@ macro_rules! layers {
     };
 }
 
-// Module, type, number in the shaders, name, label, help. The effect of the same name has its code in the kernels.
+// Module, type, name, label, help. The effect of the same name has the code in the kernels that call for it.
 layers! {
-    coat Coat = 0, "coat", "coat", "A clear dielectric coat over everything else.";
-    specular Specular = 1, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
-    base Base = 2, "base", "base", "The Lambertian base below the specular lobe.";
-    transmission Transmission = 3, "transmission", "transmission", "The lobe that refracts light into the solid.";
+    coat Coat, "coat", "coat", "A clear dielectric coat over everything else.";
+    specular Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
+    base Base, "base", "base", "The Lambertian base below the specular lobe.";
+    transmission Transmission, "transmission", "transmission", "The lobe that refracts light into the solid.";
 }
 
 /// Something that is done with each layer.
