@@ -1,5 +1,5 @@
 // The path tracer. Twin of src/cpu/integrator/mod.rs.
-#import "optics/material"
+#import "optics/layer/scatter"
 #import "optics/random"
 #import "optics/warp"
 #import "scene/camera"
@@ -418,7 +418,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         if looks {
             let albedo = throughput * material_albedo(material, point.surface, layers);
             seen.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
-            seen.normal = material_normal(point.surface, layers);
+            seen.normal = material_normal(material, point.surface, layers);
             if bounce == 0u {
                 seen.hits = 1.0;
                 seen.depth = hit.t * dot(ray.direction, camera.forward);
@@ -446,7 +446,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             light.is_from_afar = part.is_below;
             lit = draw_light(point, part.is_below, xi);
             if lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits) {
-                steps.x = STEP_SPECULAR;
+                steps.x = STEP_EVALUATE;
             }
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));

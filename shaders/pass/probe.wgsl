@@ -1,6 +1,6 @@
 // Single functions of the optics and the traversal, asked about inputs of one's own: hard cases run the very code that
 // pictures are made with. Twin of src/cpu/probe.rs; questions and answers are told in src/analysis/probe.rs.
-#import "optics/material"
+#import "optics/layer/scatter"
 #import "optics/random"
 #import "scene/traversal"
 
@@ -95,7 +95,9 @@ fn probe_material(@builtin(global_invocation_id) id: vec3u) {
     let surface = Surface(
         frame_from_normal(shading), asked_vector(q + 5u), asked_vector(q + 8u), shading, questions[q + 1u] == 1u,
     );
-    let value = material_evaluate(material_at(questions[q]), surface, asked_vector(q + 11u), asked(q + 14u), 1.0);
+    let material = material_at(questions[q]);
+    let layers = material_layers(material, surface);
+    let value = material_evaluate(material, surface, layers, asked_vector(q + 11u), asked(q + 14u), 1.0);
     answer_vector(id.x * 3u, value);
 }
 

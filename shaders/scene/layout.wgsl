@@ -1,4 +1,6 @@
-// What the passes read: the twins of the structures in src/gpu/layout.rs and src/optics/material.rs, and the bindings.
+// What the passes read: the twins of the structures in src/gpu/layout.rs, and the bindings. Material is generated from
+// src/optics/material.rs.
+#import "scene/material"
 #import "scene/texels"
 
 struct Camera {
@@ -63,56 +65,6 @@ const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
 const SPARES_METAL: u32 = 8u;
-
-struct Material {
-    base_color: vec3f,
-    metalness: f32,
-    specular_color: vec3f,
-    specular_weight: f32,
-    eta: vec3f,
-    ior: f32,
-    k: vec3f,
-    roughness: f32,
-    emission: vec3f,
-    anisotropy: f32,
-    transmission_tint: vec3f,
-    transmission_weight: f32,
-    // For a length of 1 in the geometry's units.
-    absorption: vec3f,
-    transmission_roughness: f32,
-    rotation_rad: f32,
-    lobe: u32,
-    curve: u32,
-    horizon: u32,
-    fresnel: u32,
-    curve_table: u32,
-    albedo_table: u32,
-    inner_albedo_table: u32,
-    edge_tint: vec3f,
-    opacity: f32,
-    coat_color: vec3f,
-    coat_weight: f32,
-    coat_roughness: f32,
-    coat_ior: f32,
-    coat_table: u32,
-    light_luminance: f32,
-    // Base colour, roughness, normal, emission.
-    textures: vec4u,
-    opacity_texture: u32,
-    alpha_cutoff: f32,
-    normal_strength: f32,
-    has_rough_tables: u32,
-    texture_roughness: f32,
-    roughness_table: u32,
-    // VERTEX_BASE and the others.
-    flags: u32,
-    // The ramp of a spot's share over the cosine to the way it faces.
-    spot_scale: f32,
-    spot_offset: f32,
-    metalness_texture: u32,
-    coat_texture: u32,
-    has_box_projection: u32,
-}
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {

@@ -9,7 +9,8 @@ use super::probe::moved_direction;
 use crate::job::Job;
 use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
 use crate::optics::frame::Frame;
-use crate::optics::material::{Material, MaterialNumbers, Surface, material_evaluate, material_sample};
+use crate::optics::layer::{MaterialNumbers, material_evaluate, material_layers, material_sample};
+use crate::optics::material::{Material, Surface};
 use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_sphere;
@@ -88,6 +89,8 @@ fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> 
 /// The largest error of the material's value in f32, over some directions of the light where it is not singular.
 fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, state: RandomState) -> f64 {
     let (exact, exact_surface) = (material.cast::<f64>(), widened(surface));
+    let layers = material_layers(material, &job.tables, surface);
+    let exact_layers = material_layers(&exact, &job.tables, &exact_surface);
     let error = |light: u32| {
         let [a, b] = random_pair(state, DIMENSION + 2 * light);
         let [c, facet] = random_pair(state, DIMENSION + 2 * light + 1);
@@ -98,13 +101,22 @@ fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, st
             below: lobe,
         };
         let wi = match light % 2 {
-            0 => material_sample(material, &job.tables, surface, numbers, false).wi,
+            0 => material_sample(material, &job.tables, surface, &layers, numbers, false).wi,
             _ => uniform_sphere([a, b]),
         };
-        let answer = material_evaluate(material, &job.tables, surface, wi, LIGHT_DENSITY as f32, 1.0);
+        let density = LIGHT_DENSITY as f32;
+        let answer = material_evaluate(material, &job.tables, surface, &layers, wi, density, 1.0);
         relative_error(answer, |moved| {
             let wi = moved_direction(Vec3::from_f64(wi.to_f64()), moved);
-            material_evaluate(&exact, &job.tables, &exact_surface, wi, LIGHT_DENSITY, 1.0)
+            material_evaluate(
+                &exact,
+                &job.tables,
+                &exact_surface,
+                &exact_layers,
+                wi,
+                LIGHT_DENSITY,
+                1.0,
+            )
         })
     };
     (0..LIGHTS).filter_map(error).fold(0.0, f64::max)

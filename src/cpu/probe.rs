@@ -10,8 +10,9 @@ use crate::job::probe::{
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
 use crate::optics::fresnel::{fresnel_conductor, fresnel_dielectric};
+use crate::optics::layer::{material_evaluate, material_layers};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
-use crate::optics::material::{Material, Surface, material_evaluate};
+use crate::optics::material::{Material, Surface};
 use crate::optics::random::{Sequence, random_pair_bits, random_state};
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::Vec3;
@@ -90,7 +91,8 @@ pub fn probe_material<T: Scalar>(scene: &ProbeScene<'_>, question: &MaterialQues
     };
     let wi = moved_direction(vector(q.wi), moved);
     let density = T::from_f64(f64::from(q.light_density));
-    material_evaluate(&material, scene.tables, &surface, wi, density, T::one())
+    let layers = material_layers(&material, scene.tables, &surface);
+    material_evaluate(&material, scene.tables, &surface, &layers, wi, density, T::one())
 }
 
 /// Materials' values in f32.

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use crate::optics::material::Layer;
+use crate::optics::layer::Layer;
 use crate::optics::real::Scalar;
 
 /// What is told of the events of a path, in their order.
@@ -91,6 +91,15 @@ pub enum End {
     Absorbed,
     /// Russian roulette.
     Roulette,
+}
+
+/// How likely a layer is to be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LayerChance {
+    /// The layer.
+    pub layer: Layer,
+    /// In [0, 1].
+    pub probability: f32,
 }
 
 /// One event of a path. Lengths and places are in the geometry's units; colours are linear RGB. All numbers are as the
@@ -196,9 +205,8 @@ pub enum Event {
     Scattered {
         /// Which layer was chosen.
         layer: Layer,
-        /// How likely coat, specular lobe, base and refraction were. Where the specular lobe passes on what it does not
-        /// reflect, by its mean.
-        probabilities: [f32; 4],
+        /// How likely each layer was. Where the specular lobe passes on what it does not reflect, by its mean.
+        probabilities: Vec<LayerChance>,
         /// Unit vector.
         direction: [f32; 3],
         /// What the throughput was multiplied by.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
-use crate::optics::coat::coat_shape;
 use crate::optics::fresnel::{Fresnel, fresnel_f0};
+use crate::optics::layer::coat::coat_shape;
 use crate::optics::lobe::Width;
 use crate::optics::material::{
     MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,

@@ -1,6 +1,7 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
 use super::array::TEXEL_ROW_BITS;
+use super::generated_layers::layer_registry;
 use super::layout::BACKGROUNDS;
 use super::material_array::FEW_MATERIALS;
 use super::sums::TILE_COLUMNS;
@@ -11,6 +12,7 @@ use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
+use crate::optics::material::{FIELDS, Field};
 use crate::optics::random::Sequence;
 use crate::scene::camera::PixelFilter;
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
@@ -22,7 +24,9 @@ pub type Generated = (&'static str, fn() -> String);
 pub const GENERATED: &[Generated] = &[
     ("optics/lobe/registry", lobe_registry),
     ("optics/curve/registry", curve_registry),
+    ("optics/layer/registry", layer_registry),
     ("optics/choices", optics_choices),
+    ("scene/material", material_structure),
     ("scene/choices", scene_choices),
     ("scene/plan_constants", plan_constants),
 ];
@@ -45,6 +49,21 @@ fn optics_choices() -> String {
         choices::<Sequence>("SEQUENCE"),
     ];
     format!("// Generated from the choices in src/optics.\n{}", kinds.concat())
+}
+
+/// A material as the shaders read it.
+fn material_structure() -> String {
+    let field = |field: &Field| {
+        let of_type = match field.of_type {
+            "T" => "f32",
+            "Vec3<T>" => "vec3f",
+            "[u32; 4]" => "vec4u",
+            same => same,
+        };
+        format!("    {}: {of_type},\n", field.name)
+    };
+    let fields: String = FIELDS.iter().map(field).collect();
+    format!("// Generated from src/optics/material.rs.\nstruct Material {{\n{fields}}}\n")
 }
 
 /// The choices of camera, background and light sampling, and how arrays lie in textures.

@@ -6,6 +6,7 @@ mod budget;
 mod compute;
 pub mod device;
 mod engine;
+mod generated_layers;
 mod generated_shader;
 pub mod geometry_arrays;
 mod kernel_cache;

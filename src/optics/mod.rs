@@ -8,12 +8,12 @@
 pub mod albedo;
 pub mod blackbody;
 pub mod chord;
-pub mod coat;
 pub mod curve;
 pub mod elementary;
 pub mod frame;
 pub mod fresnel;
 pub mod lanes;
+pub mod layer;
 pub mod lobe;
 pub mod material;
 pub mod microfacet;

@@ -2,11 +2,13 @@
 
 use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use glossmith::document::{MaterialSettings, Strategy, assign, compile};
-use glossmith::optics::coat::coat_evaluate;
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{fresnel_metal, fresnel_schlick};
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
-use glossmith::optics::material::{Material, MaterialNumbers, Surface, material_layers, material_sample};
+use glossmith::optics::layer::{
+    Layer, MaterialNumbers, base::Base, coat::Coat, layer_evaluate, material_layers, material_sample,
+    specular::Specular,
+};
+use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;
@@ -42,26 +44,19 @@ fn surface(angle_deg: f64) -> Surface<f64> {
 
 /// The density of whatever layer is drawn.
 fn density(material: &Material<f64>, tables: &[f32], surface: &Surface<f64>, wi: Vec3<f64>) -> f64 {
-    let layers = material_layers(material, tables, surface);
-    let of = |shape: &LobeShape<'_, f64>| lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, wi)[1];
-    let lambert = LobeShape {
-        lobe: Lobe::Lambert,
-        horizon: Horizon::Mirror,
-        ..material.shape(tables)
+    let probabilities = material_layers(material, tables, surface).probabilities();
+    let of = |layer: Layer, of_lobe: fn(&Material<f64>, &[f32], &Surface<f64>, Vec3<f64>) -> [f64; 2]| {
+        probabilities[layer as usize] * of_lobe(material, tables, surface, wi)[1]
     };
-    let below = layers.specular_probability * of(&material.shape(tables))
-        + if layers.base_probability() > 0.0 {
-            layers.base_probability() * of(&lambert)
-        } else {
-            0.0
-        };
-    let [_, coat] = coat_evaluate(material, surface, wi);
-    layers.coat_probability * coat + (1.0 - layers.coat_probability) * below
+    of(Layer::Coat, layer_evaluate::<f64, Coat>)
+        + of(Layer::Specular, layer_evaluate::<f64, Specular>)
+        + of(Layer::Base, layer_evaluate::<f64, Base>)
 }
 
 /// The p-value of samples under the mixture's density, the coat's roughness in it times `factor`.
 fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, factor: f64) -> f64 {
     let surface = surface(angle_deg);
+    let layers = material_layers(material, tables, &surface);
     let draw = |i: u32| {
         let state = random_state(17, 0, seed, i, Sequence::Independent);
         let ([a, b], [c, facet]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
@@ -70,7 +65,7 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
             facet,
             below: [a, b, c],
         };
-        let drawn = material_sample(material, tables, &surface, numbers, false);
+        let drawn = material_sample(material, tables, &surface, &layers, numbers, false);
         // What GGX loses below the shading normal's horizon is no direction.
         (drawn.throughput.max_component() > 0.0).then_some(drawn.wi)
     };
@@ -92,6 +87,7 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
 /// numbers. Of numbers `apart` the first one is of another pair than the second.
 fn variance_left(material: &Material<f64>, tables: &[f32], apart: bool) -> f64 {
     let surface = surface(45.0);
+    let layers = material_layers(material, tables, &surface);
     let light = |wi: Vec3<f64>| 1.0 + wi.x + 0.5 * wi.y;
     let mean_of_stream = |x: u32, sequence| {
         let sample = |i: u32| {
@@ -104,7 +100,7 @@ fn variance_left(material: &Material<f64>, tables: &[f32], apart: bool) -> f64 {
                 facet,
                 below: lobe,
             };
-            let drawn = material_sample(material, tables, &surface, numbers, false);
+            let drawn = material_sample(material, tables, &surface, &layers, numbers, false);
             drawn.throughput.luminance() * light(drawn.wi)
         };
         (0..64).map(sample).sum::<f64>() / 64.0

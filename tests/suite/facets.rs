@@ -4,9 +4,10 @@
 use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use glossmith::document::{MaterialSettings, assign, compile};
 use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::material::{
-    Material, MaterialNumbers, MaterialSample, Surface, material_evaluate, material_sample,
+use glossmith::optics::layer::{
+    Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample,
 };
+use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 
@@ -46,6 +47,7 @@ struct Case {
     material: Material<f64>,
     tables: Vec<f32>,
     surface: Surface<f64>,
+    layers: Layers<f64>,
 }
 
 impl Case {
@@ -58,16 +60,19 @@ impl Case {
         let (materials, tables) = compile(&[settings]);
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
         let normal = vec3(0.0, 0.0, 1.0);
+        let surface = Surface {
+            frame: frame_from_normal(normal),
+            normal,
+            wo: vec3(sin, 0.0, cos),
+            coat_normal: normal,
+            is_inside,
+        };
+        let material = materials[0].cast();
         Self {
-            material: materials[0].cast(),
+            layers: material_layers(&material, &tables, &surface),
+            material,
             tables,
-            surface: Surface {
-                frame: frame_from_normal(normal),
-                normal,
-                wo: vec3(sin, 0.0, cos),
-                coat_normal: normal,
-                is_inside,
-            },
+            surface,
         }
     }
 
@@ -78,16 +83,15 @@ impl Case {
         // What facets refract takes no numbers of its own.
         let below = [0.5; 3];
         let numbers = MaterialNumbers { lobe, facet, below };
-        material_sample(&self.material, &self.tables, &self.surface, numbers, true)
+        material_sample(&self.material, &self.tables, &self.surface, &self.layers, numbers, true)
     }
 
     /// The density that light sampling is weighed against: of light drawn with density 1, all counts without competition,
     /// the share 1/(1 + density) with it.
     fn density(&self, wi: Vec3<f64>) -> f64 {
-        let value = |competing| {
-            let value = material_evaluate(&self.material, &self.tables, &self.surface, wi, 1.0, competing);
-            value.luminance()
-        };
+        let (material, tables, surface) = (&self.material, &self.tables, &self.surface);
+        let value =
+            |competing| material_evaluate(material, tables, surface, &self.layers, wi, 1.0, competing).luminance();
         let (alone, weighed) = (value(0.0), value(1.0));
         if weighed > 0.0 { alone / weighed - 1.0 } else { 0.0 }
     }

@@ -6,7 +6,7 @@ use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triang
 use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
 use glossmith::job::features::GuideSums;
-use glossmith::optics::material::Material;
+use glossmith::optics::material::{FIELDS, Material};
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 
@@ -56,15 +56,11 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
         }),
-        layout!(Material: Material<f32> {
-            base_color, metalness, specular_color, specular_weight, eta, ior, k, roughness, emission, anisotropy,
-            transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
-            horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
-            coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
-            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table,
-            flags, spot_scale, spot_offset, metalness_texture, coat_texture,
-            has_box_projection,
-        }),
+        Layout {
+            name: "Material",
+            size: size_of::<Material<f32>>(),
+            members: FIELDS.iter().map(|field| (field.name, field.offset, field.size)).collect(),
+        },
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
         layout!(Scatter: Scatter {

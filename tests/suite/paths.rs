@@ -9,7 +9,7 @@ use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{AreaLight, Document, MaterialSettings, Strategy};
 use glossmith::job::tiles::TileGrid;
-use glossmith::optics::material::decides_by_facet;
+use glossmith::optics::layer::decides_by_facet;
 use glossmith::optics::random::Sequence;
 use glossmith::render::explain::explain;
 use glossmith::render::{EngineChoice, Session};

@@ -12,6 +12,7 @@ use glossmith::job::tiles::TILE_SIDE;
 use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
+use glossmith::optics::layer::base::BASE_EDGE;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::render::{EngineChoice, Session};
@@ -255,7 +256,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("MATCHED_NODES", MATCHED_NODES as f64),
         ("NO_TEXTURE", f64::from(NO_TEXTURE)),
         ("NO_MEDIUM", f64::from(NO_MEDIUM)),
-        ("BASE_EDGE", material::BASE_EDGE),
+        ("BASE_EDGE", BASE_EDGE),
         ("VERTEX_BASE", f64::from(material::VERTEX_BASE)),
         ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
         ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),
@@ -311,13 +312,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "NO_HIT",
     "STACK_SIZE",
     "EXTENT_MAX",
-    "LAYER_SPECULAR",
-    "LAYER_BASE",
-    "LAYER_TRANSMISSION",
-    "LAYER_COAT",
-    "STEP_SPECULAR",
-    "STEP_TRANSMISSION",
-    "STEP_COAT",
+    "STEP_EVALUATE",
     "STEP_DRAW",
     "STEP_DRAW_BELOW",
     "CAUGHT_NOT",

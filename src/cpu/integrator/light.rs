@@ -6,7 +6,8 @@ use super::{Arrival, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::material::{Material, material_evaluate};
+use crate::optics::layer::{Layers, material_evaluate};
+use crate::optics::material::Material;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
@@ -254,6 +255,7 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
+        layers: &Layers<T>,
         arrival: &Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
@@ -267,8 +269,8 @@ impl<T: Real> Integrator<'_, T> {
             Strategy::Mis => T::one(),
             _ => zero,
         };
-        let evaluate =
-            |competing| material_evaluate(material, self.tables, &point.surface, wi, drawn.density, competing);
+        let (tables, surface, density) = (self.tables, &point.surface, drawn.density);
+        let evaluate = |competing| material_evaluate(material, tables, surface, layers, wi, density, competing);
         let mut value = Vec3::zero();
         if reaches.any() {
             value = Vec3::select(reaches, evaluate(competing), value);

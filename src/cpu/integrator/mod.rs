@@ -18,7 +18,8 @@ use super::recorder::{End, Event, Recorder, Source, single};
 use crate::job::effect::EffectId;
 use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
-use crate::optics::material::{Material, material_albedo, material_normal};
+use crate::optics::layer::{Layers, material_albedo, material_layers, material_normal};
+use crate::optics::material::Material;
 use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
@@ -244,11 +245,12 @@ impl<'a, T: Real> Integrator<'a, T> {
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
+        layers: &Layers<T>,
         arrival: &mut Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> bool {
         self.absorb(point, material, arrival, paths);
-        self.look(point, material, arrival, paths);
+        self.look(point, material, layers, arrival, paths);
         if material.emission.is_any().any() {
             let found = arrival.throughput * self.emitted_light(point, material, arrival, paths);
             self.add(
@@ -282,6 +284,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
+        layers: &Layers<T>,
         arrival: &Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
@@ -293,9 +296,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         if !is_looking.any() {
             return;
         }
-        let albedo = arrival.throughput * material_albedo(material, self.tables, &point.surface);
+        let albedo = arrival.throughput * material_albedo(material, &point.surface, layers);
         let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
-        let normal = material_normal(material, self.tables, &point.surface);
+        let normal = material_normal(material, self.tables, &point.surface, layers);
         let (albedos, normals) = (albedo.to_each(), normal.to_each());
         let depths = depth.to_each();
         members.for_each(&mut paths.looks, is_looking, |Look { seen, .. }, lane| {
@@ -454,18 +457,19 @@ impl<S: Scalar> Integrator<'_, S> {
         }
         arrival.is_caught_mirrored = passed.is_mirrored;
         let material = &*self.material(&point, &arrival);
-        if !self.meet(&point, material, &mut arrival, paths) {
+        let layers = &material_layers(material, self.tables, &point.surface);
+        if !self.meet(&point, material, layers, &mut arrival, paths) {
             return;
         }
         if self.samples_light() && !arrival.is_caught_mirrored {
             self.light_numbers(&group, bounce, paths);
             paths.lights.is_aimed[0] = false;
-            let whole = self.aim(&point, material, &arrival, paths);
+            let whole = self.aim(&point, material, layers, &arrival, paths);
             if paths.lights.is_aimed[0] {
                 self.arrive_alone(whole, bounce, paths);
             }
         }
-        self.scatter(&point, material, &arrival, paths);
+        self.scatter(&point, material, layers, &arrival, paths);
     }
 
     /// Adds the light that a path is aimed at, if it arrives; `whole` is what [`Integrator::aim`] told.

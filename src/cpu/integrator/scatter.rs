@@ -3,11 +3,12 @@
 use super::group::Group;
 use super::paths::Paths;
 use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
-use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
+use crate::cpu::recorder::{End, Event, LayerChance, Purpose, Recorder, single};
 use crate::job::Strategy;
-use crate::optics::material::{
-    Material, MaterialNumbers, MaterialSample, decides_by_facet, material_layers, material_sample, passes_on,
+use crate::optics::layer::{
+    Layer, Layers, MaterialNumbers, MaterialSample, decides_by_facet, material_sample, passes_on,
 };
+use crate::optics::material::Material;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;
@@ -19,13 +20,14 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
+        layers: &Layers<T>,
         arrival: &Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
         let group = arrival.group;
         let numbers = material_numbers(material, arrival, paths);
         let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
-        let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
+        let mut drawn = material_sample(material, self.tables, &point.surface, layers, numbers, wants_density);
         let mut leaves = self.meets_nothing(point, drawn.wi);
         if !paths.looks.is_empty() {
             let mirrors = drawn.is_mirror.to_bits();
@@ -40,7 +42,7 @@ impl<T: Real> Integrator<'_, T> {
             drawn.is_mirror = T::Mask::splat(true);
         }
         let mut throughput = arrival.throughput * drawn.throughput;
-        self.record_scattered(point, material, arrival, &drawn, throughput, paths);
+        record_scattered(layers, arrival, &drawn, throughput, paths);
         let goes_on = survive(arrival, &mut throughput, self.settings.roulette_floor, paths);
         self.count_rough(arrival, &drawn, paths);
         let origin = point.ray_origin(drawn.wi, material.transmits());
@@ -73,40 +75,37 @@ impl<T: Real> Integrator<'_, T> {
             arrival.group.set_each(&mut paths.state.rough_bounces, &counts);
         }
     }
+}
 
-    #[inline(always)]
-    fn record_scattered<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        arrival: &Arrival<T>,
-        drawn: &MaterialSample<T>,
-        throughput: Vec3<T>,
-        paths: &mut Paths<T::Scalar, R>,
-    ) {
-        if !R::KEEPS {
-            return;
-        }
-        let layers = material_layers(material, self.tables, &point.surface);
-        let below = T::one() - layers.coat_probability;
-        let probabilities = [
-            layers.coat_probability,
-            below * layers.specular_probability,
-            below * layers.base_probability(),
-            below * layers.transmission_probability,
-        ];
-        arrival
-            .members
-            .record(&mut paths.found, arrival.on, |lane| Event::Scattered {
-                layer: drawn.layer,
-                probabilities: probabilities.map(|probability| single(probability.lane(lane))),
-                direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
-                factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
-                density: single(drawn.density.lane(lane)),
-                is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
-                throughput: throughput.to_each().as_ref()[lane].to_f32(),
-            });
+#[inline(always)]
+fn record_scattered<T: Real, R: Recorder>(
+    layers: &Layers<T>,
+    arrival: &Arrival<T>,
+    drawn: &MaterialSample<T>,
+    throughput: Vec3<T>,
+    paths: &mut Paths<T::Scalar, R>,
+) {
+    if !R::KEEPS {
+        return;
     }
+    let probability = |lane| {
+        move |(layer, probability): (&Layer, T)| LayerChance {
+            layer: *layer,
+            probability: single(probability.lane(lane)),
+        }
+    };
+    let probabilities = layers.probabilities();
+    arrival
+        .members
+        .record(&mut paths.found, arrival.on, |lane| Event::Scattered {
+            layer: drawn.layer,
+            probabilities: Layer::ALL.iter().zip(probabilities).map(probability(lane)).collect(),
+            direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
+            factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
+            density: single(drawn.density.lane(lane)),
+            is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
+            throughput: throughput.to_each().as_ref()[lane].to_f32(),
+        });
 }
 
 /// The numbers with which a material's directions are drawn.

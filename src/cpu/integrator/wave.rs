@@ -13,6 +13,7 @@ use super::{Arrival, Integrator};
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
+use crate::optics::layer::material_layers;
 use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
@@ -307,16 +308,17 @@ impl<T: Real> Integrator<'_, T> {
                 ..arrival
             };
             let material = &*self.material(&point, &arrival);
-            if self.meet(&point, material, &mut arrival, paths) {
+            let layers = &material_layers(material, self.tables, &point.surface);
+            if self.meet(&point, material, layers, &mut arrival, paths) {
                 if self.samples_light() && !is_caught_mirrored {
                     T::out_of_line(
                         #[inline(always)]
-                        || self.aim(&point, material, &arrival, paths),
+                        || self.aim(&point, material, layers, &arrival, paths),
                     );
                 }
                 T::out_of_line(
                     #[inline(always)]
-                    || self.scatter(&point, material, &arrival, paths),
+                    || self.scatter(&point, material, layers, &arrival, paths),
                 );
             }
         }

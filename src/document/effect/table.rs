@@ -5,6 +5,7 @@ use crate::document::{AreaLight, Background, Denoise, Document, GroundKind, Mate
 use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
+use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::{Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::vector::Vec3;
@@ -36,7 +37,7 @@ pub static EFFECTS: &[Effect] = &[
                 Decision::off("the environment is equally bright everywhere")
             } else if facts.settings.strategy == Strategy::Lobe {
                 Decision::off("light is found by the lobes alone")
-            } else if facts.materials.iter().all(Material::is_mirror) {
+            } else if facts.materials.iter().all(material_is_mirror) {
                 Decision::off("every surface is a mirror, which meets light in one direction only")
             } else {
                 Decision::on("environment brightness varies")
@@ -84,7 +85,7 @@ pub static EFFECTS: &[Effect] = &[
                 Decision::off("no triangle emits light")
             } else if facts.settings.strategy == Strategy::Lobe {
                 Decision::off("light is found by the lobes alone")
-            } else if facts.materials.iter().all(Material::is_mirror) {
+            } else if facts.materials.iter().all(material_is_mirror) {
                 Decision::off("every surface is a mirror, which meets light in one direction only")
             } else {
                 Decision::on("some triangles emit light")

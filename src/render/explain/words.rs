@@ -4,7 +4,6 @@ use std::fmt::{self, Display, Formatter};
 
 use super::PathAccount;
 use crate::cpu::recorder::{End, Event, Purpose, Source};
-use crate::optics::material::Layer;
 
 /// Width of the column that says what happened.
 const HEAD: usize = 11;
@@ -229,15 +228,6 @@ fn end(why: End) -> &'static str {
     }
 }
 
-fn layer_name(layer: Layer) -> &'static str {
-    match layer {
-        Layer::Coat => "coat",
-        Layer::Specular => "specular lobe",
-        Layer::Base => "base",
-        Layer::Refraction => "refraction",
-    }
-}
-
 fn found(event: &Event) -> [String; 2] {
     let Event::Found {
         source,
@@ -318,10 +308,9 @@ fn scattered(event: &Event) -> [String; 2] {
     else {
         return Default::default();
     };
-    let layers = [Layer::Coat, Layer::Specular, Layer::Base, Layer::Refraction];
-    let possible = layers.into_iter().zip(probabilities).filter(|(_, p)| **p > 0.0);
+    let possible = probabilities.iter().filter(|chance| chance.probability > 0.0);
     let choice: Vec<_> = possible
-        .map(|(layer, p)| format!("{} {}", layer_name(layer), short(*p)))
+        .map(|chance| format!("{} {}", chance.layer.label(), short(chance.probability)))
         .collect();
     let density = match (is_mirror, *density > 0.0) {
         (true, _) => ", as by a mirror".to_owned(),
@@ -332,7 +321,7 @@ fn scattered(event: &Event) -> [String; 2] {
         "scattered".into(),
         format!(
             "by the {} (of {}) along {}{density}, factor {}; throughput {}",
-            layer_name(*layer),
+            layer.label(),
             choice.join(", "),
             vector(direction),
             vector(factor),

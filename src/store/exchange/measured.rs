@@ -8,8 +8,8 @@ use super::report::{Entry, MaterialReport, Residual};
 use super::{ExchangeError, Format, Subject, Written};
 use crate::analysis::fit::merl::{CELLS, FILE_LENGTH, SCALES};
 use crate::document::{MaterialSettings, compile};
-use crate::optics::frame::frame_from_normal;
-use crate::optics::material::{Material, Surface, material_evaluate};
+use crate::optics::layer::{material_evaluate, material_is_mirror, material_layers};
+use crate::optics::material::{Material, Surface};
 use crate::optics::vector::{Vec3, vec3};
 
 /// `.binary` files.
@@ -91,7 +91,7 @@ impl Reflectance {
         let (materials, tables) = compile(std::slice::from_ref(settings));
         let material: Material<f64> = materials[0].cast();
         let is_sharp = settings.reflects() && !crate::document::match_look::lobe_of_material(settings).has_density();
-        if material.is_mirror() || is_sharp {
+        if material_is_mirror(&material) || is_sharp {
             return Err("a mirror's reflection fits in no table; give it some roughness".to_owned());
         }
         Ok(Self { material, tables })
@@ -104,18 +104,12 @@ impl Reflectance {
     }
 
     fn at(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> Vec3<f64> {
-        let normal = vec3(0.0, 0.0, 1.0);
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return Vec3::zero();
         }
-        let surface = Surface {
-            frame: frame_from_normal(normal),
-            normal,
-            wo,
-            coat_normal: normal,
-            is_inside: false,
-        };
-        material_evaluate(&self.material, &self.tables, &surface, wi, 1.0, 0.0) / wi.z.max(COSINE_MIN)
+        let (material, tables, surface) = (&self.material, &self.tables, Surface::upwards(wo));
+        let layers = material_layers(material, tables, &surface);
+        material_evaluate(material, tables, &surface, &layers, wi, 1.0, 0.0) / wi.z.max(COSINE_MIN)
     }
 }
 

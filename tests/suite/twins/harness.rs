@@ -269,7 +269,7 @@ pub struct Case {
     name: &'static str,
     inputs: &'static str,
     wgsl: &'static str,
-    outputs: Vec<(&'static str, Output)>,
+    outputs: Vec<(String, Output)>,
     twin: Twin,
     groups: Vec<(String, usize, Draw)>,
 }
@@ -287,8 +287,8 @@ impl Case {
         }
     }
     /// An expression of WGSL that the twin puts next.
-    pub fn output(mut self, expression: &'static str, output: Output) -> Self {
-        self.outputs.push((expression, output));
+    pub fn output(mut self, expression: impl Into<String>, output: Output) -> Self {
+        self.outputs.push((expression.into(), output));
         self
     }
     /// Inputs of their own kind, each kind with enough of them to count by itself.

@@ -1,10 +1,9 @@
 //! The layered material with real albedo tables, for every lobe.
 
 use glossmith::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
+use glossmith::optics::layer::{Layer, MaterialNumbers, material_evaluate, material_layers, material_sample};
 use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
-use glossmith::optics::material::{
-    Material, MaterialNumbers, Surface, material_evaluate, material_layers, material_sample,
-};
+use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::real::Scalar;
 use glossmith::scene::surface::bent_normal;
 
@@ -46,8 +45,8 @@ fn random_index(rng: &mut Rng, lobe: Lobe) -> u32 {
     of_lobe[rng.below(of_lobe.len())]
 }
 
-const SURFACE: &str =
-    "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u);";
+const SURFACE: &str = "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
+     let of_slot = material_at(material);";
 
 #[test]
 fn materials_agree() {
@@ -59,25 +58,29 @@ fn materials_agree() {
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let layers = material_layers(&material, &SCENE.tables, &surface);
-            row.put_vector(layers.base);
-            row.put_vector(layers.transmission);
-            row.put(layers.specular_probability);
-            row.put(layers.transmission_probability);
-            row.put(layers.coat_probability);
-            row.put_vector(layers.below_coat);
+            for layer in Layer::ALL {
+                let share = &layers[*layer];
+                row.put_vector(share.albedo);
+                row.put_vector(share.transmittance);
+                row.put(share.reached);
+                row.put(share.probability);
+            }
         }),
-    )
-    .output("l.base", COLOUR)
-    .output("l.transmission", COLOUR)
-    .output("l.specular_probability", Output::Number(0.05))
-    .output("l.transmission_probability", Output::Number(0.05))
-    .output("l.coat_probability", Output::Number(0.05))
-    .output("l.below_coat", COLOUR);
+    );
+    for layer in Layer::ALL {
+        let share = |field: &str| format!("l.{}.{field}", layer.module());
+        layers = layers
+            .output(share("albedo"), COLOUR)
+            .output(share("transmittance"), COLOUR)
+            .output(share("reached"), Output::Number(0.05))
+            .output(share("probability"), Output::Number(0.05));
+    }
     let mut sample = Case::new(
         "material_sample",
         "material tangent bitangent shading normal wo coat_normal inside a b c facet d e f wants_density",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
-         let s = material_sample(material_at(material), surface, \
+         let of_slot = material_at(material); \
+         let s = material_sample(of_slot, surface, material_layers(of_slot, surface), \
          MaterialNumbers(vec3f(a, b, c), facet, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
@@ -87,7 +90,8 @@ fn materials_agree() {
                 below: row.numbers(),
             };
             let wants_density = row.bits() == 1;
-            let drawn = material_sample(&material, &SCENE.tables, &surface, numbers, wants_density);
+            let layers = material_layers(&material, &SCENE.tables, &surface);
+            let drawn = material_sample(&material, &SCENE.tables, &surface, &layers, numbers, wants_density);
             row.put_vector(drawn.wi);
             row.put_vector(drawn.throughput);
             row.put(drawn.density);
@@ -106,13 +110,15 @@ fn materials_agree() {
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let (wi, [light_density, competing]) = (row.vector(), row.numbers());
-            let value = material_evaluate(&material, &SCENE.tables, &surface, wi, light_density, competing);
+            let tables = &SCENE.tables;
+            let layers = material_layers(&material, tables, &surface);
+            let value = material_evaluate(&material, tables, &surface, &layers, wi, light_density, competing);
             row.put_vector(value);
         }),
     )
     // As of a density.
     .output(
-        "material_evaluate(material_at(material), surface, wi, light_density, competing)",
+        "material_evaluate(of_slot, surface, material_layers(of_slot, surface), wi, light_density, competing)",
         Output::Vector(0.08),
     );
     for &lobe in Lobe::ALL {
@@ -148,7 +154,7 @@ fn materials_agree() {
         });
     }
     check(
-        &["optics/material"],
+        &["optics/layer/scatter"],
         &[
             layers,
             sample,

@@ -1,0 +1,86 @@
+// The Lambertian base. Twin of src/optics/layer/base.rs.
+#import "optics/layer/registry"
+#import "optics/material"
+#import "optics/warp"
+
+// Rounding of a squared sine at the edge of the cone.
+const BASE_EDGE: f32 = 1.00001;
+
+fn base_is_there(material: Material, surface: Surface) -> bool {
+    return material_has_base(material);
+}
+
+fn base_lobe(material: Material, surface: Surface) -> LayerLobe {
+    return LayerLobe(base_shape(), surface.frame);
+}
+
+fn base_shape() -> LobeShape {
+    return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
+}
+
+fn base_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+    var reflected = material.base_color * (left * (1.0 - material.metalness));
+    if PLAN_TRANSMISSION == 1u {
+        reflected *= 1.0 - material.transmission_weight;
+    }
+    return LayerAlbedo(reflected, vec3f(1.0));
+}
+
+fn base_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
+    return LayerToward(layers.base.albedo, layers.base.probability);
+}
+
+fn base_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
+    return luminance((*layers).base.albedo) + below;
+}
+
+fn base_chance(layers: Layers) -> f32 {
+    let base = layers.base.probability;
+    let through = layers.transmission.probability;
+    return select(1.0, base / max(base + through, 1e-20), through > 0.0);
+}
+
+fn base_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
+    return share.albedo;
+}
+
+fn base_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
+    let spread = base_spread(material, surface);
+    if spread >= 1.0 {
+        return drawn;
+    }
+    let normal = surface.frame.normal;
+    let wide = normalize_or(normal + uniform_sphere(xi.xy), normal);
+    let cosine = dot(normal, wide);
+    let height = safe_sqrt(1.0 - spread * spread * (1.0 - cosine * cosine));
+    let raw = wide * spread + normal * (height - spread * cosine);
+    let depth = dot(surface.normal, raw);
+    return LobeSample(select(raw, raw - surface.normal * (2.0 * depth), depth < 0.0), 1.0);
+}
+
+fn base_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
+    let spread = base_spread(material, surface);
+    if spread >= 1.0 {
+        return evaluated;
+    }
+    let above = dot(surface.normal, wi);
+    let leaning = dot(surface.frame.normal, wi);
+    let folded = leaning - 2.0 * above * dot(surface.frame.normal, surface.normal);
+    let both = narrow_density(leaning, spread) + narrow_density(folded, spread);
+    return vec2f(select(0.0, both, above > 0.0));
+}
+
+// The sine of the widest angle to which the base scatters: 1 but from within.
+fn base_spread(material: Material, surface: Surface) -> f32 {
+    if PLAN_TRANSMISSION == 0u {
+        return 1.0;
+    }
+    return select(1.0, material_ior_ahead(material, true), surface.is_inside && material_transmits(material));
+}
+
+// The density of Lambert's lobe with its sines multiplied by spread.
+fn narrow_density(cosine: f32, spread: f32) -> f32 {
+    let square = spread * spread;
+    let is_in_cone = 1.0 - cosine * cosine < square * BASE_EDGE;
+    return select(0.0, cosine * INV_PI / square, cosine > 0.0 && is_in_cone);
+}

@@ -1,0 +1,27 @@
+// How the specular and the refracting lobe share a direction. Twin of src/optics/layer/facet.rs.
+#import "optics/fresnel"
+#import "optics/material"
+#import "optics/numeric"
+
+fn passes_on(material: Material) -> bool {
+    return material_transmits(material) && weighs_one(planned(material.lobe, PLAN_LOBE));
+}
+
+// One facet is drawn that mirrors or refracts, as its Fresnel factor has it.
+fn shares_facets(material: Material) -> bool {
+    return material_transmits(material) && facets(planned(material.lobe, PLAN_LOBE)) != FACETS_NONE
+        && material.transmission_roughness == material.roughness;
+}
+
+fn decides_by_facet(material: Material) -> bool {
+    return passes_on(material) || shares_facets(material);
+}
+
+fn mirrored_share(reflected: f32, refracted: f32) -> f32 {
+    return sampled_share(reflected / max(reflected + refracted, 1e-20));
+}
+
+fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f {
+    let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
+    return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
+}

@@ -1,0 +1,43 @@
+// What layers have in common. Twin of src/optics/layer/mod.rs, which explains it, and of src/optics/layer/shares.rs.
+#import "optics/lobe/registry"
+#import "optics/numeric"
+
+struct LayerLobe {
+    shape: LobeShape,
+    frame: Frame,
+}
+
+struct LayerAlbedo {
+    reflected: vec3f,
+    transmittance: vec3f,
+}
+
+struct LayerToward {
+    color: vec3f,
+    probability: f32,
+}
+
+struct LayerShare {
+    albedo: vec3f,
+    probability: f32,
+    transmittance: vec3f,
+    reached: f32,
+}
+
+// A layer that is chosen, and the number that chose it, stretched again.
+struct LayerChoice {
+    layer: u32,
+    number: f32,
+}
+
+// How often a cover of this albedo is sampled, and its luminance with everything after it, which is `below`.
+fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
+    let reflected = max(max(albedo.x, albedo.y), albedo.z);
+    let rest = (1.0 - reflected) * below;
+    return vec2f(cover_probability(reflected, rest), reflected + rest);
+}
+
+fn cover_probability(reflected: f32, rest: f32) -> f32 {
+    let probability = sampled_share(reflected / max(reflected + rest, 1e-9));
+    return select(0.0, select(1.0, probability, rest > 0.0), reflected > 0.0);
+}

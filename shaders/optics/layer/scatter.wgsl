@@ -1,0 +1,125 @@
+// Light that a material reflects, and directions drawn from it: one loop over its layers for both. Twin of
+// src/optics/layer/evaluate.rs and src/optics/layer/sample.rs.
+#import "optics/layer/registry"
+#import "optics/warp"
+
+struct MaterialSample {
+    wi: vec3f,
+    throughput: vec3f,
+    density: f32,
+    is_mirror: bool,
+}
+
+struct MaterialNumbers {
+    lobe: vec3f,
+    facet: f32,
+    below: vec3f,
+}
+
+// Light from a direction that was drawn with some density. competing: 1 where the material's own density takes its share.
+struct MaterialLight {
+    wi: vec3f,
+    density: f32,
+    competing: f32,
+}
+
+// A direction drawn, and what the material reflects of the light.
+struct MaterialScatter {
+    drawn: MaterialSample,
+    reflected: vec3f,
+}
+
+// What is done at a surface point, in order: light is weighed by each layer, then a direction is drawn, and once more where
+// the layer that was drawn from first passed on.
+const STEP_EVALUATE: u32 = 0u;
+const STEP_DRAW: u32 = LAYERS;
+const STEP_DRAW_BELOW: u32 = LAYERS + 1u;
+
+fn material_sample(
+    material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, wants_density: bool,
+) -> MaterialSample {
+    let steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
+    return material_scatter(material, surface, layers, steps, numbers, wants_density, MaterialLight()).drawn;
+}
+
+fn material_evaluate(
+    material: Material, surface: Surface, layers: Layers, wi: vec3f, light_density: f32, competing: f32,
+) -> vec3f {
+    let light = MaterialLight(wi, light_density, competing);
+    let steps = vec2u(STEP_EVALUATE, STEP_DRAW);
+    return material_scatter(material, surface, layers, steps, MaterialNumbers(), false, light).reflected;
+}
+
+// The steps from steps.x to before steps.y. A loop, so that the code of the lobes and of what they reflect is there once:
+// drivers inline every call, and compile in more than proportion to the size.
+fn material_scatter(
+    material: Material, surface: Surface, of_view: Layers, steps: vec2u, numbers: MaterialNumbers, wants_density: bool,
+    light: MaterialLight,
+) -> MaterialScatter {
+    var layers = of_view;
+    var xi = numbers.lobe;
+    // The number that chooses a layer, the first layer that it may choose, and whether it is none of xi.
+    var number = xi.x;
+    var first = 0u;
+    var is_apart = false;
+    var drawn = MaterialSample();
+    var reflected = vec3f(0.0);
+    for (var step = steps.x; step < steps.y; step++) {
+        let draws = step >= STEP_DRAW;
+        var layer = step;
+        if draws {
+            let choice = layer_choice(material, layers, first, number);
+            layer = choice.layer;
+            if layer == LAYERS {
+                break;
+            }
+            if !is_apart {
+                xi.x = choice.number;
+            }
+        } else if !layer_is_there(layer, material, surface) {
+            continue;
+        }
+        let lobe = layer_lobe(layer, material, surface);
+        let mirror = is_mirror(lobe.shape);
+        if mirror && !draws {
+            continue;
+        }
+        var wi = light.wi;
+        var weight = 1.0;
+        if draws {
+            let sample = lobe_sample(lobe.shape, lobe.frame, surface.normal, surface.wo, xi);
+            let refined = layer_refined_sample(layer, material, surface, xi, sample);
+            wi = refined.wi;
+            weight = refined.weight;
+        }
+        let toward = layer_toward(layer, material, layers, surface, lobe.shape, wi);
+        if draws && layer_decides_by_facet(layer, material) {
+            let is_passed_on = layer_pass_on(layer, material, &layers, weight, toward.probability);
+            let part = split(numbers.facet, layer_share(layer, layers).probability);
+            if !part.is_below {
+                // What is below is drawn with its own numbers, or at the same facet.
+                xi = select(xi, numbers.below, is_passed_on);
+                number = part.stretched;
+                first = layer + 1u;
+                is_apart = true;
+                continue;
+            }
+        }
+        let share = layer_share(layer, layers);
+        var evaluated = vec2f(0.0);
+        if !draws || (wants_density && !mirror) {
+            let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
+            evaluated = layer_refined(layer, material, surface, wi, of_lobe);
+        }
+        let color = toward.color * share.transmittance;
+        let density = share.reached * toward.probability * evaluated.y;
+        if draws {
+            // With what a layer is drawn differs from what its direction tells where the horizon policy has turned that.
+            let drawn_with = max(share.reached * share.probability, 1e-20);
+            drawn = MaterialSample(wi, color * (weight / drawn_with), density, mirror);
+            break;
+        }
+        reflected += color * (evaluated.x * (light.density / (light.density + light.competing * density)));
+    }
+    return MaterialScatter(drawn, reflected);
+}

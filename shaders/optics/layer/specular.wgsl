@@ -1,0 +1,110 @@
+// The specular lobe. Twin of src/optics/layer/specular.rs.
+#import "optics/albedo"
+#import "optics/layer/facet"
+#import "optics/layer/registry"
+#import "optics/material"
+
+struct SpecularAlbedos {
+    taken: vec3f,
+    by_dielectric: vec3f,
+}
+
+fn specular_is_there(material: Material, surface: Surface) -> bool {
+    return material_has_specular(material);
+}
+
+fn specular_lobe(material: Material, surface: Surface) -> LayerLobe {
+    return LayerLobe(material_shape(material), surface.frame);
+}
+
+fn specular_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+    var albedos = SpecularAlbedos(vec3f(0.0), vec3f(0.0));
+    if has_more(material) {
+        albedos = specular_albedos(material, surface);
+    }
+    // Under the metal's share there is nothing; the rest lies under the dielectric alone.
+    return LayerAlbedo(albedos.taken, max(vec3f(1.0) - albedos.by_dielectric, vec3f(0.0)));
+}
+
+fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
+    let terms = material_fresnel_terms(material, surface.is_inside);
+    let color = fresnel(terms, half_vector_cosine(surface.wo, wi));
+    return LayerToward(color, specular_probability(material, layers, surface, wi, color));
+}
+
+fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
+    let specular = luminance((*layers).specular.albedo);
+    var share = sampled_share(specular / max(specular + below, 1e-9));
+    share = select(1.0, share, below > 0.0);
+    // What is passed on is what was not reflected, no estimate.
+    share = select(share, min(specular, 1.0), passes_on(material));
+    let through = (1.0 - share) * (luminance((*layers).transmission.albedo) / max(below, 1e-9));
+    (*layers).specular.probability = share;
+    (*layers).transmission.probability = through;
+    (*layers).base.probability = 1.0 - share - through;
+    return select(select(0.0, 1.0, material_has_specular(material)), specular + below, has_more(material));
+}
+
+fn specular_chance(layers: Layers) -> f32 {
+    return layers.specular.probability;
+}
+
+fn specular_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
+    if !material_has_specular(material) || has_more(material) {
+        return share.albedo;
+    }
+    let cosine = dot(surface.frame.normal, surface.wo);
+    return fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
+}
+
+fn specular_decides_by_facet(material: Material) -> bool {
+    return decides_by_facet(material);
+}
+
+fn specular_pass_on(material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) -> bool {
+    if shares_facets(material) {
+        (*layers).transmission.probability = 1.0 - (*layers).base.probability - probability;
+    }
+    let is_passed_on = passes_on(material);
+    let is_lost = is_passed_on && !(weight > 0.0);
+    (*layers).specular.probability = select(probability, 0.0, is_lost);
+    return is_passed_on;
+}
+
+fn has_more(material: Material) -> bool {
+    return material_has_base(material) || material_transmits(material);
+}
+
+fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
+    var place = dot(surface.frame.normal, surface.wo);
+    var first = material.albedo_table;
+    if surface.is_inside && material_transmits(material) {
+        place = albedo_place(place, material_ior_ahead(material, true));
+        first = material.inner_albedo_table;
+    }
+    if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
+        let integrals = rough_albedo_lookup(first, place, material.roughness);
+        let terms = material_fresnel_terms(material, surface.is_inside);
+        return SpecularAlbedos(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
+    }
+    let taken = albedo_lookup(first, place);
+    return SpecularAlbedos(taken, taken);
+}
+
+// The probability of sampling the specular lobe for a direction that it mirrors to with this Fresnel factor.
+fn specular_probability(material: Material, layers: Layers, surface: Surface, wi: vec3f, color: vec3f) -> f32 {
+    let reflected = luminance(color);
+    if passes_on(material) {
+        return reflected;
+    }
+    if !shares_facets(material) {
+        return layers.specular.probability;
+    }
+    let ior = material_ior_ahead(material, surface.is_inside);
+    let cosine = half_vector_cosine(surface.wo, wi);
+    let square = refracted_square(cosine, ior);
+    let left = left_by_facet(material, surface, vec2f(cosine, sqrt(max(square, 0.0)) / ior));
+    // What is reflected totally is not refracted, whatever the model of the Fresnel factor says.
+    let refracted = select(0.0, luminance(left), square > 0.0);
+    return (1.0 - layers.base.probability) * mirrored_share(reflected, refracted);
+}

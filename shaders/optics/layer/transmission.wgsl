@@ -1,0 +1,46 @@
+// The refracting lobe. Twin of src/optics/layer/transmission.rs.
+#import "optics/layer/facet"
+#import "optics/layer/registry"
+#import "optics/material"
+
+fn transmission_is_there(material: Material, surface: Surface) -> bool {
+    return material_transmits(material);
+}
+
+fn transmission_lobe(material: Material, surface: Surface) -> LayerLobe {
+    return LayerLobe(material_transmission_shape(material, surface.is_inside), surface.frame);
+}
+
+fn transmission_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+    let left_by_metal = left * (1.0 - material.metalness);
+    return LayerAlbedo(material.transmission_tint * left_by_metal * material.transmission_weight, vec3f(1.0));
+}
+
+fn transmission_toward(
+    material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f,
+) -> LayerToward {
+    var toward = LayerToward(layers.transmission.albedo, layers.transmission.probability);
+    if !refracts_at_facets(shape) {
+        return toward;
+    }
+    let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+    toward.color = left_by_facet(material, surface, cosines);
+    if shares_facets(material) {
+        let reflected = luminance(fresnel(material_fresnel_terms(material, surface.is_inside), cosines.x));
+        let share = 1.0 - mirrored_share(reflected, luminance(toward.color));
+        toward.probability = (1.0 - layers.base.probability) * share;
+    }
+    return toward;
+}
+
+fn transmission_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
+    return luminance((*layers).transmission.albedo);
+}
+
+fn transmission_chance(layers: Layers) -> f32 {
+    return 1.0;
+}
+
+fn transmission_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
+    return share.albedo;
+}

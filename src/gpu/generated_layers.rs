@@ -1,0 +1,207 @@
+//! The shader module of the layers of a material, generated from their registry in `src/optics/layer/mod.rs`: the twin of
+//! the walks over it. A layer's code is in the kernels of plans that call for the effect of its name.
+
+use crate::job::effect::{Constant, EffectId};
+use crate::optics::layer::{Layer, LayerTraits};
+
+/// WGSL for a layer: in a template `$` stands for the prefix of its functions, `#` for the constant with its number, `@` for
+/// whether the plan calls for it.
+fn filled(template: &str, layer: Layer) -> String {
+    let prefix = layer.module();
+    let Constant { name: plan, .. } = layer
+        .name()
+        .parse()
+        .ok()
+        .and_then(EffectId::constant)
+        .expect("an effect has the layer's name and a constant");
+    template
+        .replace('$', prefix)
+        .replace('#', &format!("LAYER_{}", prefix.to_uppercase()))
+        .replace('@', &format!("{plan} == 1u"))
+}
+
+/// A template's text for each layer that it is for, from the outermost inwards.
+fn each(is_for: fn(LayerTraits) -> bool, template: &str) -> String {
+    let layers = Layer::ALL.iter().filter(|layer| is_for(layer.traits()));
+    layers.map(|layer| filled(template, *layer)).collect()
+}
+
+/// One template's text for each cover, another's for each other layer, from the outermost inwards.
+fn by_kind(of_cover: &str, otherwise: &str) -> Vec<String> {
+    let template = |layer: &Layer| if layer.traits().is_cover { of_cover } else { otherwise };
+    let layers = Layer::ALL.iter();
+    layers.map(|layer| filled(template(layer), *layer)).collect()
+}
+
+fn all(_: LayerTraits) -> bool {
+    true
+}
+
+/// A function that finds a layer's by its number.
+fn dispatch(signature: &str, is_for: fn(LayerTraits) -> bool, value: &str, otherwise: &str) -> String {
+    let case = format!("    if @ && layer == # {{ return {value}; }}\n");
+    let cases = each(is_for, &case);
+    format!("fn {signature} {{\n{cases}    return {otherwise};\n}}\n")
+}
+
+/// WGSL that finds a layer's functions by its number, and walks over the layers.
+pub fn layer_registry() -> String {
+    let modules = Layer::ALL.iter().map(|layer| layer.module());
+    let imports: String = modules
+        .map(|module| format!("#import \"optics/layer/{module}\"\n"))
+        .collect();
+    let numbers: String = Layer::ALL
+        .iter()
+        .map(|layer| filled(&format!("const #: u32 = {}u;\n", *layer as u32), *layer))
+        .collect();
+    let fields = each(all, "    $: LayerShare,\n");
+    [
+        "// Generated from the registry in src/optics/layer/mod.rs.\n#import \"optics/layer/layer\"\n".to_owned(),
+        imports,
+        "#import \"scene/plan\"\n".to_owned(),
+        numbers,
+        format!("const LAYERS: u32 = {}u;\n", Layer::ALL.len()),
+        format!("struct Layers {{\n{fields}}}\n"),
+        dispatches(),
+        chosen(),
+        shares(),
+        seen(),
+    ]
+    .concat()
+}
+
+/// A layer's functions by its number.
+fn dispatches() -> String {
+    let at = "material: Material, surface: Surface";
+    let by_number = |signature: String, is_for, value, otherwise| dispatch(&signature, is_for, value, otherwise);
+    [
+        by_number(
+            format!("layer_is_there(layer: u32, {at}) -> bool"),
+            all,
+            "$_is_there(material, surface)",
+            "false",
+        ),
+        by_number(
+            format!("layer_lobe(layer: u32, {at}) -> LayerLobe"),
+            all,
+            "$_lobe(material, surface)",
+            "LayerLobe()",
+        ),
+        by_number(
+            "layer_toward(layer: u32, material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) \
+             -> LayerToward"
+                .to_owned(),
+            all,
+            "$_toward(material, layers, surface, shape, wi)",
+            "LayerToward()",
+        ),
+        by_number(
+            "layer_share(layer: u32, layers: Layers) -> LayerShare".to_owned(),
+            all,
+            "layers.$",
+            "LayerShare()",
+        ),
+        by_number(
+            format!("layer_refined_sample(layer: u32, {at}, xi: vec3f, drawn: LobeSample) -> LobeSample"),
+            |traits| traits.refines,
+            "$_refined_sample(material, surface, xi, drawn)",
+            "drawn",
+        ),
+        by_number(
+            format!("layer_refined(layer: u32, {at}, wi: vec3f, evaluated: vec2f) -> vec2f"),
+            |traits| traits.refines,
+            "$_refined(material, surface, wi, evaluated)",
+            "evaluated",
+        ),
+        by_number(
+            "layer_decides_by_facet(layer: u32, material: Material) -> bool".to_owned(),
+            |traits| traits.decides,
+            "$_decides_by_facet(material)",
+            "false",
+        ),
+        by_number(
+            "layer_pass_on(layer: u32, material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) \
+             -> bool"
+                .to_owned(),
+            |traits| traits.decides,
+            "$_pass_on(material, layers, weight, probability)",
+            "false",
+        ),
+    ]
+    .concat()
+}
+
+/// The function that chooses a layer by a number, from the layer `first` on. One that decides by the facet that is drawn is
+/// chosen without it.
+fn chosen() -> String {
+    let layer = |layer: &Layer| {
+        let LayerTraits { is_cover, decides, .. } = layer.traits();
+        let chance = if is_cover {
+            "layers.$.probability"
+        } else {
+            "$_chance(layers)"
+        };
+        let by_facet = "        if $_decides_by_facet(material) { return LayerChoice(#, left); }\n";
+        let by_facet = if decides { by_facet } else { "" };
+        let template = format!(
+            "    if @ && first <= # {{\n{by_facet}        let part = split(left, {chance});\n        \
+             if part.is_below {{ return LayerChoice(#, part.stretched); }}\n        left = part.stretched;\n    }}\n"
+        );
+        filled(&template, *layer)
+    };
+    let layers: String = Layer::ALL.iter().map(layer).collect();
+    format!(
+        "fn layer_choice(material: Material, layers: Layers, first: u32, number: f32) -> LayerChoice {{\n    \
+         var left = number;\n{layers}    return LayerChoice(LAYERS, left);\n}}\n"
+    )
+}
+
+/// What each layer has for a view: albedos on the way inwards, probabilities on the way outwards, then what is reached.
+fn shares() -> String {
+    let albedo = "    layers.$.transmittance = transmittance;\n    if @ && $_is_there(material, surface) {\n        \
+                  let albedo = $_albedo(material, surface, left);\n        layers.$.albedo = albedo.reflected;\n        ";
+    let albedos = by_kind(
+        &format!("{albedo}transmittance *= albedo.transmittance;\n    }}\n"),
+        &format!("{albedo}left *= albedo.transmittance;\n    }}\n"),
+    );
+    let mut probabilities = by_kind(
+        "    if @ {\n        let choice = cover_choose(layers.$.albedo, below);\n        \
+         layers.$.probability = choice.x;\n        below = choice.y;\n    }\n",
+        "    below = $_choose(material, &layers, below);\n",
+    );
+    probabilities.reverse();
+    let reached = by_kind(
+        "    layers.$.reached = reached;\n    reached *= 1.0 - layers.$.probability;\n",
+        "    layers.$.reached = reached;\n",
+    );
+    format!(
+        "fn material_layers(material: Material, surface: Surface) -> Layers {{\n    var layers = Layers();\n    \
+         var transmittance = vec3f(1.0);\n    var left = vec3f(1.0);\n{}    var below = 0.0;\n{}    \
+         var reached = 1.0;\n{}    return layers;\n}}\n",
+        albedos.concat(),
+        probabilities.concat(),
+        reached.concat(),
+    )
+}
+
+/// The albedo and the normal that lead a denoiser.
+fn seen() -> String {
+    let albedos = by_kind(
+        "    if @ { covers += layers.$.transmittance * layers.$.albedo; }\n",
+        "    if @ { below += layers.$.transmittance * $_seen_albedo(material, surface, layers.$); }\n",
+    );
+    let mut normals = by_kind(
+        "    if @ && $_is_there(material, surface) {\n        \
+         normal = mix(normal, $_lobe(material, surface).frame.normal, layers.$.probability);\n    }\n",
+        "",
+    );
+    normals.reverse();
+    format!(
+        "fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3f {{\n    \
+         var covers = vec3f(0.0);\n    var below = vec3f(0.0);\n{}    return covers + below;\n}}\n\
+         fn material_normal(material: Material, surface: Surface, layers: Layers) -> vec3f {{\n    \
+         var normal = surface.frame.normal;\n{}    return normal;\n}}\n",
+        albedos.concat(),
+        normals.concat(),
+    )
+}

@@ -1,0 +1,94 @@
+//! A clear dielectric coat over everything else: OpenPBR's coat, glTF's clearcoat.
+//!
+//! It reflects by the isotropic geometric lobe with the curve `smooth`, whatever lobe is below, under the exact equations
+//! of a dielectric. What it does not reflect on average reaches what is below, tinted by its colour: coat + (1 − albedo of
+//! the coat) · colour · below, so that no energy is made (the layering of OpenPBR 1.1, section on the coat). It does not
+//! roughen what is seen through it, and lies smooth over a normal texture. From within a solid it is not there.
+
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use crate::optics::albedo::albedo_lookup;
+use crate::optics::curve::Curve;
+use crate::optics::frame::frame_from_normal;
+use crate::optics::fresnel::{fresnel_dielectric, half_vector_cosine};
+use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape};
+use crate::optics::material::{Material, Surface};
+use crate::optics::real::Real;
+use crate::optics::vector::Vec3;
+
+/// The coat.
+#[derive(Debug)]
+pub struct Coat;
+
+impl<T: Real> LayerModel<T> for Coat {
+    const LAYER: Layer = Layer::Coat;
+    const TRAITS: LayerTraits = LayerTraits {
+        is_cover: true,
+        refines: true,
+        ..LayerTraits::PLAIN
+    };
+
+    #[inline(always)]
+    fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
+        T::zero().less(material.coat_weight) & !(surface.is_inside & material.transmits())
+    }
+
+    #[inline(always)]
+    fn lobe<'a>(material: &Material<T>, _: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+        LayerLobe {
+            shape: coat_shape(material),
+            frame: frame_from_normal(surface.coat_normal),
+        }
+    }
+
+    #[inline(always)]
+    fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
+        let cosine = surface.coat_normal.dot(surface.wo);
+        let share = material.coat_weight * albedo_lookup(tables, material.coat_table, cosine).x;
+        let color = Vec3::splat(T::one()).mix(material.coat_color, material.coat_weight);
+        LayerAlbedo {
+            reflected: Vec3::splat(share),
+            transmittance: color * (T::one() - share).max(T::zero()),
+        }
+    }
+
+    #[inline(always)]
+    fn toward(_: &Material<T>, layers: &Layers<T>, _: &Surface<T>, _: &LobeShape<'_, T>, _: Vec3<T>) -> LayerToward<T> {
+        LayerToward {
+            color: Vec3::splat(T::one()),
+            probability: layers[Layer::Coat].probability,
+        }
+    }
+
+    #[inline(always)]
+    fn refined_sample(material: &Material<T>, surface: &Surface<T>, _: [T; 3], drawn: LobeSample<T>) -> LobeSample<T> {
+        LobeSample {
+            weight: coat_fresnel(material, surface.wo, drawn.wi) * drawn.weight,
+            ..drawn
+        }
+    }
+
+    #[inline(always)]
+    fn refined(material: &Material<T>, surface: &Surface<T>, wi: Vec3<T>, [value, density]: [T; 2]) -> [T; 2] {
+        [value * coat_fresnel(material, surface.wo, wi), density]
+    }
+}
+
+/// The coat's lobe.
+#[inline(always)]
+pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
+    LobeShape {
+        lobe: Lobe::Geometric,
+        curve: Curve::Smooth,
+        horizon: Horizon::Mirror,
+        roughness: material.coat_roughness,
+        anisotropy: T::zero(),
+        eta: T::zero(),
+        table: &[],
+    }
+}
+
+/// The share that the coat reflects into a direction of its lobe.
+#[inline(always)]
+fn coat_fresnel<T: Real>(material: &Material<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    material.coat_weight * fresnel_dielectric(half_vector_cosine(wo, wi), material.coat_ior)
+}

@@ -1,0 +1,138 @@
+//! What a material reflects or refracts of light from a direction that was drawn towards it.
+
+use super::{LayerLobe, LayerModel, LayerVisitor, Layers, each_layer};
+use crate::optics::lobe::{is_mirror, lobe_evaluate};
+use crate::optics::material::{Material, Surface};
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::{Vec3, vec3};
+
+/// The material's evaluate (cosine included) for light from `wi` that was drawn with density `light_density`, each layer
+/// multiplied by its share under multiple importance sampling (Veach 1997, balance heuristic): light_density/
+/// (light_density + `competing` × density of that layer). `competing` is 1, or 0 where light sampling works alone.
+/// Layers weighed as mirrors give nothing: only sampling the lobe finds what they reflect or refract.
+pub fn material_evaluate<T: Real>(
+    material: &Material<T>,
+    tables: &[f32],
+    surface: &Surface<T>,
+    layers: &Layers<T>,
+    wi: Vec3<T>,
+    light_density: T,
+    competing: T,
+) -> Vec3<T> {
+    T::out_of_line(
+        #[inline(always)]
+        || {
+            let mut evaluation = Evaluation {
+                material,
+                tables,
+                surface,
+                layers,
+                wi,
+                light_density,
+                competing,
+                covers: Vec3::zero(),
+                below: Vec3::zero(),
+            };
+            each_layer(&mut evaluation);
+            evaluation.below + evaluation.covers
+        },
+    )
+}
+
+/// The walk that sums up what the layers give.
+struct Evaluation<'a, T: Real> {
+    material: &'a Material<T>,
+    tables: &'a [f32],
+    surface: &'a Surface<T>,
+    layers: &'a Layers<T>,
+    wi: Vec3<T>,
+    light_density: T,
+    competing: T,
+    covers: Vec3<T>,
+    below: Vec3<T>,
+}
+
+impl<T: Real> LayerVisitor<T> for Evaluation<'_, T> {
+    #[inline(always)]
+    fn visit<L: LayerModel<T>>(&mut self) {
+        let Self {
+            material,
+            surface,
+            layers,
+            wi,
+            ..
+        } = *self;
+        let is_there = L::is_there(material, surface);
+        if !is_there.any() {
+            return;
+        }
+        let lobe = L::lobe(material, self.tables, surface);
+        let gives = is_there & !is_mirror(&lobe.shape);
+        if !gives.any() {
+            return;
+        }
+        let toward = L::toward(material, layers, surface, &lobe.shape, wi);
+        let [value, density] = lobe_of::<T, L>(material, surface, &lobe, wi);
+        let share = &layers[L::LAYER];
+        let competing = self.competing * share.reached * toward.probability * density;
+        let weight = self.light_density / (self.light_density + competing);
+        let part = toward.color * share.transmittance * (value * weight);
+        let sum = if L::TRAITS.is_cover {
+            &mut self.covers
+        } else {
+            &mut self.below
+        };
+        *sum = *sum + Vec3::select(gives, part, Vec3::zero());
+    }
+}
+
+/// (evaluate, density) of a layer's lobe, for itself.
+#[inline(always)]
+pub(super) fn lobe_of<T: Real, L: LayerModel<T>>(
+    material: &Material<T>,
+    surface: &Surface<T>,
+    lobe: &LayerLobe<'_, T>,
+    wi: Vec3<T>,
+) -> [T; 2] {
+    let evaluated = lobe_evaluate(&lobe.shape, &lobe.frame, surface.normal, surface.wo, wi);
+    L::refined(material, surface, wi, evaluated)
+}
+
+/// (evaluate, density) of a layer's lobe for a direction, for itself; both 0 where it is weighed as a mirror.
+pub fn layer_evaluate<T: Real, L: LayerModel<T>>(
+    material: &Material<T>,
+    tables: &[f32],
+    surface: &Surface<T>,
+    wi: Vec3<T>,
+) -> [T; 2] {
+    let lobe = L::lobe(material, tables, surface);
+    let is_mirror = is_mirror(&lobe.shape);
+    lobe_of::<T, L>(material, surface, &lobe, wi).map(|x| T::select(is_mirror, T::zero(), x))
+}
+
+/// True where every direction that a material can draw is weighed as a mirror's, seen from without.
+pub fn material_is_mirror<T: Real>(material: &Material<T>) -> T::Mask {
+    let mut mirrors = Mirrors {
+        material,
+        surface: Surface::upwards(vec3(T::zero(), T::zero(), T::one())),
+        are_all: T::Mask::splat(true),
+    };
+    each_layer(&mut mirrors);
+    mirrors.are_all
+}
+
+/// The walk that asks whether layers are mirrors.
+struct Mirrors<'a, T: Real> {
+    material: &'a Material<T>,
+    surface: Surface<T>,
+    are_all: T::Mask,
+}
+
+impl<T: Real> LayerVisitor<T> for Mirrors<'_, T> {
+    #[inline(always)]
+    fn visit<L: LayerModel<T>>(&mut self) {
+        let lobe = L::lobe(self.material, &[], &self.surface);
+        let is_there = L::is_there(self.material, &self.surface);
+        self.are_all = self.are_all & (!is_there | is_mirror(&lobe.shape));
+    }
+}

@@ -1,0 +1,218 @@
+//! The layers of a material behind one interface, and their registry.
+//!
+//! A layer says in its own file where it is there, which lobe it has, what share of light from everywhere it reflects or
+//! transmits (its albedo) and what it lets through, how often it is sampled, and its colour in a direction
+//! ([`LayerModel`]). All else is one walk over the list, from the outermost layer inwards: what each layer has of a view
+//! ([`material_layers`]), light that is reflected ([`material_evaluate`]), directions that are drawn ([`material_sample`]).
+//!
+//! Covers lie over everything after them, and are sampled as often as what they reflect has it. The layers below share the
+//! light that covers let through: the specular lobe reflects some, the base and the refracting lobe share the rest.
+//!
+//! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below.
+
+mod evaluate;
+mod facet;
+mod sample;
+mod shares;
+
+pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
+pub use facet::{decides_by_facet, passes_on};
+pub use sample::{MaterialNumbers, MaterialSample, material_sample};
+pub use shares::{LayerShare, Layers, material_albedo, material_layers, material_normal};
+
+use super::frame::Frame;
+use super::lobe::{LobeSample, LobeShape};
+use super::material::{Material, Surface};
+use super::numeric::sampled_share;
+use super::real::{Mask, Real};
+use super::vector::Vec3;
+use crate::named::named;
+
+/// Visits types in reverse order.
+macro_rules! visit_upwards {
+    ($visitor:ident;) => {};
+    ($visitor:ident; $first:ty, $($rest:ty,)*) => {
+        visit_upwards!($visitor; $($rest,)*);
+        $visitor.visit::<$first>();
+    };
+}
+
+macro_rules! layers {
+    ($($module:ident $variant:ident, $name:literal, $label:literal, $help:literal;)*) => {
+        $(pub mod $module;)*
+
+        named! {
+            /// A layer of a material; in the order in which light from without meets them.
+            Layer {
+                $($variant, $name, $label, $help;)*
+            }
+        }
+
+        impl Layer {
+            /// The name of its Rust module and WGSL file, and the prefix of its WGSL functions.
+            pub fn module(self) -> &'static str {
+                match self { $(Layer::$variant => stringify!($module),)* }
+            }
+            /// What is special about it.
+            pub const fn traits(self) -> LayerTraits {
+                match self { $(Layer::$variant => <$module::$variant as LayerModel<f32>>::TRAITS,)* }
+            }
+        }
+
+        /// Visits each layer, from the outermost inwards.
+        #[inline(always)]
+        fn each_layer<T: Real>(visitor: &mut impl LayerVisitor<T>) {
+            $(visitor.visit::<$module::$variant>();)*
+        }
+
+        /// Visits each layer, from the innermost outwards.
+        #[inline(always)]
+        fn each_layer_upwards<T: Real>(visitor: &mut impl LayerVisitor<T>) {
+            visit_upwards!(visitor; $($module::$variant,)*);
+        }
+    };
+}
+
+// Module, type, name, label, help. The effect of the same name has the code in the kernels that call for it.
+layers! {
+    coat Coat, "coat", "coat", "A clear dielectric coat over everything else.";
+    specular Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
+    base Base, "base", "base", "The Lambertian base below the specular lobe.";
+    transmission Transmission, "transmission", "transmission", "The lobe that refracts light into the solid.";
+}
+
+/// Something that is done with each layer.
+trait LayerVisitor<T: Real> {
+    /// Does it.
+    fn visit<L: LayerModel<T>>(&mut self);
+}
+
+/// What is special about a layer: said in its own file, read by everything else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LayerTraits {
+    /// It lies over all layers after it; the others share what the covers let through.
+    pub is_cover: bool,
+    /// It changes what its lobe draws and says ([`LayerModel::refined_sample`], [`LayerModel::refined`]).
+    pub refines: bool,
+    /// The Fresnel factor of a direction that is drawn may decide whether it is sampled ([`LayerModel::decides_by_facet`]).
+    pub decides: bool,
+}
+
+impl LayerTraits {
+    /// A layer like any other below the covers.
+    pub const PLAIN: Self = Self {
+        is_cover: false,
+        refines: false,
+        decides: false,
+    };
+}
+
+/// A layer's lobe, and the frame that it lies in.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerLobe<'a, T> {
+    /// The lobe.
+    pub shape: LobeShape<'a, T>,
+    /// The shading frame, on the side of the viewer.
+    pub frame: Frame<T>,
+}
+
+/// What a layer does with light from everywhere, seen from one direction.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerAlbedo<T> {
+    /// What it reflects or transmits towards the viewer, in [0, 1].
+    pub reflected: Vec3<T>,
+    /// What it leaves of the layers after it, in [0, 1].
+    pub transmittance: Vec3<T>,
+}
+
+/// A layer in one direction towards the light.
+#[derive(Clone, Copy, Debug)]
+pub struct LayerToward<T> {
+    /// What its lobe is multiplied by.
+    pub color: Vec3<T>,
+    /// The probability of sampling the layer that this direction tells, where no cover over it is sampled.
+    pub probability: T,
+}
+
+/// A layer. What is given here serves covers.
+pub trait LayerModel<T: Real> {
+    /// Its entry in the registry.
+    const LAYER: Layer;
+    /// What is special about it.
+    const TRAITS: LayerTraits;
+
+    /// True where this side of the surface has the layer.
+    fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask;
+
+    /// The layer's lobe. `tables` holds all materials' tables.
+    fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T>;
+
+    /// The layer's albedo and transmittance. `left`: what the layers before it leave, but for the covers.
+    fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T>;
+
+    /// The layer in a direction of its lobe.
+    fn toward(
+        material: &Material<T>,
+        layers: &Layers<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        wi: Vec3<T>,
+    ) -> LayerToward<T>;
+
+    /// The luminance of the layer with everything after it, which is `below`; sets how often the layer is sampled.
+    #[inline(always)]
+    fn choose(_: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
+        let share = &mut layers[Self::LAYER];
+        let reflected = share.albedo.max_component();
+        let rest = (T::one() - reflected) * below;
+        share.probability = cover_probability(reflected, rest);
+        reflected + rest
+    }
+
+    /// The probability of sampling the layer where none before it is sampled.
+    #[inline(always)]
+    fn chance(layers: &Layers<T>) -> T {
+        layers[Self::LAYER].probability
+    }
+
+    /// The albedo that leads a denoiser.
+    #[inline(always)]
+    fn seen_albedo(_: &Material<T>, _: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
+        share.albedo
+    }
+
+    /// What is made of a direction that the layer's lobe draws with the numbers `xi`.
+    #[inline(always)]
+    fn refined_sample(_: &Material<T>, _: &Surface<T>, _xi: [T; 3], drawn: LobeSample<T>) -> LobeSample<T> {
+        drawn
+    }
+
+    /// What is made of the lobe's (evaluate, density).
+    #[inline(always)]
+    fn refined(_: &Material<T>, _: &Surface<T>, _wi: Vec3<T>, evaluated: [T; 2]) -> [T; 2] {
+        evaluated
+    }
+
+    /// True where a direction is drawn first, and its Fresnel factor decides whether the layer is sampled.
+    #[inline(always)]
+    fn decides_by_facet(_: &Material<T>) -> T::Mask {
+        T::Mask::splat(false)
+    }
+
+    /// Sets how often the layer and those after it are sampled, by a direction that was drawn first, with its weight and
+    /// the probability that it tells. True where the layers after it draw directions with numbers of their own.
+    #[inline(always)]
+    fn pass_on(_: &Material<T>, _: &mut Layers<T>, _weight: T, _probability: T) -> T::Mask {
+        T::Mask::splat(false)
+    }
+}
+
+/// How often a cover is sampled that reflects `reflected`, where what is below would reflect `rest`: as [`sampled_share`]
+/// says; always where there is nothing below.
+#[inline(always)]
+fn cover_probability<T: Real>(reflected: T, rest: T) -> T {
+    let (zero, one) = (T::zero(), T::one());
+    let probability = sampled_share(reflected / (reflected + rest).max(T::from_f64(1e-9)));
+    let probability = T::select(zero.less(rest), probability, one);
+    T::select(zero.less(reflected), probability, zero)
+}

@@ -1,0 +1,178 @@
+//! Directions drawn from a material.
+
+use super::evaluate::lobe_of;
+use super::{Layer, LayerLobe, LayerModel, LayerToward, LayerVisitor, Layers, each_layer};
+use crate::optics::lobe::{LobeSample, is_mirror, lobe_sample};
+use crate::optics::material::{Material, Surface};
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::Vec3;
+use crate::optics::warp::split;
+
+/// A direction drawn from a material.
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialSample<T: Real> {
+    /// Towards the light.
+    pub wi: Vec3<T>,
+    /// What the path's throughput is multiplied by; 0 where the sample was absorbed.
+    pub throughput: Vec3<T>,
+    /// Density of the lobe that was chosen times the probability of choosing it, per steradian; 0 where that lobe is
+    /// weighed as a mirror (or the strategy asks for no density).
+    pub density: T,
+    /// True where the lobe is weighed as a mirror: light sampling has no share in this direction.
+    pub is_mirror: T::Mask,
+    /// The layer that was chosen, in some lane: for accounts of paths, nothing is computed from it.
+    pub layer: Layer,
+}
+
+impl<T: Real> MaterialSample<T> {
+    /// No direction.
+    #[inline(always)]
+    fn nothing() -> Self {
+        Self {
+            wi: Vec3::zero(),
+            throughput: Vec3::zero(),
+            density: T::zero(),
+            is_mirror: T::Mask::splat(false),
+            layer: Layer::ALL[0],
+        }
+    }
+
+    /// `other` in its place where the mask holds.
+    #[inline(always)]
+    fn replaced(self, mask: T::Mask, other: Self) -> Self {
+        Self {
+            wi: Vec3::select(mask, other.wi, self.wi),
+            throughput: Vec3::select(mask, other.throughput, self.throughput),
+            density: T::select(mask, other.density, self.density),
+            is_mirror: (mask & other.is_mirror) | (!mask & self.is_mirror),
+            layer: other.layer,
+        }
+    }
+}
+
+/// The numbers that a sample of a material takes, each in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialNumbers<T> {
+    /// Draw the direction. The first one also chooses the layer, and is stretched again ([`split`]), but where a facet's
+    /// Fresnel factor decides.
+    pub lobe: [T; 3],
+    /// Chooses the layer where the Fresnel factor of the direction decides ([`decides_by_facet`](super::decides_by_facet)).
+    pub facet: T,
+    /// Draws the direction where the specular lobe passed it on to what is below.
+    pub below: [T; 3],
+}
+
+/// Draws a direction from one of the layers. `wants_density` is false where no other strategy competes: then the geometric
+/// lobe never computes its density.
+pub fn material_sample<T: Real>(
+    material: &Material<T>,
+    tables: &[f32],
+    surface: &Surface<T>,
+    layers: &Layers<T>,
+    numbers: MaterialNumbers<T>,
+    wants_density: bool,
+) -> MaterialSample<T> {
+    T::out_of_line(
+        #[inline(always)]
+        || {
+            let mut drawing = Drawing {
+                material,
+                tables,
+                surface,
+                layers: *layers,
+                numbers,
+                wants_density,
+                xi: numbers.lobe,
+                choice: numbers.lobe[0],
+                is_apart: T::Mask::splat(false),
+                left: T::Mask::splat(true),
+                sample: MaterialSample::nothing(),
+            };
+            each_layer(&mut drawing);
+            drawing.sample
+        },
+    )
+}
+
+/// The walk that draws from the first layer that is chosen.
+struct Drawing<'a, T: Real> {
+    material: &'a Material<T>,
+    tables: &'a [f32],
+    surface: &'a Surface<T>,
+    /// With what directions have told that were drawn first.
+    layers: Layers<T>,
+    numbers: MaterialNumbers<T>,
+    wants_density: bool,
+    /// The numbers that draw a direction.
+    xi: [T; 3],
+    /// The number that chooses a layer.
+    choice: T,
+    /// True where that is none of those that draw a direction.
+    is_apart: T::Mask,
+    /// True where no layer is chosen yet.
+    left: T::Mask,
+    sample: MaterialSample<T>,
+}
+
+impl<T: Real> LayerVisitor<T> for Drawing<'_, T> {
+    #[inline(always)]
+    fn visit<L: LayerModel<T>>(&mut self) {
+        let (material, surface) = (self.material, self.surface);
+        let (chance, is_by_facet) = (L::chance(&self.layers), L::decides_by_facet(material));
+        if !(self.left & (is_by_facet | T::zero().less(chance))).any() {
+            return;
+        }
+        self.choice = T::select(is_by_facet, self.numbers.facet, self.choice);
+        self.is_apart = self.is_apart | is_by_facet;
+        let (mut takes, mut rest) = split(self.choice, chance);
+        self.xi[0] = T::select(self.is_apart, self.xi[0], rest);
+        if (self.left & (is_by_facet | takes)).any() {
+            let lobe = L::lobe(material, self.tables, surface);
+            let drawn = lobe_sample(&lobe.shape, &lobe.frame, surface.normal, surface.wo, self.xi);
+            let drawn = L::refined_sample(material, surface, self.xi, drawn);
+            let toward = L::toward(material, &self.layers, surface, &lobe.shape, drawn.wi);
+            if is_by_facet.any() {
+                let is_passed_on = L::pass_on(material, &mut self.layers, drawn.weight, toward.probability);
+                for (number, below) in self.xi.iter_mut().zip(self.numbers.below) {
+                    *number = T::select(is_passed_on, below, *number);
+                }
+                (takes, rest) = split(self.choice, L::chance(&self.layers));
+            }
+            takes = self.left & takes;
+            if takes.any() {
+                self.sample = self.sample.replaced(takes, self.finished::<L>(&lobe, drawn, toward));
+                self.left = self.left & !takes;
+            }
+        }
+        self.choice = rest;
+    }
+}
+
+impl<T: Real> Drawing<'_, T> {
+    /// What a direction drawn from a layer makes of a path. The probability with which the layer was chosen and the one
+    /// that the direction tells differ where the horizon policy has turned the direction.
+    #[inline(always)]
+    fn finished<L: LayerModel<T>>(
+        &self,
+        lobe: &LayerLobe<'_, T>,
+        drawn: LobeSample<T>,
+        toward: LayerToward<T>,
+    ) -> MaterialSample<T> {
+        let share = &self.layers[L::LAYER];
+        let is_mirror = is_mirror(&lobe.shape);
+        let mut density = T::zero();
+        if self.wants_density && !is_mirror.all() {
+            let [_, of_lobe] = lobe_of::<T, L>(self.material, self.surface, lobe, drawn.wi);
+            let density_there = share.reached * toward.probability * of_lobe;
+            density = T::select(is_mirror, T::zero(), density_there);
+        }
+        let scale = drawn.weight / (share.reached * share.probability).max(T::from_f64(1e-20));
+        MaterialSample {
+            wi: drawn.wi,
+            throughput: toward.color * share.transmittance * scale,
+            density,
+            is_mirror,
+            layer: L::LAYER,
+        }
+    }
+}

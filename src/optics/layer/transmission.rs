@@ -1,0 +1,83 @@
+//! The refracting lobe: of lobes made of facets what the facet does not reflect, of others what the specular lobe leaves
+//! over on average.
+
+use super::facet::{left_by_facet, mirrored_share, shares_facets};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use crate::optics::fresnel::fresnel;
+use crate::optics::lobe::{LobeShape, refracts_at_facets};
+use crate::optics::material::{Material, Surface};
+use crate::optics::real::{Mask, Real};
+use crate::optics::refraction::refracting_cosines;
+use crate::optics::vector::Vec3;
+
+/// The refracting lobe.
+#[derive(Debug)]
+pub struct Transmission;
+
+impl<T: Real> LayerModel<T> for Transmission {
+    const LAYER: Layer = Layer::Transmission;
+    const TRAITS: LayerTraits = LayerTraits::PLAIN;
+
+    #[inline(always)]
+    fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
+        material.transmits()
+    }
+
+    #[inline(always)]
+    fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+        LayerLobe {
+            shape: material.transmission_shape(tables, surface.is_inside),
+            frame: surface.frame,
+        }
+    }
+
+    #[inline(always)]
+    fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
+        let left_by_metal = left * (T::one() - material.metalness);
+        LayerAlbedo {
+            reflected: material.transmission_tint * left_by_metal * material.transmission_weight,
+            transmittance: Vec3::splat(T::one()),
+        }
+    }
+
+    #[inline(always)]
+    fn toward(
+        material: &Material<T>,
+        layers: &Layers<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        wi: Vec3<T>,
+    ) -> LayerToward<T> {
+        let share = &layers[Layer::Transmission];
+        let mut toward = LayerToward {
+            color: share.albedo,
+            probability: share.probability,
+        };
+        if !refracts_at_facets(shape) {
+            return toward;
+        }
+        let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+        toward.color = left_by_facet(material, surface, cosines);
+        let is_shared = shares_facets(material);
+        if is_shared.any() {
+            let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosines[0]).luminance();
+            let refracted = toward.color.luminance();
+            let of_facets = T::one() - layers[Layer::Base].probability;
+            let share = T::one() - mirrored_share(reflected, refracted);
+            toward.probability = T::select(is_shared, of_facets * share, toward.probability);
+        }
+        toward
+    }
+
+    /// The specular lobe sets how often its rest is sampled.
+    #[inline(always)]
+    fn choose(_: &Material<T>, layers: &mut Layers<T>, _below: T) -> T {
+        layers[Layer::Transmission].albedo.luminance()
+    }
+
+    /// It takes what no other layer does.
+    #[inline(always)]
+    fn chance(_: &Layers<T>) -> T {
+        T::one()
+    }
+}
