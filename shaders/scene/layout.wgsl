@@ -1,4 +1,4 @@
-// What the passes read: the twins of the structures in src/gpu/layout.rs and src/optics/material.rs, and the bindings.
+// What the passes read: the twins of the structures in src/gpu/layout.rs and src/optics/material/mod.rs, and the bindings.
 #import "scene/texels"
 
 struct Camera {
