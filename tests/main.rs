@@ -81,6 +81,8 @@ mod facets;
 mod farm;
 #[path = "suite/file_colors.rs"]
 mod file_colors;
+#[path = "suite/file_kinds.rs"]
+mod file_kinds;
 #[path = "suite/file_scenes.rs"]
 mod file_scenes;
 #[path = "suite/files.rs"]

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::file::{self, MAX_HEIGHT, Picture, Source};
 use super::{EnvironmentError, environment_direction};
+use crate::scene::endings::is_picture;
 
 /// Where the faces of a horizontal cross are, in faces from its top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
@@ -88,7 +89,7 @@ pub(super) fn read_folder(source: Source<'_>) -> Result<Picture, EnvironmentErro
     let files: Vec<PathBuf> = file::io(path, std::fs::read_dir(path))?
         .flatten()
         .map(|entry| entry.path())
-        .filter(|file| file::is_readable(file))
+        .filter(|file| is_picture(file))
         .collect();
     let faces = faces(&files).ok_or_else(|| EnvironmentError::NoFaces { path: path.to_owned() })?;
     let pictures: Vec<Picture> = faces

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{Environment, EnvironmentEncoding, EnvironmentError};
 use super::{container, cube, display_referred, open_exr, radiance_hdr};
 use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, transformed};
+use crate::scene::endings::{ending, is_picture};
 use crate::scene::loading::Loading;
 
 /// The most columns that are kept of a file's picture; larger ones are made smaller.
@@ -15,11 +16,6 @@ pub const MAX_HEIGHT: u32 = 4096;
 pub const SOURCE_MAX_WIDTH: u32 = 32768;
 /// The most rows of a file's picture: a strip of six faces stands upright.
 pub const SOURCE_MAX_HEIGHT: u32 = 32768;
-
-/// Endings of the files that can be read, without their dots.
-pub const ENDINGS: [&str; 12] = [
-    "hdr", "exr", "ktx2", "dds", "png", "jpg", "jpeg", "tif", "tiff", "webp", "pic", "rgbe",
-];
 
 /// A file to be read.
 #[derive(Clone, Copy)]
@@ -103,23 +99,13 @@ pub(super) fn load(
     Ok(environment)
 }
 
-fn ending(path: &Path) -> String {
-    let ending = path.extension().unwrap_or_default();
-    ending.to_string_lossy().to_lowercase()
-}
-
-/// Whether a file's ending is one of [`ENDINGS`].
-pub(super) fn is_readable(path: &Path) -> bool {
-    ENDINGS.contains(&ending(path).as_str())
-}
-
 /// The picture in a file.
 pub(super) fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
         "exr" => open_exr::read(source),
         "ktx2" | "dds" => container::read(source),
-        _ if is_readable(source.path) => display_referred::read(source),
+        _ if is_picture(source.path) => display_referred::read(source),
         _ => Err(EnvironmentError::UnknownExtension {
             path: source.path.to_owned(),
         }),

@@ -40,7 +40,7 @@ pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};
 pub use error::EnvironmentError;
-pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
+pub use file::{MAX_HEIGHT, MAX_WIDTH};
 pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
 pub use thumbnail::{brightened, thumbnail};
 

@@ -3,11 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::own::{OwnTexture, TextureTarget};
-
-/// Endings of pictures that a material can have.
-pub const ENDINGS: [&str; 12] = [
-    "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga", "exr", "ktx2", "dds", "gif",
-];
+use crate::scene::endings::is_picture;
 
 /// What a word in a picture's name says.
 #[derive(Clone, Copy, PartialEq)]
@@ -139,11 +135,8 @@ pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
     };
-    let is_picture = |path: &PathBuf| {
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        ENDINGS.contains(&ending.as_str()) && path.is_file()
-    };
-    let mut pictures: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_picture).collect();
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut pictures: Vec<PathBuf> = paths.filter(|path| is_picture(path) && path.is_file()).collect();
     pictures.sort();
     pictures
 }
