@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 use glossmith::cli::Arguments;
-use glossmith::named::Named;
 use glossmith::render::output;
 use glossmith::scene::environment::{self, EnvironmentSource};
 use glossmith::scene::texture::mean_of_file;

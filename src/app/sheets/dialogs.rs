@@ -507,7 +507,6 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::exchange::FORMATS;
 
     /// A dialog of the system that has been asked for so long ago, and what it is answered by.
     fn waiting(ago: Duration) -> (Dialogs, std::sync::mpsc::Sender<Option<PathBuf>>) {
