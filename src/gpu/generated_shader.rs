@@ -1,12 +1,11 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
 use super::array::TEXEL_ROW_BITS;
-use super::layout::BACKGROUNDS;
+use super::layout::{BACKGROUNDS, TILE_COLUMNS};
 use super::material_array::FEW_MATERIALS;
-use super::sums::TILE_COLUMNS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
-use crate::job::features::GUIDE_SAMPLES;
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;

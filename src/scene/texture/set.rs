@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::own::{OwnTexture, TextureTarget};
+use super::own::{OwnTexture, TextureChannel, TextureTarget};
 use crate::scene::endings::is_picture;
 
 /// What a word in a picture's name says.
@@ -84,8 +84,27 @@ fn meaning(path: &Path) -> Option<Meaning> {
 }
 
 /// True where a picture is named for holding roughness in green and metalness in blue.
-pub fn is_packed(path: &Path) -> bool {
+fn is_packed(path: &Path) -> bool {
     meaning(path) == Some(Packed)
+}
+
+impl OwnTexture {
+    /// The channel that counts, of a target that is a number: 0 to 3. `has_alpha` says whether the picture is translucent
+    /// anywhere.
+    pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
+        match self.channel {
+            TextureChannel::Red => 0,
+            TextureChannel::Green => 1,
+            TextureChannel::Blue => 2,
+            TextureChannel::Alpha => 3,
+            TextureChannel::Auto => match target {
+                TextureTarget::Opacity if has_alpha => 3,
+                TextureTarget::Roughness if is_packed(&self.file) => 1,
+                TextureTarget::Metalness if is_packed(&self.file) => 2,
+                _ => 0,
+            },
+        }
+    }
 }
 
 /// What a picture's name says that it is put on; nothing where it does not say.
