@@ -19,6 +19,8 @@ mod bounds;
 mod brushed;
 #[path = "suite/check.rs"]
 mod check;
+#[path = "suite/circles.rs"]
+mod circles;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
 #[path = "suite/cli_pictures.rs"]
@@ -81,6 +83,8 @@ mod facets;
 mod farm;
 #[path = "suite/file_colors.rs"]
 mod file_colors;
+#[path = "suite/file_kinds.rs"]
+mod file_kinds;
 #[path = "suite/file_scenes.rs"]
 mod file_scenes;
 #[path = "suite/files.rs"]
@@ -143,6 +147,8 @@ mod monkey;
 mod monkey_deeds;
 #[path = "suite/moved_lights.rs"]
 mod moved_lights;
+#[path = "suite/named_paths.rs"]
+mod named_paths;
 #[path = "suite/nobody_listens.rs"]
 mod nobody_listens;
 #[path = "suite/noise.rs"]
@@ -201,6 +207,8 @@ mod textures;
 mod tone;
 #[path = "suite/transmission.rs"]
 mod transmission;
+#[path = "suite/twin_names.rs"]
+mod twin_names;
 #[path = "suite/ui.rs"]
 mod ui;
 #[path = "suite/ui_browser.rs"]

@@ -34,13 +34,19 @@ use clap::{Parser, Subcommand};
 
 use crate::instructions::Instructions;
 use crate::render::{EngineChoice, RayQueries};
+use crate::store::file_kind::what_is_opened;
+
+fn long_about() -> String {
+    format!(
+        "Glossmith: a material editor around the geometric lobe.\n\nWithout a subcommand the editor opens, with the files \
+         given: {}. Pictures that were saved here have the document inside.",
+        what_is_opened()
+    )
+}
 
 /// Glossmith: a material editor around the geometric lobe.
-///
-/// Without a subcommand the editor opens, with the files given: models (.glb, .gltf), environments (.hdr, .exr),
-/// materials and projects (.json), pictures saved here (.png).
 #[derive(Debug, Parser)]
-#[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+#[command(version, long_about = long_about(), args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub struct Arguments {
     /// What to do instead of opening the editor.
     #[command(subcommand)]

@@ -12,7 +12,7 @@ use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
 use crate::say::say;
-use crate::store::file::ending;
+use crate::scene::endings::ending;
 use crate::store::replace::{save_atomically, save_by};
 
 use super::answer::Answer;

@@ -13,10 +13,11 @@ use crate::document::effect::EffectSwitches;
 use crate::document::of_model::{import_report, lights_left_out, materials_of};
 use crate::document::{Background, Document, ImportLobe, ParameterError, range};
 use crate::render::{EngineChoice, Session};
-use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::exchange::{self, ReadOptions};
-use crate::store::file::{Opened, ending};
+use crate::store::file::Opened;
+use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::lut;
 use crate::store::replace::save_atomically;
 
@@ -262,31 +263,29 @@ fn is_model_file(path: &Path) -> bool {
 
 /// Puts what a file holds in the document: an environment, a material or a whole project. Models are left alone.
 fn open(path: &Path, document: &mut Document, options: ReadOptions) -> anyhow::Result<()> {
-    match ending(path).as_str() {
+    match FileKind::of(path) {
         _ if is_model_file(path) => {}
-        ending if ending != "png" && ENDINGS.contains(&ending) => {
+        Some(FileKind::Light | FileKind::Picture) if !may_hold_document(path) => {
             document.lighting.environment = EnvironmentSource::File(path.to_owned())
         }
-        ending if matches!(ending, "json" | "png") || exchange::holds_materials(path) => {
-            match exchange::open(path, options)? {
-                Opened::Material(material) => {
-                    warn(&material.warnings);
-                    document.materials = vec![material.value];
-                }
-                Opened::Document(project) | Opened::Picture(project) => {
-                    warn(&project.warnings);
-                    *document = project.value;
-                }
+        Some(FileKind::Document | FileKind::Picture | FileKind::Material) => match exchange::open(path, options)? {
+            Opened::Material(material) => {
+                warn(&material.warnings);
+                document.materials = vec![material.value];
             }
-        }
+            Opened::Document(project) | Opened::Picture(project) => {
+                warn(&project.warnings);
+                *document = project.value;
+            }
+        },
         _ if !path.exists() => bail!(
             "{}: no such command or file; `glossmith --help` lists what there is",
             path.display()
         ),
         _ => bail!(
-            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json), or a \
-             picture saved here (.png); give one of these",
-            path.display()
+            "{}: not a kind of file that can be opened; those are {}",
+            path.display(),
+            what_is_opened()
         ),
     }
     Ok(())

@@ -2,7 +2,7 @@
 //! added side by side.
 
 use super::integrator::{NEAR, Results, Tile, is_sound};
-use crate::job::features::GUIDE_SAMPLES;
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::job::film::{Film, HalfSums};
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::vec3;

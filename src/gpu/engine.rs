@@ -14,7 +14,7 @@ use super::scene_group::SceneForm;
 use super::sums::{Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
-use crate::job::features::GuideSums;
+use crate::job::guides::GuideSums;
 use crate::job::film::{Film, HalfSums, luminance};
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 

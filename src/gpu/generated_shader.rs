@@ -2,12 +2,11 @@
 
 use super::array::TEXEL_ROW_BITS;
 use super::generated_layers::layer_registry;
-use super::layout::BACKGROUNDS;
+use super::layout::{BACKGROUNDS, TILE_COLUMNS};
 use super::material_array::FEW_MATERIALS;
-use super::sums::TILE_COLUMNS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
-use crate::job::features::GUIDE_SAMPLES;
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;

@@ -13,6 +13,9 @@ const BACKGROUND_TRANSPARENT: u32 = 1;
 const BACKGROUND_COLOR: u32 = 2;
 const BACKGROUND_BLURRED: u32 = 3;
 
+/// Tiles in a row of the texture that lists them.
+pub const TILE_COLUMNS: u32 = 256;
+
 /// The kinds of background by their names in WGSL, with the numbers that the shaders know them by.
 pub(super) const BACKGROUNDS: [(&str, u32); 4] = [
     ("ENVIRONMENT", BACKGROUND_ENVIRONMENT),

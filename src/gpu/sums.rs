@@ -3,14 +3,12 @@
 
 use super::compute::{self, UNIFORMS, WRITE, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
-use super::layout::{PixelColors, PixelStatistics, Tile};
+use super::layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
 use crate::job::Job;
 use crate::job::effect::EffectId;
-use crate::job::features::GuideSums;
+use crate::job::guides::GuideSums;
 use crate::job::tiles::TILE_SIDE;
 
-/// Tiles in a row of the texture that lists them.
-pub const TILE_COLUMNS: u32 = 256;
 /// Most tiles of a dispatch: a workgroup each, of which WebGPU lets 65 535 stand in a row.
 pub const DISPATCH_TILES: usize = 65_535;
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::effect::EffectId;
-use super::features::{GUIDE_SAMPLES, GuideSums};
+use super::guides::{GUIDE_SAMPLES, GuideSums};
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 

@@ -4,6 +4,7 @@
 pub mod effect;
 pub mod features;
 pub mod film;
+pub mod guides;
 pub mod plan;
 pub mod precision;
 pub mod probe;

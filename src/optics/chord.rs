@@ -288,13 +288,19 @@ fn chord_quadrature<T: Real>(curve: Curve, rule: &[[f64; 2]], chord: &Chord<T>) 
     let middle = (T::one() + chord_growth(chord, chord.last)) * (-half_range).exp();
     let mut sum = T::zero();
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m − d).
-    for &[node, weight] in rule {
-        let factor = (half_range * T::from_f64(node)).exp();
-        let (more, less) = (middle * factor, middle / factor);
-        let values = chord_integrand(curve, chord, mu, more) + chord_integrand(curve, chord, mu, less);
-        sum += values * T::from_f64(weight);
+    for &node in rule {
+        sum += chord_pair(curve, chord, mu, middle, half_range, node);
     }
     sum * half_range
+}
+
+/// The weighed values at the two nodes that lie as far to both sides of the middle: [place, weight].
+#[inline(always)]
+fn chord_pair<T: Real>(curve: Curve, chord: &Chord<T>, mu: T, middle: T, half_range: T, node: [f64; 2]) -> T {
+    let factor = (half_range * T::from_f64(node[0])).exp();
+    let (more, less) = (middle * factor, middle / factor);
+    let values = chord_integrand(curve, chord, mu, more) + chord_integrand(curve, chord, mu, less);
+    values * T::from_f64(node[1])
 }
 
 /// t² h at e^v.

@@ -16,8 +16,8 @@ use crate::document::Document;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::optics::primaries::REC709;
+use crate::scene::endings::ending;
 use crate::store::FileError;
-use crate::store::file::ending;
 use crate::store::picture::png_bytes;
 use crate::store::project::own_text;
 use crate::store::replace::save_by;
@@ -110,17 +110,19 @@ pub enum Format {
     Hdr,
 }
 
+/// The formats with their endings.
+pub const FORMATS: [(&str, Format); 3] = [("png", Format::Png), ("exr", Format::Exr), ("hdr", Format::Hdr)];
+
 /// The format that a file's ending asks for.
 ///
 /// # Errors
 /// [`OutputError::Format`] for another ending: ask before hours of rendering.
 pub fn format_of(path: &Path) -> Result<Format, OutputError> {
-    match ending(path).as_str() {
-        "png" => Ok(Format::Png),
-        "exr" => Ok(Format::Exr),
-        "hdr" => Ok(Format::Hdr),
-        _ => Err(OutputError::Format { path: path.to_owned() }),
-    }
+    let ending = ending(path);
+    let found = FORMATS.iter().find(|(its, _)| *its == ending);
+    found
+        .map(|(_, format)| *format)
+        .ok_or_else(|| OutputError::Format { path: path.to_owned() })
 }
 
 /// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,

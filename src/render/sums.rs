@@ -14,7 +14,8 @@ use exr::prelude::{
 
 use crate::document::Document;
 use crate::document::change::Change;
-use crate::job::features::{Features, GUIDE_SAMPLES};
+use crate::job::features::Features;
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::job::film::{Extras, Film, HalfSums};
 use crate::render::denoise::Noisy;
 use crate::store::FileError;
@@ -29,7 +30,7 @@ const SAMPLES: &str = "glossmithSamples";
 const UNITS: &str = "glossmithWorldUnits";
 const HALVES: [&str; 2] = ["even", "odd"];
 const COLORS: [&str; 3] = ["R", "G", "B"];
-/// The channels of what is seen first, in the order of [`crate::job::features::GuideSums`].
+/// The channels of what is seen first, in the order of [`crate::job::guides::GuideSums`].
 const GUIDES: [&str; 8] = [
     "albedo.R", "albedo.G", "albedo.B", "hits", "normal.X", "normal.Y", "normal.Z", "depth",
 ];

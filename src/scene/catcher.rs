@@ -206,26 +206,31 @@ fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
 /// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way: bilinear
 /// between the table's nodes.
 pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
-    let first = table as usize + NODE_LENGTH;
     let side = tables[table as usize] as usize;
-    let node = |along: T| {
-        let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::one());
-        let bend = T::from_f64(f64::from(CATCHER_BEND));
-        let bent = away * (T::one() + bend) / (away + bend);
-        let turned = T::select(along.less(T::zero()), -bent, bent);
-        let last = T::from_f64(side as f64 - 1.0);
-        let place = (turned * T::from_f64(0.5) + T::from_f64(0.5)) * last;
-        let low = place.floor();
-        (low.to_f64() as usize, place - low)
-    };
-    let ((column, across), (row, down)) = (node(position.x), node(position.z));
-    let at = |row: usize, column: usize| {
-        let node = first + NODE_LENGTH * (row.min(side - 1) * side + column.min(side - 1));
-        Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
-    };
+    let ((column, across), (row, down)) = (catcher_node(position.x, side), catcher_node(position.z, side));
+    let at = |row: usize, column: usize| catcher_radiance::<T>(tables, table, side, row, column);
     let upper = at(row, column).mix(at(row, column + 1), across);
     let lower = at(row + 1, column).mix(at(row + 1, column + 1), across);
     upper.mix(lower, down)
+}
+
+/// The node of the table before a place along an axis, and how far the place is behind it.
+fn catcher_node<T: Scalar>(along: T, side: usize) -> (usize, T) {
+    let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::one());
+    let bend = T::from_f64(f64::from(CATCHER_BEND));
+    let bent = away * (T::one() + bend) / (away + bend);
+    let turned = T::select(along.less(T::zero()), -bent, bent);
+    let last = T::from_f64(side as f64 - 1.0);
+    let place = (turned * T::from_f64(0.5) + T::from_f64(0.5)) * last;
+    let low = place.floor();
+    (low.to_f64() as usize, place - low)
+}
+
+/// The radiance at a node; the last row and column stand for those beyond.
+fn catcher_radiance<T: Scalar>(tables: &[f32], table: u32, side: usize, row: usize, column: usize) -> Vec3<T> {
+    let number = row.min(side - 1) * side + column.min(side - 1);
+    let node = table as usize + NODE_LENGTH * (1 + number);
+    Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
 }
 
 /// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::endings::{MODELS, ending, has_ending};
 use super::files::{Files, Seen};
 use super::geometry::Framing;
 use super::loading::Loading;
@@ -10,12 +11,6 @@ use super::report::{Fate, ImportReport};
 use super::resource::{self, Reach};
 use super::stage::{LIGHTS_MAX, LightKind, ModelLight};
 use super::{gltf, obj, ply, stl};
-
-/// Endings of the model files that can be read, without their dots.
-pub const MODEL_ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "zip"];
-
-/// Endings of models in the order in which they are looked for in folders and archives.
-const PREFERRED: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
 
 /// What a kind of light becomes.
 type LightFate = (Fate, &'static str, fn(&LightKind) -> bool);
@@ -90,14 +85,9 @@ fn load_one(path: &Path, options: &ModelOptions, seen: &Seen, loading: &Loading)
     load_file(path, in_folder(path.parent().unwrap_or(Path::new(""))), bytes, options)
 }
 
-/// Lower-case ending of a file's name, without its dot.
-fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
 /// Whether a file's ending is that of a model.
 pub fn is_model(path: &Path) -> bool {
-    MODEL_ENDINGS.contains(&ending(path).as_str())
+    has_ending(path, &MODELS)
 }
 
 /// Whether a folder has a model in it.
@@ -121,7 +111,7 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
         found.sort_by_key(|name| name.matches('/').count());
         found.into_iter().next().cloned()
     };
-    let name = PREFERRED.iter().find_map(of_format);
+    let name = MODELS.iter().filter(|ending| **ending != "zip").find_map(of_format);
     let name = name.ok_or_else(|| ModelError::NoModelInside { path: path.to_owned() })?;
     let bytes = files.read(&name).map_err(read)?;
     let others = names

@@ -6,6 +6,7 @@ pub mod camera;
 pub mod catcher;
 mod coarse;
 mod convex;
+pub mod endings;
 pub mod environment;
 pub mod facing;
 mod files;
@@ -42,7 +43,7 @@ pub mod texture;
 pub use geometry::{Geometry, NO_OBJECT};
 pub use gltf::{FileParameter, GLTF_PARAMETERS, Goes, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
-pub use import::{MODEL_ENDINGS, holds_model, is_model};
+pub use import::{holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use loading::{Cancelled, Loading};
 pub use model::{

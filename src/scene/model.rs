@@ -27,7 +27,7 @@ pub enum ModelSource {
     Plane,
     /// A ball with an inset band that shows its core, on a stand.
     Shaderball,
-    /// A file with one of [`MODEL_ENDINGS`](super::MODEL_ENDINGS), or a folder with such files.
+    /// A file with one of [`MODELS`](super::endings::MODELS), or a folder with such files.
     File(PathBuf),
 }
 
@@ -507,7 +507,7 @@ pub enum ModelError {
         reason: String,
     },
     /// A folder or an archive without a model.
-    #[error("{}: no model in it; models are {}", path.display(), super::MODEL_ENDINGS.join(", "))]
+    #[error("{}: no model in it; models are {}", path.display(), super::endings::MODELS.join(", "))]
     NoModelInside {
         /// The folder or archive.
         path: PathBuf,

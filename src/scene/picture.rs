@@ -7,7 +7,7 @@ use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2
 use image::error::{LimitError, LimitErrorKind};
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
 
-use super::environment::open_exr;
+use super::environment::exr_header;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
@@ -134,7 +134,7 @@ fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
         .then(|| MetaData::read_from_buffered(Cursor::new(bytes), false));
     let Some(Ok(meta)) = meta else { return Ok(None) };
     let header = meta.headers.first();
-    header.map_or(Ok(None), |header| open_exr::space(header).rec709_from())
+    header.map_or(Ok(None), |header| exr_header::space(header).rec709_from())
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {

@@ -165,11 +165,6 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     }
 }
 
-/// The extension of a file's name in lower case, without its dot; empty where there is none.
-pub fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
 /// The folder of a file.
 pub(super) fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))

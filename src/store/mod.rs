@@ -5,6 +5,7 @@
 pub mod examples;
 pub mod exchange;
 pub mod file;
+pub mod file_kind;
 pub mod library;
 pub mod lut;
 #[cfg_attr(not(feature = "video"), path = "mp4_not_built.rs")]

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use super::exchange::{self, ReadOptions, holds_materials};
+use super::exchange::{self, ExchangeError, ReadOptions, holds_materials};
+use super::file_kind::{FileKind, MATERIAL_KINDS};
 use super::preset::load_material;
 use crate::document::MaterialSettings;
 
@@ -124,25 +125,22 @@ fn walk(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), Str
     Ok(())
 }
 
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
-}
-
 fn is_material(path: &Path) -> bool {
-    has_ending(path, &["json", "mtlx"])
+    FileKind::of(path).is_some_and(|kind| MATERIAL_KINDS.contains(&kind))
 }
 
 /// Pictures for screens are seldom environments; where a folder holds some, they are opened by hand.
 fn is_environment(path: &Path) -> bool {
-    has_ending(path, &["hdr", "exr"])
+    FileKind::of(path) == Some(FileKind::Light)
 }
 
-/// A material in a file; `None` where a .json file holds something else.
+/// A material in a file; `None` where the file holds something else, as scripts and tables without the exact parameters do.
 fn material(path: &Path) -> Option<ItemKind> {
     let read = if holds_materials(path) {
-        let opened = exchange::find(&path.to_string_lossy(), ReadOptions::default());
-        opened.map(|loaded| loaded.value).map_err(|error| error.to_string())
+        match exchange::find(&path.to_string_lossy(), ReadOptions::default()) {
+            Err(ExchangeError::NothingCarried { .. }) => return None,
+            opened => opened.map(|loaded| loaded.value).map_err(|error| error.to_string()),
+        }
     } else {
         let bytes = fs::read(path).ok()?;
         let json: serde_json::Value = serde_json::from_slice(&bytes).ok()?;

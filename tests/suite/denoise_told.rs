@@ -3,7 +3,7 @@
 
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Denoise, Document, assign};
-use glossmith::job::features::GuideSums;
+use glossmith::job::guides::GuideSums;
 use glossmith::job::film::{Extras, Film};
 use glossmith::render::denoise::{Denoiser, Noisy};
 use glossmith::render::{EngineChoice, Session};

@@ -16,6 +16,7 @@ use glossmith::optics::vector::Vec3;
 use glossmith::scene::{FileParameter, GLTF_PARAMETERS, Goes};
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{FORMATS, Registered};
+use glossmith::store::file_kind::FileKind;
 use glossmith::store::preset::command_line_name;
 
 const BEGIN: &str = "<!-- made from the program: ";
@@ -126,6 +127,14 @@ fn presets() -> String {
         &["name", "base colour", "metalness", "roughness", "Fresnel"],
         PRESETS.iter().map(row),
     )
+}
+
+fn file_kinds() -> String {
+    let row = |kind: &FileKind| {
+        let endings: Vec<String> = kind.endings().iter().map(|ending| format!("`.{ending}`")).collect();
+        vec![kind.label().to_owned(), endings.join(" "), kind.help().to_owned()]
+    };
+    table(&["kind", "endings", "what it is"], FileKind::ALL.iter().map(row))
 }
 
 fn formats() -> String {
@@ -260,6 +269,7 @@ fn block(name: &str) -> String {
         "effects" => effects(),
         "presets" => presets(),
         "formats" => formats(),
+        "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         name => match name.strip_prefix("options of glossmith") {
             Some(command) => options(command.trim()),

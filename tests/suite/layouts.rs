@@ -5,7 +5,7 @@ use std::mem::offset_of;
 use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
-use glossmith::job::features::GuideSums;
+use glossmith::job::guides::GuideSums;
 use glossmith::optics::material::{FIELDS, Material};
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;

@@ -49,15 +49,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+fn collect(ending: &str, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            collect(ending, &path, found);
+        } else if path.extension().is_some_and(|its| its == ending) {
             found.push(path);
         }
     }
+}
+
+/// The files of a folder, and of those in it, with this ending.
+pub(crate) fn files_with(ending: &str, folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    collect(ending, folder, &mut found);
+    found
 }
 
 /// The folders that a file names by `crate::`, other than in comments.
@@ -78,13 +85,10 @@ fn folders_use_only_what_is_below_them() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut wrong = Vec::new();
     for (folder, allowed) in MAY_USE {
-        let mut files = Vec::new();
-        let path = src.join(folder);
-        if path.is_dir() {
-            sources(&path, &mut files);
-        } else {
-            files.push(path.with_extension("rs"));
-        }
+        let files = match src.join(folder) {
+            path if path.is_dir() => files_with("rs", &path),
+            path => vec![path.with_extension("rs")],
+        };
         assert!(
             !files.is_empty(),
             "src/{folder} is gone: bring the table here up to date"
@@ -131,8 +135,7 @@ fn every_dependency_is_used() {
     let engine = of_the_engine(&src);
     assert!(engine.iter().any(|module| module == "optics"), "{engine:?}");
     let code = |of_engine: bool| {
-        let mut files = Vec::new();
-        sources(&src, &mut files);
+        let mut files = files_with("rs", &src);
         let top = |file: &Path| {
             let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
             Path::new(first.as_os_str())
@@ -198,12 +201,10 @@ fn the_window_is_built_in_layers() {
     let mut wrong = Vec::new();
     for (height, parts) in LAYERS_OF_APP.iter().enumerate() {
         for part in *parts {
-            let mut files = Vec::new();
-            if app.join(part).is_dir() {
-                sources(&app.join(part), &mut files);
-            } else {
-                files.push(app.join(part).with_extension("rs"));
-            }
+            let files = match app.join(part) {
+                folder if folder.is_dir() => files_with("rs", &folder),
+                file => vec![file.with_extension("rs")],
+            };
             for file in files {
                 let is_near = file.parent() == Some(&app) || file.ends_with("mod.rs");
                 let used = used_of_app(&fs::read_to_string(&file).unwrap(), is_near);
@@ -237,12 +238,11 @@ fn panels_keep_to_themselves() {
     let names: BTreeSet<String> = panels.iter().map(|path| name_of(path)).collect();
     let mut wrong = Vec::new();
     for panel in panels.iter().filter(|path| !path.ends_with("mod.rs")) {
-        let mut files = Vec::new();
-        if panel.is_dir() {
-            sources(panel, &mut files);
+        let files = if panel.is_dir() {
+            files_with("rs", panel)
         } else {
-            files.push(panel.clone());
-        }
+            vec![panel.clone()]
+        };
         for file in files {
             let text = fs::read_to_string(&file).unwrap();
             // In the root of a panel `super` is all panels; in its parts it is the panel.

@@ -8,14 +8,7 @@ use crate::render::worker::Level;
 use crate::scene::environment::{self, EnvironmentSource};
 use crate::scene::texture::set;
 use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
-use crate::store::file::ending;
-
-/// Endings of pictures for screens: environments where they are opened, textures where they are dropped.
-const PICTURES: [&str; 8] = ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga"];
-/// Endings of pictures of light: environments.
-const LIGHT: [&str; 6] = ["hdr", "exr", "pic", "rgbe", "ktx2", "dds"];
-/// Endings of what other files refer to and nothing can be seen of by itself.
-const PARTS: [&str; 2] = ["bin", "mtl"];
+use crate::store::file_kind::{FileKind, may_hold_document};
 
 /// What was dropped on the window in this frame and, where text may be taken, pasted.
 pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<Action> {
@@ -37,10 +30,6 @@ pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<
         let files = (!dropped.is_empty()).then_some(Action::Drop(dropped));
         files.into_iter().chain(pasted).collect()
     })
-}
-
-fn has_ending(path: &Path, endings: &[&str]) -> bool {
-    endings.contains(&ending(path).as_str())
 }
 
 fn name(path: &Path) -> String {
@@ -85,16 +74,14 @@ impl Sorted {
                 sorted.pictures.extend(of_material);
                 continue;
             }
-            let kind = if is_model(&path) || (path.is_dir() && holds_model(&path)) {
-                &mut sorted.models
-            } else if path.is_dir() || has_ending(&path, &LIGHT) {
-                &mut sorted.environments
-            } else if has_ending(&path, &PICTURES) {
-                &mut sorted.pictures
-            } else if has_ending(&path, &PARTS) {
-                &mut sorted.parts
-            } else {
-                &mut sorted.others
+            let kind = match FileKind::of(&path) {
+                _ if path.is_dir() && holds_model(&path) => &mut sorted.models,
+                _ if path.is_dir() => &mut sorted.environments,
+                Some(FileKind::Model) => &mut sorted.models,
+                Some(FileKind::Light) => &mut sorted.environments,
+                Some(FileKind::Picture) => &mut sorted.pictures,
+                Some(FileKind::Part) => &mut sorted.parts,
+                _ => &mut sorted.others,
             };
             kind.push(path);
         }
@@ -175,7 +162,7 @@ impl App {
             self.say(Level::Error, text);
         }
         if let [picture] = pictures.as_slice()
-            && ending(picture) == "png"
+            && may_hold_document(picture)
         {
             // It may hold a document: that is looked for first.
             self.files.dropped = Some(picture.clone());

@@ -12,12 +12,15 @@ use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
 use crate::document::{Document, MaterialSettings};
+use crate::render::output::format_of;
 use crate::render::worker::Level;
-use crate::scene::environment::{ENDINGS, EnvironmentSource};
+use crate::scene::endings::ending;
+use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::OwnTexture;
-use crate::scene::{ModelOptions, ModelSource, holds_model, is_model};
+use crate::scene::{ModelOptions, ModelSource, holds_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
-use crate::store::file::{Opened, ending};
+use crate::store::file::Opened;
+use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
@@ -71,9 +74,9 @@ impl Files {
     }
 }
 
-/// What a file's ending says that it is.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum FileKind {
+/// What a file or folder is opened as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Opening {
     Model,
     Environment,
     Document,
@@ -81,26 +84,26 @@ enum FileKind {
     Unknown,
 }
 
-fn kind_of(path: &Path) -> FileKind {
-    match ending(path).as_str() {
-        _ if is_model(path) => FileKind::Model,
-        _ if path.is_dir() && holds_model(path) => FileKind::Model,
-        _ if !textures_in(path).is_empty() => FileKind::Textures,
-        _ if path.is_dir() => FileKind::Environment,
-        "json" | "png" => FileKind::Document,
-        _ if exchange::holds_materials(path) => FileKind::Document,
-        ending if ENDINGS.contains(&ending) => FileKind::Environment,
-        _ => FileKind::Unknown,
+fn opening(path: &Path) -> Opening {
+    match FileKind::of(path) {
+        _ if path.is_dir() && holds_model(path) => Opening::Model,
+        _ if path.is_dir() && !textures_in(path).is_empty() => Opening::Textures,
+        _ if path.is_dir() => Opening::Environment,
+        _ if may_hold_document(path) => Opening::Document,
+        Some(FileKind::Model) => Opening::Model,
+        Some(FileKind::Light | FileKind::Picture) => Opening::Environment,
+        Some(FileKind::Material) => Opening::Document,
+        _ => Opening::Unknown,
     }
 }
 
 impl App {
     /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
     pub(in crate::app) fn open(&mut self, path: PathBuf) -> bool {
-        match kind_of(&path) {
-            FileKind::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
-            FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Document => {
+        match opening(&path) {
+            Opening::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
+            Opening::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
+            Opening::Document => {
                 let options = ReadOptions {
                     lobe: self.shared.import_lobe,
                     ..ReadOptions::default()
@@ -110,18 +113,17 @@ impl App {
                     Done::Read(path, opened)
                 });
             }
-            FileKind::Textures => {
+            Opening::Textures => {
                 self.drop_files(vec![path]);
                 return false;
             }
-            FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .ktx2, \
-                            .dds, .jpg, .tif, .webp), materials (.json, .mtlx, and other programs' with exact parameters), projects (.json), and pictures \
-                            saved here (.png)";
-                self.say(
-                    Level::Error,
-                    format!("{}: not a kind of file that can be opened; {text}", path.display()),
+            Opening::Unknown => {
+                let what = what_is_opened();
+                let text = format!(
+                    "{}: not a kind of file that can be opened; those are {what}",
+                    path.display()
                 );
+                self.say(Level::Error, text);
                 return false;
             }
         }
@@ -385,7 +387,7 @@ impl App {
 
 /// Whether a file of this name is a picture.
 fn is_picture(path: &Path) -> bool {
-    ["png", "exr", "hdr"].contains(&ending(path).as_str())
+    format_of(path).is_ok()
 }
 
 /// The path with the ending of what is written as JSON, after any other that it has: that would say something else.

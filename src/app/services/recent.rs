@@ -6,8 +6,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::render::background::Background;
+use crate::scene::endings::is_picture;
 use crate::scene::environment::EnvironmentSource;
-use crate::store::file::ending;
+use crate::store::file_kind::may_hold_document;
 
 /// Most that are remembered.
 const COUNT: usize = 12;
@@ -41,7 +42,8 @@ impl Recent {
 
     /// Those that are environments.
     pub(in crate::app) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
-        let is_map = |path: &&PathBuf| ["hdr", "exr"].contains(&ending(path).as_str());
+        // Of pictures only environments are remembered, and those that have a document inside.
+        let is_map = |path: &&PathBuf| is_picture(path) && !may_hold_document(path);
         self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
     }
 

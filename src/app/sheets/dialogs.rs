@@ -10,9 +10,10 @@ use egui::{Key, Ui};
 
 use crate::app::kit::{theme, widgets};
 use crate::app::services::heard;
-use crate::scene::MODEL_ENDINGS;
-use crate::scene::environment::ENDINGS;
-use crate::scene::texture::{TextureTarget, set};
+use crate::render::output::FORMATS;
+use crate::scene::texture::TextureTarget;
+use crate::store::exchange;
+use crate::store::file_kind::{FileKind, MATERIAL_KINDS, OPENED, PICTURE_KINDS, endings};
 
 /// A dialog that returns empty-handed sooner than this never opened: no user cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -20,15 +21,6 @@ const NO_DIALOG: Duration = Duration::from_millis(400);
 const COMPLETIONS: usize = 12;
 /// Most folders that are offered.
 const FOLDERS: usize = 6;
-
-/// Endings of the files that materials are opened from.
-const MATERIALS: [&str; 11] = [
-    "json", "mtlx", "usda", "xml", "py", "csv", "glsl", "wgsl", "hlsl", "osl", "c",
-];
-/// Endings of the files for other programs.
-const EXPORTS: [&str; 14] = [
-    "mtlx", "glb", "gltf", "usda", "xml", "py", "binary", "csv", "glsl", "wgsl", "hlsl", "osl", "c", "h",
-];
 
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,28 +63,26 @@ impl Purpose {
         }
     }
 
-    fn kind(self) -> (&'static str, &'static [&'static str]) {
+    /// The name of the kind of file, and its endings.
+    fn kind(self) -> (&'static str, Vec<&'static str>) {
         match self {
             Self::Open => (
                 "Projects, materials, models, environments, pictures with a document",
-                &[
-                    "json", "glb", "gltf", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "jpeg", "tif",
-                    "tiff", "webp", "mtlx", "usda", "xml", "py",
-                ],
+                endings(OPENED),
             ),
-            Self::SaveProject => ("Projects", &["json"]),
-            Self::OpenModel => ("Models", &MODEL_ENDINGS),
-            Self::OpenEnvironment => ("Environment maps", &ENDINGS),
-            Self::OpenMaterial => ("Materials", &MATERIALS),
-            Self::SaveMaterial => ("Materials", &["json"]),
-            Self::Export => ("Files of other programs", &EXPORTS),
-            Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
-            Self::SavePicture | Self::QueuePicture => ("Pictures", &["png", "exr", "hdr"]),
-            Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
-            Self::SaveWindow => ("PNG pictures", &["png"]),
-            Self::WatchFolder => ("Folders", &[]),
-            Self::Texture(_) => ("Pictures", &set::ENDINGS),
-            Self::OpenLut => ("Tables of colours", &["cube"]),
+            Self::SaveProject => ("Projects", vec!["json"]),
+            Self::OpenModel => ("Models", FileKind::Model.endings()),
+            Self::OpenEnvironment => ("Environment maps", endings(PICTURE_KINDS)),
+            Self::OpenMaterial => ("Materials", endings(MATERIAL_KINDS)),
+            Self::SaveMaterial => ("Materials", vec!["json"]),
+            Self::Export => ("Files of other programs", exchange::endings_written()),
+            Self::OpenMeasured => (FileKind::Measured.label(), FileKind::Measured.endings()),
+            Self::SavePicture | Self::QueuePicture => ("Pictures", FORMATS.map(|(ending, _)| ending).to_vec()),
+            Self::SaveLayers => ("OpenEXR pictures", vec!["exr"]),
+            Self::SaveWindow => ("PNG pictures", vec!["png"]),
+            Self::WatchFolder => ("Folders", Vec::new()),
+            Self::Texture(_) => ("Pictures", endings(PICTURE_KINDS)),
+            Self::OpenLut => (FileKind::ColorTable.label(), FileKind::ColorTable.endings()),
         }
     }
 
@@ -235,7 +225,7 @@ impl Dialogs {
         let (name, endings) = purpose.kind();
         let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
         if !endings.is_empty() {
-            dialog = dialog.add_filter(name, endings);
+            dialog = dialog.add_filter(name, &endings);
         }
         if let Some(folder) = &self.folder {
             dialog = dialog.set_directory(folder);
@@ -362,7 +352,7 @@ impl PathField {
         widgets::note(ui, self.why.note());
         ui.add_space(theme::GAP);
         let (_, endings) = self.purpose.kind();
-        let completions = completions(&self.text, endings);
+        let completions = completions(&self.text, &endings);
         let id = ui.make_persistent_id("path");
         let completes = ui.memory(|memory| memory.has_focus(id))
             && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Tab));
@@ -517,7 +507,6 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::exchange::FORMATS;
 
     /// A dialog of the system that has been asked for so long ago, and what it is answered by.
     fn waiting(ago: Duration) -> (Dialogs, std::sync::mpsc::Sender<Option<PathBuf>>) {
@@ -566,22 +555,5 @@ mod tests {
             Some((Purpose::SaveProject, Some("/a.json".into())))
         );
         assert!(!dialogs.is_asking());
-    }
-
-    #[test]
-    fn the_endings_of_other_programs_are_those_of_the_formats() {
-        let endings = |chosen: fn(&crate::store::exchange::Registered) -> bool| -> Vec<&str> {
-            let formats = FORMATS.iter().filter(|format| chosen(format));
-            let mut endings: Vec<_> = formats.flat_map(|format| format.extensions).copied().collect();
-            endings.dedup();
-            endings
-        };
-        assert_eq!(
-            EXPORTS.to_vec(),
-            endings(|format| format.is_written && format.name != "glossmith")
-        );
-        for ending in endings(|format| format.is_read && !["glossmith", "gltf"].contains(&format.name)) {
-            assert!(MATERIALS.contains(&ending) || ending == "h", "{ending}");
-        }
     }
 }

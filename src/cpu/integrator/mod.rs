@@ -16,7 +16,7 @@ use std::borrow::Cow;
 
 use super::recorder::{End, Event, Recorder, Source, single};
 use crate::job::effect::EffectId;
-use crate::job::features::{GUIDE_SAMPLES, GuideSums};
+use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
 use crate::optics::layer::{Layers, material_albedo, material_layers, material_normal};
 use crate::optics::material::Material;

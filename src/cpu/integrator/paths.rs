@@ -10,7 +10,7 @@ use super::PathResult;
 use super::catcher::Caught;
 use super::light::LightRays;
 use crate::cpu::recorder::{Event, Recorder};
-use crate::job::features::GuideSums;
+use crate::job::guides::GuideSums;
 use crate::optics::random::{RandomState, Sequence, path_state};
 use crate::optics::real::Scalar;
 use crate::optics::vector::{Vec3, vec3};

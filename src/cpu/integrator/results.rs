@@ -3,7 +3,7 @@
 use super::PathResult;
 use super::group::Group;
 use super::paths::Vectors;
-use crate::job::features::GuideSums;
+use crate::job::guides::GuideSums;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::Vec3;
 

@@ -1,6 +1,7 @@
 //! What a parameter is: a key, what to call it, what it takes, and how to read and write it. Those of a material stand in
 //! [`PARAMETERS`], those of the rest of a document in [`SETTINGS`].
 
+mod accessors;
 mod of_document;
 mod of_light;
 mod of_material;

@@ -3,60 +3,15 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
+use super::accessors::{choice, field, optional};
 use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::{
     Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
 };
-use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 
 type Accessors = super::Accessors<Document>;
-
-/// Reads and writes a field through the variant of [`Value`] that holds it.
-macro_rules! field {
-    ($variant:ident $($path:ident).+) => {
-        (
-            |document: &Document| Value::$variant(document.$($path).+),
-            |document: &mut Document, value: Value| {
-                if let Value::$variant(value) = value {
-                    document.$($path).+ = value;
-                }
-            },
-        )
-    };
-}
-
-/// The same for a field that may be left to the program.
-macro_rules! optional {
-    ($variant:ident $($path:ident).+) => {
-        (
-            |document: &Document| document.$($path).+.map_or(Value::Absent, Value::$variant),
-            |document: &mut Document, value: Value| {
-                document.$($path).+ = match value {
-                    Value::$variant(value) => Some(value),
-                    _ => None,
-                };
-            },
-        )
-    };
-}
-
-/// Reads and writes a field that is one of a closed list.
-macro_rules! choice {
-    ($($path:ident).+) => {
-        (
-            |document: &Document| Value::Choice(document.$($path).+.name()),
-            |document: &mut Document, value: Value| {
-                if let Value::Choice(name) = value
-                    && let Some(choice) = Named::by_name(name)
-                {
-                    document.$($path).+ = choice;
-                }
-            },
-        )
-    };
-}
 
 /// Every setting that is a value of its own, in the order of the panels. What names a file, the list of area lights, and
 /// the rendered part of the picture stand beside them.

@@ -3,41 +3,19 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
+use super::accessors::{choice, field};
 use super::{Kind, Parameter, Stage, Value, choices};
 use crate::document::{AreaLight, AreaLightShape, range};
-use crate::named::Named as _;
 
 /// Every parameter of an area light, in the order of its rows; the keys are those of project files.
 pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new(all);
-
-/// Reads and writes a field through the variant of [`Value`] that holds it.
-macro_rules! field {
-    ($variant:ident $field:ident) => {
-        (
-            |light: &AreaLight| Value::$variant(light.$field),
-            |light: &mut AreaLight, value: Value| {
-                if let Value::$variant(value) = value {
-                    light.$field = value;
-                }
-            },
-        )
-    };
-}
 
 type Accessors = super::Accessors<AreaLight>;
 
 #[rustfmt::skip]
 fn all() -> Vec<Parameter<AreaLight>> {
-    let shape: Accessors = (
-        |light| Value::Choice(light.shape.name()),
-        |light, value| {
-            if let Value::Choice(name) = value && let Some(shape) = AreaLightShape::by_name(name) {
-                light.shape = shape;
-            }
-        },
-    );
     vec![
-        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), shape, |_| None),
+        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), choice!(shape), |_| None),
         of("lighting.area_lights.yaw_deg", "Yaw", "Turns the light around its target.", real(range::YAW_DEG, "°"), field!(Real yaw_deg), |_| None)
             .row([-180.0, 180.0], 1),
         of("lighting.area_lights.pitch_deg", "Pitch", "Height of the light above the horizon of its target.", real(range::PITCH_DEG, "°"), field!(Real pitch_deg), |_| None)

@@ -2,57 +2,13 @@
 
 use std::sync::LazyLock;
 
+use super::accessors::{choice, field};
 use super::{Choice, Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
 use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
-use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
-
-/// Reads and writes a field through the variant of [`Value`] that holds it.
-macro_rules! field {
-    ($variant:ident $field:ident) => {
-        (
-            |material: &MaterialSettings| Value::$variant(material.$field),
-            |material: &mut MaterialSettings, value: Value| {
-                if let Value::$variant(value) = value {
-                    material.$field = value;
-                }
-            },
-        )
-    };
-}
-
-/// Reads and writes whether a kind of texture is looked up.
-macro_rules! texture {
-    ($kind:ident) => {
-        (
-            |material: &MaterialSettings| Value::Toggle(material.textures.$kind),
-            |material: &mut MaterialSettings, value: Value| {
-                if let Value::Toggle(is_on) = value {
-                    material.textures.$kind = is_on;
-                }
-            },
-        )
-    };
-}
-
-/// Reads and writes a field that is one of a closed list.
-macro_rules! choice_field {
-    ($field:ident) => {
-        (
-            |material: &MaterialSettings| Value::Choice(material.$field.name()),
-            |material: &mut MaterialSettings, value: Value| {
-                if let Value::Choice(name) = value
-                    && let Some(choice) = Named::by_name(name)
-                {
-                    material.$field = choice;
-                }
-            },
-        )
-    };
-}
 
 type Get = fn(&MaterialSettings) -> Value;
 type Set = fn(&mut MaterialSettings, Value);
@@ -91,7 +47,7 @@ fn base() -> Vec<Parameter> {
         Parameter {
             label: "Colour texture",
             help: "Multiplies the colour by a texture, the model's or one of your own.",
-            ..of("base.color_texture", Kind::Toggle, texture!(color))
+            ..of("base.color_texture", Kind::Toggle, field!(Toggle textures.color))
         },
         Parameter {
             label: "Metalness",
@@ -106,6 +62,7 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Weight",
             help: "How much of the reflection is kept; at 0 only the base is left.",
+            applies: |_| true,
             ..of("specular.weight", unit_number(), field!(Number specular_weight))
         },
         Parameter {
@@ -117,7 +74,7 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Lobe",
             help: "The model of how reflected light is spread.",
-            ..of("specular.lobe", choices::<Lobe>(), choice_field!(lobe))
+            ..of("specular.lobe", choices::<Lobe>(), choice!(lobe))
         },
         Parameter {
             label: "Roughness",
@@ -129,14 +86,18 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Roughness texture",
             help: "Multiplies roughness and metalness by textures.",
-            ..of("specular.roughness_texture", Kind::Toggle, texture!(roughness))
+            ..of(
+                "specular.roughness_texture",
+                Kind::Toggle,
+                field!(Toggle textures.roughness),
+            )
         },
         Parameter {
             label: "Curve",
             symbol: "D(ξ)",
             help: "The profile of the geometric lobe's highlight, from its middle to its edge.",
             applies: has_curves,
-            ..of("specular.curve", choices::<Curve>(), choice_field!(curve))
+            ..of("specular.curve", choices::<Curve>(), choice!(curve))
         },
         Parameter {
             label: "Custom curve",
@@ -175,7 +136,7 @@ fn specular_shape() -> Vec<Parameter> {
             label: "Below the surface",
             help: "What happens to samples that point into the surface.",
             applies: |material| has_specular(material) && !material.lobe.is_hemispherical(),
-            ..of("specular.horizon", choices::<Horizon>(), choice_field!(horizon))
+            ..of("specular.horizon", choices::<Horizon>(), choice!(horizon))
         },
     ]
 }
@@ -187,7 +148,7 @@ fn specular_fresnel() -> Vec<Parameter> {
             symbol: "F",
             help: "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.",
             applies: |material| has_specular(material) && !transmits(material),
-            ..of("specular.fresnel", choices::<Fresnel>(), choice_field!(fresnel))
+            ..of("specular.fresnel", choices::<Fresnel>(), choice!(fresnel))
         },
         Parameter {
             label: "Index of refraction",
@@ -254,7 +215,7 @@ fn coat() -> Vec<Parameter> {
         Parameter {
             label: "Weight texture",
             help: "Multiplies the weight by a texture.",
-            ..of("coat.weight_texture", Kind::Toggle, texture!(coat))
+            ..of("coat.weight_texture", Kind::Toggle, field!(Toggle textures.coat))
         },
         Parameter {
             label: "Roughness",
@@ -325,7 +286,7 @@ fn emission() -> Vec<Parameter> {
         Parameter {
             label: "Colour texture",
             help: "Multiplies the emission by the model's texture.",
-            ..of("emission.color_texture", Kind::Toggle, texture!(emission))
+            ..of("emission.color_texture", Kind::Toggle, field!(Toggle textures.emission))
         },
         Parameter {
             label: "Strength",
@@ -351,7 +312,11 @@ fn geometry() -> Vec<Parameter> {
         Parameter {
             label: "Opacity texture",
             help: "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, cut off where the model says so.",
-            ..of("geometry.opacity_texture", Kind::Toggle, texture!(opacity))
+            ..of(
+                "geometry.opacity_texture",
+                Kind::Toggle,
+                field!(Toggle textures.opacity),
+            )
         },
         Parameter {
             label: "Normal strength",
@@ -367,22 +332,28 @@ fn geometry() -> Vec<Parameter> {
         Parameter {
             label: "Normal texture",
             help: "Bends the surface's normal by a texture.",
-            ..of("geometry.normal_texture", Kind::Toggle, texture!(normal))
+            ..of("geometry.normal_texture", Kind::Toggle, field!(Toggle textures.normal))
         },
     ]
 }
 
-/// A parameter that still needs its words. The group is the key's first part.
+type Applies = fn(&MaterialSettings) -> bool;
+
+/// The groups of the panel by the first part of their parameters' keys, and when the rows of a group apply.
+const GROUPS: [(&str, &str, Applies); 6] = [
+    ("base", "Base", |_| true),
+    ("specular", "Specular", has_specular),
+    ("coat", "Coat", |material| material.coat_weight > 0.0),
+    ("transmission", "Transmission", transmits),
+    ("emission", "Emission", |_| true),
+    ("geometry", "Geometry", |_| true),
+];
+
+/// A parameter that still needs its words.
 fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
-    let (group, applies): (_, fn(&MaterialSettings) -> bool) = match key.split_once('.') {
-        Some(("base", _)) => ("Base", |_| true),
-        Some(("specular", "weight")) => ("Specular", |_| true),
-        Some(("specular", _)) => ("Specular", has_specular),
-        Some(("coat", _)) => ("Coat", |material| material.coat_weight > 0.0),
-        Some(("transmission", _)) => ("Transmission", transmits),
-        Some(("geometry", _)) => ("Geometry", |_| true),
-        _ => ("Emission", |_| true),
-    };
+    let prefix = key.split('.').next();
+    let group = GROUPS.iter().find(|(of_keys, ..)| Some(*of_keys) == prefix);
+    let &(_, group, applies) = group.expect("a parameter's key begins with that of a group");
     Parameter {
         key,
         group,

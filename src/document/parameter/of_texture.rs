@@ -2,8 +2,8 @@
 
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, Stage, Value, choices};
-use crate::named::Named;
+use super::accessors::{choice, field};
+use super::{Kind, Parameter, Stage, choices};
 use crate::scene::texture::{OwnTexture, TextureChannel, TextureProjection, TextureSpace};
 
 /// Every parameter of a picture on a material, in the order of its rows; the keys are those inside its object in files, and on
@@ -12,57 +12,19 @@ pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<OwnTexture>>> = LazyLock::
 
 type Accessors = super::Accessors<OwnTexture>;
 
-/// Reads and writes a number.
-macro_rules! number {
-    ($($field:tt)*) => {
-        (
-            |texture: &OwnTexture| Value::Number(texture.$($field)*),
-            |texture: &mut OwnTexture, value: Value| {
-                if let Value::Number(value) = value {
-                    texture.$($field)* = value;
-                }
-            },
-        )
-    };
-}
-
-/// Reads and writes one of a closed list.
-macro_rules! choice {
-    ($field:ident) => {
-        (
-            |texture: &OwnTexture| Value::Choice(texture.$field.name()),
-            |texture: &mut OwnTexture, value: Value| {
-                if let Value::Choice(name) = value
-                    && let Some(choice) = Named::by_name(name)
-                {
-                    texture.$field = choice;
-                }
-            },
-        )
-    };
-}
-
 #[rustfmt::skip]
 fn all() -> Vec<Parameter<OwnTexture>> {
-    let inverted: Accessors = (
-        |texture| Value::Toggle(texture.inverted),
-        |texture, value| {
-            if let Value::Toggle(is_on) = value {
-                texture.inverted = is_on;
-            }
-        },
-    );
     vec![
-        of("strength", "Strength", "How far the picture counts: at 0 what it is put on stays as it is. Bumps have a strength of their own.", range([0.0, 1.0], ""), number!(strength)).row([0.0, 1.0], 3),
-        of("scale", "Scale", "How many times the picture repeats across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), number!(scale)).row([0.1, 10.0], 3),
-        of("stretch", "Stretch", "How many times oftener it repeats upwards than sidewards.", range([1e-2, 1e2], ""), number!(stretch)).row([0.1, 10.0], 3),
-        of("rotation", "Rotation", "Turns the picture counterclockwise about its middle.", range([-360.0, 360.0], "°"), number!(rotation_deg)).row([-180.0, 180.0], 1),
-        of("offset_u", "Offset right", "By how much of its width the picture lies further to the right.", range([-100.0, 100.0], ""), number!(offset[0])).row([-1.0, 1.0], 3),
-        of("offset_v", "Offset up", "By how much of its height the picture lies further up.", range([-100.0, 100.0], ""), number!(offset[1])).row([-1.0, 1.0], 3),
+        of("strength", "Strength", "How far the picture counts: at 0 what it is put on stays as it is. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).row([0.0, 1.0], 3),
+        of("scale", "Scale", "How many times the picture repeats across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).row([0.1, 10.0], 3),
+        of("stretch", "Stretch", "How many times oftener it repeats upwards than sidewards.", range([1e-2, 1e2], ""), field!(Number stretch)).row([0.1, 10.0], 3),
+        of("rotation", "Rotation", "Turns the picture counterclockwise about its middle.", range([-360.0, 360.0], "°"), field!(Number rotation_deg)).row([-180.0, 180.0], 1),
+        of("offset_u", "Offset right", "By how much of its width the picture lies further to the right.", range([-100.0, 100.0], ""), field!(Number offset[0])).row([-1.0, 1.0], 3),
+        of("offset_v", "Offset up", "By how much of its height the picture lies further up.", range([-100.0, 100.0], ""), field!(Number offset[1])).row([-1.0, 1.0], 3),
         of("projection", "Projection", "Where the picture lies on the surface.", choices::<TextureProjection>(), choice!(projection)),
         of("channel", "Channel", "Which of the picture's channels counts, where a number is meant.", choices::<TextureChannel>(), choice!(channel)),
         of("color_space", "Colour space", "What the picture's numbers stand for.", choices::<TextureSpace>(), choice!(space)),
-        of("inverted", "Inverted", "Dark counts as bright: gloss for roughness. Of a normal map, green points downwards, as DirectX has it.", Kind::Toggle, inverted),
+        of("inverted", "Inverted", "Dark counts as bright: gloss for roughness. Of a normal map, green points downwards, as DirectX has it.", Kind::Toggle, field!(Toggle inverted)),
     ]
 }
 

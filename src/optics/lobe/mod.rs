@@ -178,21 +178,25 @@ pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
 /// what they refract by |1 − 1/η| of their tilt, what they mirror by twice the tilt (mathematics, section 7).
 #[inline(always)]
 pub fn refracting_roughness<T: Real>(lobe: Lobe, roughness: T, eta: T) -> T {
-    let number = T::from_f64;
-    let share = (T::one() - T::one() / eta).abs() * number(0.5);
+    let share = (T::one() - T::one() / eta).abs() * T::from_f64(0.5);
     match lobe.traits().width {
         Width::Fixed => roughness,
-        Width::Roughness => {
-            let square = roughness * roughness;
-            let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
-            let turn = share * tilt;
-            // The positive root of 4 x² + 3 x = turn, so written that nothing cancels.
-            let root = (number(9.0) + number(16.0) * turn).sqrt();
-            (turn + turn) / (number(3.0) + root)
-        }
+        Width::Roughness => refracting_roughness_of(roughness, share),
         Width::Alpha => roughness * share.sqrt(),
     }
     .min(T::one())
+}
+
+/// The roughness at which a lobe whose width goes with it is as wide as facets make it that turn the light by this share.
+#[inline(always)]
+fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
+    let number = T::from_f64;
+    let square = roughness * roughness;
+    let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
+    let turn = share * tilt;
+    // The positive root of 4 x² + 3 x = turn, so written that nothing cancels.
+    let root = (number(9.0) + number(16.0) * turn).sqrt();
+    (turn + turn) / (number(3.0) + root)
 }
 
 /// Draws a direction from one lobe.
@@ -316,7 +320,7 @@ pub struct LobeView<T> {
 impl<T: Real> LobeView<T> {
     /// The lobe that this viewer sees reflected.
     #[inline(always)]
-    fn seen<'a>(&self, shape: &LobeShape<'a, T>) -> LobeShape<'a, T> {
+    fn seen_lobe<'a>(&self, shape: &LobeShape<'a, T>) -> LobeShape<'a, T> {
         LobeShape {
             roughness: self.roughness,
             ..*shape
@@ -397,7 +401,7 @@ pub fn lobe_sample<T: Real>(
         #[inline(always)]
         || {
             let view = lobe_view(shape, frame, surface_normal, wo);
-            let seen = view.seen(shape);
+            let seen = view.seen_lobe(shape);
             let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
             let weight = if refracts_at_facets(shape) {
                 let facet = facet_refracted(wo, raw, shape.eta);
@@ -479,7 +483,7 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
     if !is_above.any() {
         return [T::zero(), T::zero()];
     }
-    let seen = view.seen(shape);
+    let seen = view.seen_lobe(shape);
     let density = raw_density(&seen, frame, *wo, wi);
     let value = density * raw_weight(&seen, frame, *wo, wi);
     [

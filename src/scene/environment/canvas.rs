@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::EnvironmentError;
-use super::file::{MAX_HEIGHT, MAX_WIDTH, Picture, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
+use super::decoded::Picture;
+use super::{MAX_HEIGHT, MAX_WIDTH, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
 
 /// A picture in the making: each kept texel is the mean of `factor` × `factor` of the file's.
 pub(super) struct Canvas {

@@ -3,7 +3,7 @@
 use super::EnvironmentError;
 use super::canvas::Canvas;
 use super::display_referred::Codes;
-use super::file::{Picture, Source, io};
+use super::decoded::{Picture, Source, io};
 use crate::scene::gpu_picture::{self, Face, Refusal, Texels};
 use crate::scene::resource;
 

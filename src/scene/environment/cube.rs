@@ -5,8 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::file::{self, MAX_HEIGHT, Picture, Source};
+use super::MAX_HEIGHT;
+use super::decoded::{Picture, Source, io};
 use super::{EnvironmentError, environment_direction};
+use crate::scene::endings::is_picture;
 
 /// Where the faces of a horizontal cross are, in faces from its top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
@@ -79,16 +81,20 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
     unfolded
 }
 
-/// The lat-long picture of six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names.
+/// The lat-long picture of six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names;
+/// `decode` reads one.
 ///
 /// # Errors
 /// What is wrong with a file; [`EnvironmentError::NoFaces`] where they are not there.
-pub(super) fn read_folder(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+pub(super) fn read_folder(
+    source: Source<'_>,
+    decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,
+) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let files: Vec<PathBuf> = file::io(path, std::fs::read_dir(path))?
+    let files: Vec<PathBuf> = io(path, std::fs::read_dir(path))?
         .flatten()
         .map(|entry| entry.path())
-        .filter(|file| file::is_readable(file))
+        .filter(|file| is_picture(file))
         .collect();
     let faces = faces(&files).ok_or_else(|| EnvironmentError::NoFaces { path: path.to_owned() })?;
     let pictures: Vec<Picture> = faces
@@ -96,7 +102,7 @@ pub(super) fn read_folder(source: Source<'_>) -> Result<Picture, EnvironmentErro
         .map(|face| {
             let name = face.file_name().unwrap_or_default().to_string_lossy();
             source.loading.step(format!("reading {name}"))?;
-            file::decode(Source { path: face, ..source })
+            decode(Source { path: face, ..source })
         })
         .collect::<Result<_, _>>()?;
     let side = pictures

@@ -5,7 +5,7 @@ use std::path::Path;
 use image::{DynamicImage, ImageError};
 
 use super::canvas::Canvas;
-use super::file::{Picture, Source, io};
+use super::decoded::{Picture, Source, io};
 use super::{EnvironmentEncoding, EnvironmentError, gain_map};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;

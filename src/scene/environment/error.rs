@@ -78,7 +78,7 @@ pub enum EnvironmentError {
     /// Larger than the largest size.
     #[error(
         "{} is {width} × {height}, larger than the {} × {} that are read: scale it down",
-        path.display(), super::file::SOURCE_MAX_WIDTH, super::file::SOURCE_MAX_HEIGHT
+        path.display(), super::SOURCE_MAX_WIDTH, super::SOURCE_MAX_HEIGHT
     )]
     TooLarge {
         /// The file.

@@ -2,81 +2,11 @@
 
 use std::path::Path;
 
+use super::decoded::{Picture, Source};
 use super::{Environment, EnvironmentEncoding, EnvironmentError};
 use super::{container, cube, display_referred, open_exr, radiance_hdr};
-use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, transformed};
+use crate::scene::endings::{ending, is_picture};
 use crate::scene::loading::Loading;
-
-/// The most columns that are kept of a file's picture; larger ones are made smaller.
-pub const MAX_WIDTH: u32 = 8192;
-/// The most rows that are kept of a file's picture.
-pub const MAX_HEIGHT: u32 = 4096;
-/// The most columns of a file's picture.
-pub const SOURCE_MAX_WIDTH: u32 = 32768;
-/// The most rows of a file's picture: a strip of six faces stands upright.
-pub const SOURCE_MAX_HEIGHT: u32 = 32768;
-
-/// Endings of the files that can be read, without their dots.
-pub const ENDINGS: [&str; 12] = [
-    "hdr", "exr", "ktx2", "dds", "png", "jpg", "jpeg", "tif", "tiff", "webp", "pic", "rgbe",
-];
-
-/// A file to be read.
-#[derive(Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub path: &'a Path,
-    /// What the numbers of pictures for screens stand for.
-    pub encoding: EnvironmentEncoding,
-    /// Who waits.
-    pub loading: &'a Loading,
-}
-
-/// A decoded picture: `width` × `height` texels, rows from the top, numbers as they were in the file.
-pub(super) struct Picture {
-    pub width: u32,
-    pub height: u32,
-    pub texels: Vec<[f32; 4]>,
-    pub warnings: Vec<String>,
-    /// The file says that it holds the six faces of a cube, in OpenEXR's order.
-    pub is_cube: bool,
-}
-
-impl Picture {
-    /// Brings its colours to Rec. 709 from another space. Where that is none they stay as they are, which is told.
-    pub(super) fn bring_to_rec709(&mut self, path: &Path, space: &Chromaticities) {
-        match space.rec709_from() {
-            Ok(Some(matrix)) => self.transform(path, &matrix),
-            Ok(None) => {}
-            Err(NoSpace) => self.warnings.push(format!(
-                "{}: its chromaticities are no space of colours; its numbers are shown as linear Rec. 709",
-                path.display()
-            )),
-        }
-    }
-
-    /// Brings its colours to Rec. 709. What that space can't hold is nearest without the channel that would be negative; how
-    /// much of it there is is told.
-    fn transform(&mut self, path: &Path, matrix: &Matrix) {
-        let mut outside = 0;
-        for texel in &mut self.texels {
-            let [r, g, b, _] = texel.map(f64::from);
-            let color = transformed(matrix, [r, g, b]);
-            // Rounding alone makes no colour one that can't be held.
-            let least = -1e-4 * color.iter().sum::<f64>().abs();
-            outside += usize::from(color.iter().any(|x| *x < least));
-            for (channel, value) in texel.iter_mut().zip(color) {
-                *channel = value.max(0.0) as f32;
-            }
-        }
-        if outside > 0 {
-            self.warnings.push(format!(
-                "{}: {:.1} % of its colours are more saturated than linear Rec. 709 holds; they are shown less so",
-                path.display(),
-                100.0 * outside as f64 / self.texels.len().max(1) as f64
-            ));
-        }
-    }
-}
 
 /// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.
 pub(super) fn load(
@@ -92,7 +22,7 @@ pub(super) fn load(
         loading,
     };
     let mut picture = if path.is_dir() {
-        cube::read_folder(source)?
+        cube::read_folder(source, decode)?
     } else {
         cube::unfolded(decode(source)?)
     };
@@ -103,35 +33,17 @@ pub(super) fn load(
     Ok(environment)
 }
 
-fn ending(path: &Path) -> String {
-    let ending = path.extension().unwrap_or_default();
-    ending.to_string_lossy().to_lowercase()
-}
-
-/// Whether a file's ending is one of [`ENDINGS`].
-pub(super) fn is_readable(path: &Path) -> bool {
-    ENDINGS.contains(&ending(path).as_str())
-}
-
 /// The picture in a file.
-pub(super) fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
         "exr" => open_exr::read(source),
         "ktx2" | "dds" => container::read(source),
-        _ if is_readable(source.path) => display_referred::read(source),
+        _ if is_picture(source.path) => display_referred::read(source),
         _ => Err(EnvironmentError::UnknownExtension {
             path: source.path.to_owned(),
         }),
     }
-}
-
-/// The file system's answer, or the matching error.
-pub(super) fn io<T>(path: &Path, result: std::io::Result<T>) -> Result<T, EnvironmentError> {
-    result.map_err(|source| EnvironmentError::Read {
-        path: path.to_owned(),
-        source,
-    })
 }
 
 /// Replaces what is no radiance, makes the texels opaque, and says what was odd.

@@ -17,8 +17,8 @@ use exr::meta::{BlockDescription, MetaData, Requirements};
 use exr::prelude::f16;
 
 use super::EnvironmentError;
-use super::file::{Picture, io};
-use super::open_exr::{exr_error, space, window};
+use super::decoded::{Picture, io};
+use super::exr_header::{exr_error, space, window};
 use crate::optics::primaries::REC709;
 use crate::scene::resource;
 

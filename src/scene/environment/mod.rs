@@ -11,13 +11,15 @@ mod brightest;
 mod canvas;
 mod container;
 mod cube;
+mod decoded;
 mod display_referred;
 mod distribution;
 mod error;
+pub(in crate::scene) mod exr_header;
 mod file;
 mod gain_map;
 mod luminance_chroma;
-pub(super) mod open_exr;
+mod open_exr;
 mod procedural;
 mod radiance_hdr;
 mod thumbnail;
@@ -40,11 +42,19 @@ pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};
 pub use error::EnvironmentError;
-pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
 pub use procedural::{
     SkyParams, furnace, overcast, portrait, product, rim, sky, studio, sun_direction, sun_irradiance, warehouse,
 };
 pub use thumbnail::{brightened, thumbnail};
+
+/// The most columns that are kept of a file's picture; larger ones are made smaller.
+pub const MAX_WIDTH: u32 = 8192;
+/// The most rows that are kept of a file's picture.
+pub const MAX_HEIGHT: u32 = 4096;
+/// The most columns of a file's picture.
+pub const SOURCE_MAX_WIDTH: u32 = 32768;
+/// The most rows of a file's picture: a strip of six faces stands upright.
+pub const SOURCE_MAX_HEIGHT: u32 = 32768;
 
 /// Where an environment comes from. Written as one of the names in [`BUILT_IN`] or the name of a file; a file of such a name
 /// is reached as `./studio`.

@@ -17,9 +17,9 @@ use exr::prelude::f16;
 use rayon::prelude::*;
 
 use super::canvas::Canvas;
-use super::file::{Picture, Source, io};
+use super::decoded::{Picture, Source, io};
+use super::exr_header::{exr_error, space, window};
 use super::{EnvironmentError, luminance_chroma};
-use crate::optics::primaries::{Chromaticities, REC709};
 use crate::panics::contained;
 use crate::scene::resource;
 
@@ -89,16 +89,6 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let layout = header.shared_attributes.other.get(&Text::from("envmap"));
     picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
     Ok(picture)
-}
-
-/// The space of a file's colours: Rec. 709 where it names none.
-pub(in crate::scene) fn space(header: &Header) -> Chromaticities {
-    let place = |Vec2(x, y): Vec2<f32>| [f64::from(x), f64::from(y)];
-    let named = header.shared_attributes.chromaticities;
-    named.map_or(REC709, |file| Chromaticities {
-        primaries: [file.red, file.green, file.blue].map(place),
-        white: place(file.white),
-    })
 }
 
 /// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
@@ -223,25 +213,6 @@ fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), 
     Ok(())
 }
 
-/// An empty picture of the display window, and the place of the first stored pixel in it: negative where pixels are stored
-/// outside of the window.
-pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
-    let display = header.shared_attributes.display_window;
-    let canvas = Canvas::new(path, display.size.width() as u64, display.size.height() as u64)?;
-    // Only its check of the size.
-    Canvas::new(
-        path,
-        header.layer_size.width() as u64,
-        header.layer_size.height() as u64,
-    )?;
-    let position = header.own_attributes.layer_position;
-    let offset = [
-        i64::from(position.x()) - i64::from(display.position.x()),
-        i64::from(position.y()) - i64::from(display.position.y()),
-    ];
-    Ok((canvas, offset))
-}
-
 /// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
 /// as detached tasks, where a panic would end the program.)
 fn for_each_block(
@@ -292,23 +263,3 @@ fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], of
     }
 }
 
-/// What the crate says, in our words.
-pub(super) fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
-    let path = path.to_owned();
-    match error {
-        ExrError::Io(source) => EnvironmentError::Read { path, source },
-        ExrError::NotSupported(feature) => EnvironmentError::Unsupported {
-            path,
-            feature: format!("an OpenEXR feature ({feature})"),
-            remedy: "re-save it as a plain RGB scan-line EXR with ZIP or PIZ compression",
-        },
-        ExrError::Invalid(detail) if detail == "reference to missing bytes" => EnvironmentError::Truncated {
-            path,
-            detail: "bytes that it refers to are missing".to_owned(),
-        },
-        error => EnvironmentError::Damaged {
-            path,
-            detail: error.to_string(),
-        },
-    }
-}

@@ -9,7 +9,7 @@ use image::{ImageDecoder, ImageError};
 
 use super::EnvironmentError;
 use super::canvas::Canvas;
-use super::file::{Picture, Source, io};
+use super::decoded::{Picture, Source, io};
 use crate::scene::resource;
 
 /// Lines after which those who wait hear of it.

@@ -117,12 +117,16 @@ fn filtered<T: Scalar>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>)
     let columns = neighbours(left, record.width, wrap[0]);
     let rows = neighbours(top, record.height, wrap[1]);
     let (fx, fy) = (x - half - left, y - half - top);
-    let mix = |(a, a1): (Vec3<T>, T), (b, b1): (Vec3<T>, T), t: T| (a.mix(b, t), a1 + (b1 - a1) * t);
     let [above, below] = rows.map(|row| {
         let [a, b] = columns.map(|column| texel(textures, record, column, row));
-        mix(a, b, fx)
+        mix_texels(a, b, fx)
     });
-    mix(above, below, fy)
+    mix_texels(above, below, fy)
+}
+
+/// Colour and alpha between those of two texels.
+fn mix_texels<T: Scalar>((a, a_alpha): (Vec3<T>, T), (b, b_alpha): (Vec3<T>, T), t: T) -> (Vec3<T>, T) {
+    (a.mix(b, t), a_alpha + (b_alpha - a_alpha) * t)
 }
 
 /// A place along one side of a texture, brought into [0, 1].
@@ -369,6 +373,11 @@ pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: U
     if material.opacity_texture != NO_TEXTURE {
         opacity = opacity * texture_lookup(textures, material.opacity_texture, uvs).1;
     }
+    stopped_share(material, opacity)
+}
+
+/// The share of light that a surface point of this opacity stops: all or nothing where the material is masked.
+fn stopped_share<T: Scalar>(material: &Material<T>, opacity: T) -> T {
     let cutoff = material.alpha_cutoff;
     let masked = T::select(opacity.less(cutoff), T::zero(), T::one());
     T::select(cutoff.less(T::zero()), opacity, masked)

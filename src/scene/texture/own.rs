@@ -139,21 +139,4 @@ impl OwnTexture {
             TextureSpace::Linear => false,
         }
     }
-
-    /// The channel that counts, of a target that is a number: 0 to 3. `has_alpha` says whether the picture is translucent
-    /// anywhere.
-    pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
-        match self.channel {
-            TextureChannel::Red => 0,
-            TextureChannel::Green => 1,
-            TextureChannel::Blue => 2,
-            TextureChannel::Alpha => 3,
-            TextureChannel::Auto => match target {
-                TextureTarget::Opacity if has_alpha => 3,
-                TextureTarget::Roughness if super::set::is_packed(&self.file) => 1,
-                TextureTarget::Metalness if super::set::is_packed(&self.file) => 2,
-                _ => 0,
-            },
-        }
-    }
 }

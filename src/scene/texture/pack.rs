@@ -230,17 +230,17 @@ impl Pack {
     }
 
     /// The number of a picture of the user's own.
-    pub(super) fn own_picture(&self, file: &Path, is_srgb: bool) -> Option<usize> {
+    fn own_picture(&self, file: &Path, is_srgb: bool) -> Option<usize> {
         let is_it = |own: &&Own| own.is_srgb == is_srgb && own.of.file == file;
         self.own.iter().find(is_it)?.index
     }
 
-    pub(super) fn is_translucent(&self, picture: usize) -> bool {
+    fn is_translucent(&self, picture: usize) -> bool {
         self.pictures[picture].is_translucent
     }
 
     /// Whether a slot's triangles have texture coordinates.
-    pub(super) fn has_coordinates(&self, slot: usize) -> bool {
+    fn has_coordinates(&self, slot: usize) -> bool {
         self.has_coordinates.get(slot).copied().unwrap_or(false)
     }
 
@@ -250,10 +250,18 @@ impl Pack {
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
             if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = of_own(assignment, self);
+                slot[assignment.target as usize] = self.use_of_own(assignment);
             }
         }
         uses
+    }
+
+    /// A use of a picture of the user's own; none where it can't be had.
+    fn use_of_own(&self, assigned: &TextureAssignment) -> Option<Use> {
+        let (file, is_srgb) = assigned.picture();
+        let picture = self.own_picture(&file, is_srgb)?;
+        let has_coordinates = self.has_coordinates(assigned.slot);
+        Some(of_own(assigned, picture, self.is_translucent(picture), has_coordinates))
     }
 
     /// What the model's slots look up, with the same pictures of the user's own, put on in any way.

@@ -2,12 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::own::{OwnTexture, TextureTarget};
-
-/// Endings of pictures that a material can have.
-pub const ENDINGS: [&str; 12] = [
-    "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga", "exr", "ktx2", "dds", "gif",
-];
+use super::own::{OwnTexture, TextureChannel, TextureTarget};
+use crate::scene::endings::is_picture;
 
 /// What a word in a picture's name says.
 #[derive(Clone, Copy, PartialEq)]
@@ -88,8 +84,27 @@ fn meaning(path: &Path) -> Option<Meaning> {
 }
 
 /// True where a picture is named for holding roughness in green and metalness in blue.
-pub fn is_packed(path: &Path) -> bool {
+fn is_packed(path: &Path) -> bool {
     meaning(path) == Some(Packed)
+}
+
+impl OwnTexture {
+    /// The channel that counts, of a target that is a number: 0 to 3. `has_alpha` says whether the picture is translucent
+    /// anywhere.
+    pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
+        match self.channel {
+            TextureChannel::Red => 0,
+            TextureChannel::Green => 1,
+            TextureChannel::Blue => 2,
+            TextureChannel::Alpha => 3,
+            TextureChannel::Auto => match target {
+                TextureTarget::Opacity if has_alpha => 3,
+                TextureTarget::Roughness if is_packed(&self.file) => 1,
+                TextureTarget::Metalness if is_packed(&self.file) => 2,
+                _ => 0,
+            },
+        }
+    }
 }
 
 /// What a picture's name says that it is put on; nothing where it does not say.
@@ -139,11 +154,8 @@ pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
     };
-    let is_picture = |path: &PathBuf| {
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        ENDINGS.contains(&ending.as_str()) && path.is_file()
-    };
-    let mut pictures: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_picture).collect();
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut pictures: Vec<PathBuf> = paths.filter(|path| is_picture(path) && path.is_file()).collect();
     pictures.sort();
     pictures
 }

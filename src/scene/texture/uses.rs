@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use super::own::{OwnTexture, TextureProjection, TextureTarget};
-use super::pack::Pack;
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
 use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
 use crate::scene::model::{AlphaMode, Filter, Slot, TextureRef, Wrap};
@@ -98,13 +97,13 @@ fn wrap_flags(wrap: [Wrap; 2]) -> u32 {
     u << WRAP_SHIFT | v << (WRAP_SHIFT + 2)
 }
 
-/// A use of a picture of the user's own; none where it can't be had.
-pub(super) fn of_own(assigned: &TextureAssignment, pack: &Pack) -> Option<Use> {
-    let TextureAssignment { slot, target, texture } = assigned;
+/// A use of a picture of the user's own, which is this one of the packed pictures; whether that is translucent anywhere, and
+/// whether the slot's triangles have texture coordinates.
+pub(super) fn of_own(assigned: &TextureAssignment, picture: usize, is_translucent: bool, has_coordinates: bool) -> Use {
+    let TextureAssignment { target, texture, .. } = assigned;
     let is_srgb = texture.is_srgb(*target);
-    let picture = pack.own_picture(&texture.file, is_srgb)?;
     let channel = match target.is_number() {
-        true => 1 + texture.channel_of(*target, pack.is_translucent(picture)),
+        true => 1 + texture.channel_of(*target, is_translucent),
         false => 0,
     };
     let is_normal = *target == TextureTarget::Normal;
@@ -118,9 +117,9 @@ pub(super) fn of_own(assigned: &TextureAssignment, pack: &Pack) -> Option<Use> {
         TextureProjection::First => 0,
         TextureProjection::Second => IS_SECOND_SET,
         TextureProjection::Box => IS_BOX,
-        TextureProjection::Auto => flag(!pack.has_coordinates(*slot), IS_BOX),
+        TextureProjection::Auto => flag(!has_coordinates, IS_BOX),
     };
-    Some(Use {
+    Use {
         picture,
         target: *target,
         is_flipped: assigned.is_flipped(),
@@ -128,5 +127,5 @@ pub(super) fn of_own(assigned: &TextureAssignment, pack: &Pack) -> Option<Use> {
         flags: flag(is_srgb, IS_SRGB) | flag(is_normal, TURNS_NORMALS) | side | channel << CHANNEL_SHIFT,
         scale,
         offset,
-    })
+    }
 }

@@ -22,11 +22,12 @@ use std::path::{Path, PathBuf};
 
 use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
-use super::file::{self, FileError, Loaded, Opened, ending};
+use super::file::{self, FileError, Loaded, Opened};
 use super::preset;
 use super::replace::save_atomically;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::ModelError;
+use crate::scene::endings::ending;
 
 pub use self::snippet::Language;
 
@@ -77,6 +78,13 @@ pub struct Registered {
     pub help: &'static str,
     /// The format itself.
     pub format: &'static dyn Format,
+}
+
+impl Registered {
+    /// Whether its files hold materials of another program, and nothing else that is opened.
+    pub fn is_material_alone(&self) -> bool {
+        self.is_read && self.name != "glossmith" && !self.format.takes_models()
+    }
 }
 
 impl std::fmt::Debug for Registered {
@@ -311,9 +319,19 @@ pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
     })
 }
 
+/// The endings of the files that are written for other programs.
+pub fn endings_written() -> Vec<&'static str> {
+    let written = FORMATS
+        .iter()
+        .filter(|format| format.is_written && format.name != "glossmith");
+    let mut endings: Vec<&str> = written.flat_map(|format| format.extensions).copied().collect();
+    endings.dedup();
+    endings
+}
+
 /// Whether files of this ending hold materials of another program, and nothing else that is opened.
 pub fn holds_materials(path: &Path) -> bool {
-    by_ending(path).is_ok_and(|format| format.is_read && format.name != "glossmith" && !format.format.takes_models())
+    by_ending(path).is_ok_and(Registered::is_material_alone)
 }
 
 /// What a file holds that is opened: one of ours, or the first material of another program's.

@@ -1,0 +1,143 @@
+//! Each kind of file can be opened by each way that leads to it: the table of kinds is what dialogs, dropped files, watched
+//! folders, recent files, help and documents ask, and what its endings promise is read.
+
+use std::path::{Path, PathBuf};
+
+use clap::CommandFactory as _;
+use glossmith::cli::Arguments;
+use glossmith::render::output;
+use glossmith::scene::environment::{self, EnvironmentSource};
+use glossmith::scene::texture::mean_of_file;
+use glossmith::store::PRESETS;
+use glossmith::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
+use glossmith::store::file_kind::{FileKind, MATERIAL_KINDS, OPENED, PICTURE_KINDS, endings, may_hold_document};
+use glossmith::store::shelf::{ItemKind, Shelf};
+use image::{ImageFormat, RgbImage};
+use tempfile::tempdir;
+
+fn corpus(file: &str) -> Vec<u8> {
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(file)).unwrap()
+}
+
+/// A picture with this ending: panoramas, so that each can be an environment.
+fn picture(ending: &str) -> Vec<u8> {
+    let colors = RgbImage::from_fn(64, 32, |x, y| image::Rgb([4 * x as u8, 8 * y as u8, 128]));
+    let format = match ending {
+        "exr" => return corpus("exr/plain-float.exr"),
+        "ktx2" => return corpus("ktx2/shared-exponent.ktx2"),
+        "dds" => return corpus("dds/bc1.dds"),
+        "pic" | "rgbe" => ImageFormat::Hdr,
+        ending => ImageFormat::from_extension(ending).unwrap(),
+    };
+    let picture = image::DynamicImage::from(colors);
+    let picture = match format {
+        ImageFormat::Hdr => picture.to_rgb32f().into(),
+        _ => picture,
+    };
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn every_picture_is_read_as_an_environment_and_as_a_texture() {
+    let folder = tempdir().unwrap();
+    for ending in endings(PICTURE_KINDS) {
+        let path = folder.path().join(format!("picture.{ending}"));
+        std::fs::write(&path, picture(ending)).unwrap();
+        let environment = environment::load(&EnvironmentSource::File(path.clone()));
+        assert!(
+            environment.is_ok(),
+            ".{ending} as an environment: {}",
+            environment.unwrap_err()
+        );
+        let texture = mean_of_file(&path);
+        assert!(texture.is_ok(), ".{ending} as a texture: {}", texture.unwrap_err());
+    }
+}
+
+#[test]
+fn an_ending_belongs_to_one_kind() {
+    for &kind in FileKind::ALL {
+        for ending in kind.endings() {
+            for written in [ending.to_owned(), ending.to_uppercase()] {
+                let path = PathBuf::from(format!("a.{written}"));
+                assert_eq!(FileKind::of(&path), Some(kind), "{}", path.display());
+            }
+        }
+    }
+    assert_eq!(FileKind::of(Path::new("a.txt")), None);
+    assert!(may_hold_document(Path::new("a.PNG")) && !may_hold_document(Path::new("a.jpg")));
+}
+
+/// What the program writes it opens again.
+#[test]
+fn what_is_written_is_of_a_kind_that_is_opened() {
+    let pictures = output::FORMATS.map(|(ending, _)| ending);
+    let materials = FORMATS
+        .iter()
+        .filter(|format| format.is_read)
+        .flat_map(|format| format.extensions);
+    for ending in pictures.iter().chain(materials) {
+        let kind = FileKind::of(&PathBuf::from(format!("a.{ending}")));
+        assert!(kind.is_some_and(|kind| OPENED.contains(&kind)), ".{ending}");
+    }
+}
+
+#[test]
+fn the_help_names_every_ending() {
+    let help = Arguments::command().render_long_help().to_string();
+    for ending in endings(OPENED) {
+        assert!(help.contains(&format!(".{ending}")), "--help says nothing of .{ending}");
+    }
+}
+
+/// A watched folder shows every picture of light and every material; scripts and tables that are none it passes over.
+#[test]
+fn a_watched_folder_shows_every_kind() {
+    let folder = tempdir().unwrap();
+    let path = |ending: &str| folder.path().join(format!("kind.{ending}"));
+    for ending in FileKind::Light.endings() {
+        std::fs::write(path(ending), vec![0; 1 << 13]).unwrap();
+    }
+    let subject = Subject::of(PRESETS[0].clone());
+    let formats: Vec<&Registered> = FORMATS.iter().filter(|format| format.is_material_alone()).collect();
+    for format in formats.iter().rev() {
+        for ending in format.extensions {
+            exchange::prepare(&subject, "", &path(ending), format)
+                .unwrap()
+                .save()
+                .unwrap();
+        }
+    }
+    glossmith::store::save_material(&path("json"), &PRESETS[0]).unwrap();
+    for ending in ["py", "csv", "c"] {
+        std::fs::write(folder.path().join(format!("nothing.{ending}")), "nothing of ours").unwrap();
+    }
+    let listed = Shelf::default().list(&[folder.path().to_owned()]);
+    let items = listed[0].items.as_ref().unwrap();
+    let wanted = endings(&[MATERIAL_KINDS, &[FileKind::Light]].concat());
+    assert_eq!(items.len(), wanted.len(), "{items:?}");
+    for ending in wanted {
+        let item = items.iter().find(|item| item.path == path(ending)).unwrap();
+        let is_light = FileKind::of(&item.path) == Some(FileKind::Light);
+        let is_shown = match &item.kind {
+            ItemKind::Environment => is_light,
+            ItemKind::Material(material) => !is_light && material.is_ok(),
+        };
+        assert!(is_shown, ".{ending}: {:?}", item.kind);
+    }
+}
+
+/// Of the same file the library, the command line and a dialog make the same.
+#[test]
+fn materials_of_every_format_are_found_by_their_path() {
+    let folder = tempdir().unwrap();
+    for format in FORMATS.iter().filter(|format| format.is_material_alone()) {
+        let path = folder.path().join(format!("material.{}", format.extensions[0]));
+        let prepared = exchange::prepare(&Subject::of(PRESETS[1].clone()), "", &path, format).unwrap();
+        prepared.save().unwrap();
+        let found = exchange::find(path.to_str().unwrap(), ReadOptions::default());
+        assert_eq!(found.map(|found| found.value).unwrap(), PRESETS[1], "{}", format.name);
+    }
+}
