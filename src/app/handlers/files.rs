@@ -103,6 +103,7 @@ impl App {
             FileKind::Document => {
                 let options = ReadOptions {
                     lobe: self.shared.import_lobe,
+                    loading: self.worker.loading().clone(),
                     ..ReadOptions::default()
                 };
                 self.files.disk.open(move || {

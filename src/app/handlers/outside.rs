@@ -7,7 +7,7 @@ impl App {
     /// Asks once for all that was refused; what is allowed is remembered, and read.
     pub(in crate::app) fn show_outside(&mut self, ctx: &egui::Context) {
         let outside = &mut self.unsaved.outside;
-        outside.ask(resource::take_refused());
+        outside.ask(self.worker.loading().take_refused());
         if outside.files.is_empty() {
             outside.named_by = None;
             return;

@@ -13,6 +13,8 @@ use crate::scene::loading::{Cancelled, Loading};
 
 /// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
 const MANY: usize = 200_000;
+/// Most boxes that reinsertion looks at in a round, which is a second: each node that it moves is compared with all that overlap it.
+const REINSERTION_MOST: f32 = (1 << 25) as f32;
 
 /// The tree over triangles, and the order of its leaves. More triangles than `part_max` are halved along the longest side
 /// of their bounds until they are parts, of which each is built by itself: building takes several hundred bytes a triangle.
@@ -55,7 +57,7 @@ impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
         let box_of = &self.box_of;
         if triangles.len() <= self.part_max {
             let boxes: Vec<Aabb> = triangles.par_iter().map(|&triangle| box_of(triangle)).collect();
-            let (part, order) = Tree::of(&build(&boxes));
+            let (part, order) = Tree::of(&build(&boxes, self.loading)?);
             let sorted: Vec<u32> = order.into_iter().map(|place| triangles[place as usize]).collect();
             triangles.copy_from_slice(&sorted);
             self.tree.left_leaves.extend(part.left_leaves);
@@ -91,13 +93,26 @@ fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + 
 /// The hierarchy over the boxes of triangles, in units of the bounding radius, with one triangle a leaf.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
-fn build(boxes: &[Aabb]) -> Bvh2 {
+fn build(boxes: &[Aabb], loading: &Loading) -> Result<Bvh2, Cancelled> {
     let clusters = Clusters::new(boxes);
+    loading.check()?;
     let mut binary = clusters.build_binary(boxes);
-    let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
-    ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
+    let wanted = if boxes.len() < MANY { 0.2 } else { 0.02 };
+    let candidates = REINSERTION_MOST / overlap(boxes) / binary.nodes.len() as f32;
+    // Rounds that take ever fewer nodes, from the top.
+    for part in (1..32).step_by(2).map(|round| 1.0 / round as f32) {
+        loading.check()?;
+        ReinsertionOptimizer::default().run(&mut binary, candidates.min(wanted), Some(vec![part]));
+    }
     clusters.expand(&mut binary, boxes);
-    binary
+    Ok(binary)
+}
+
+/// How many boxes lie over each other at a place, near enough: of a surface a few, of a polygon in slivers from one corner most.
+fn overlap(boxes: &[Aabb]) -> f32 {
+    let whole = boxes.iter().fold(Aabb::INVALID, |all, aabb| all.union(aabb));
+    let areas: f64 = boxes.iter().map(|aabb| f64::from(aabb.half_area())).sum();
+    (areas / f64::from(whole.half_area())).max(1.0) as f32
 }
 
 /// Triangles whose centres are in the same cell of a very fine grid, such as duplicates.

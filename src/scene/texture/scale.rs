@@ -1,5 +1,7 @@
 //! Pictures made smaller.
 
+use std::ops::Range;
+
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::Texture;
@@ -24,6 +26,11 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     let mut rgba16 = Vec::new();
     for y in 0..height {
         for x in 0..width {
+            if let Some(one) = same(picture, span(y, picture.height, height), span(x, picture.width, width)) {
+                rgba8.extend_from_slice(&picture.rgba8[4 * one..4 * one + 4]);
+                rgba16.extend_from_slice(picture.rgba16.get(4 * one..4 * one + 4).unwrap_or_default());
+                continue;
+            }
             let (mut color, mut alpha, mut count) = (Vec3::zero(), 0.0, 0.0);
             for row in span(y, picture.height, height) {
                 for column in span(x, picture.width, width) {
@@ -50,6 +57,17 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
         rgba8,
         rgba16,
     }
+}
+
+/// The first of some texels, where all are the same: of large pictures of little contents nearly all are.
+fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<usize> {
+    let place = |row: u32, column: u32| (row * picture.width + column) as usize;
+    let texels8 = picture.rgba8.as_chunks::<4>().0;
+    let texels16 = picture.rgba16.as_chunks::<4>().0;
+    let first = place(rows.start, columns.start);
+    let is_same = |other: usize| texels8[other] == texels8[first] && texels16.get(other) == texels16.get(first);
+    let all = rows.all(|row| columns.clone().all(|column| is_same(place(row, column))));
+    all.then_some(first)
 }
 
 /// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.

@@ -1,5 +1,6 @@
 //! Documents of elements with attributes, read and written.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use roxmltree::Document;
@@ -102,20 +103,22 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A name of letters, digits and underscores that begins with a letter and is not among `taken`, to which it is added.
-pub(super) fn identifier(name: &str, taken: &mut Vec<String>) -> String {
+/// A name of letters, digits and underscores that begins with a letter and is not among `taken`, to which it is added. There each name
+/// has the number that is tried next for one like it.
+pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut base: String = name.trim().chars().map(plain).collect();
     if !base.starts_with(|c: char| c.is_ascii_alphabetic()) {
         base.insert_str(0, "material_");
     }
     let mut name = base.clone();
-    let mut number = 2;
-    while taken.contains(&name) {
+    let mut number = taken.get(&base).copied().unwrap_or(2);
+    while taken.contains_key(&name) {
         name = format!("{base}_{number}");
         number += 1;
     }
-    taken.push(name.clone());
+    taken.insert(base, number);
+    taken.entry(name.clone()).or_insert(2);
     name
 }
 
