@@ -97,6 +97,13 @@ impl Loading {
         std::mem::take(&mut self.0.refused.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// The same items, until they are not wanted: for long loops whose outcome is thrown away then.
+    pub(super) fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
+        const BETWEEN: usize = 1 << 12;
+        let is_wanted = |(place, _): &(usize, I::Item)| place % BETWEEN != 0 || self.check().is_ok();
+        items.enumerate().take_while(is_wanted).map(|(_, item)| item)
+    }
+
     /// The same source, which fails once it is not wanted: long reads and parsers end then.
     pub(super) fn watched<R: Read>(&self, source: R) -> Watched<'_, R> {
         let loading = self;

@@ -146,7 +146,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
     }
     let mut slot = Slot::neutral("default");
     loading.step("normals and tangents")?;
-    let mesh = assemble(&vertices, &faces, &mut report);
+    let mesh = assemble(&vertices, &faces, &mut report, loading);
     if !mesh.colors.is_empty() {
         (slot.base_color, slot.has_vertex_colors) = ([1.0; 3], true);
         report.note(Fate::Used, "vertex colours", "");
@@ -161,7 +161,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
 }
 
 /// Triangles of vertices and faces.
-fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport) -> Mesh {
+fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport, loading: &Loading) -> Mesh {
     let is_there = |face: &&Face| face.0.iter().all(|&corner| (corner as usize) < vertices.len());
     let usable: Vec<&Face> = faces.iter().filter(is_there).collect();
     report.count(
@@ -204,10 +204,10 @@ fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport) -> M
             .collect();
     }
     if !has_normals {
-        mesh.smooth_normals();
+        mesh.smooth_normals(loading);
     }
     mesh.repair_normals();
-    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
+    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false, loading);
     mesh
 }
 

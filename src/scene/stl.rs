@@ -52,7 +52,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
         triangles: (0..read.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     };
-    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
+    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false, loading);
     report.note(Fate::Used, "meshes", "");
     Ok(Model {
         mesh,

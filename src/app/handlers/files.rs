@@ -103,12 +103,12 @@ impl App {
             FileKind::Document => {
                 let options = ReadOptions {
                     lobe: self.shared.import_lobe,
-                    loading: self.worker.loading().clone(),
                     ..ReadOptions::default()
                 };
                 self.files.disk.open(move || {
+                    let loading = options.loading.clone();
                     let opened = exchange::open(&path, options);
-                    Done::Read(path, opened)
+                    Done::Read(path, opened, loading.take_refused())
                 });
             }
             FileKind::Textures => {
@@ -134,7 +134,10 @@ impl App {
         let mut has_failed = false;
         for done in self.files.disk.take_done() {
             match done {
-                Done::Read(path, opened) => self.take_opened(ctx, path, opened),
+                Done::Read(path, opened, refused) => {
+                    self.ask_about(&path, refused);
+                    self.take_opened(ctx, path, opened);
+                }
                 Done::Prepared(ready) => self.take_prepared(ctx, *ready),
                 Done::Copied(copied) => self.take_copied(ctx, copied),
                 Done::SavedProject(path, document, saved) => {
@@ -204,8 +207,7 @@ impl App {
             Err(error) => {
                 self.say(Level::Error, error.to_string());
                 if let ExchangeError::File(FileError::Outside { path, files }) = error {
-                    self.unsaved.outside.ask(files);
-                    self.unsaved.outside.named_by = Some(path);
+                    self.ask_about(&path, files);
                 }
             }
         }

@@ -16,6 +16,7 @@ use tobj::{LoadError, LoadOptions, Material};
 
 use crate::panics::contained;
 use crate::scene::files::Files;
+use crate::scene::loading::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::model::{
     AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap,
@@ -60,7 +61,8 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
             .loading
             .step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
-        let read = read_part(&part.mesh, slot, slots.slots[slot as usize].normal_texture);
+        let normal_texture = slots.slots[slot as usize].normal_texture;
+        let read = read_part(&part.mesh, slot, normal_texture, &files.import.loading);
         if !read.colors.is_empty() {
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
@@ -109,7 +111,7 @@ fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -
 }
 
 /// The triangles of one part.
-fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>) -> Mesh {
+fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>, loading: &Loading) -> Mesh {
     let positions = source.positions.as_chunks::<3>().0;
     let count = positions.len();
     let normals = source.normals.as_chunks::<3>().0;
@@ -150,7 +152,7 @@ fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>)
         mesh.repair_normals();
     }
     let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
-    mesh.make_tangents(texture_from_uv, normal_texture.is_some());
+    mesh.make_tangents(texture_from_uv, normal_texture.is_some(), loading);
     mesh
 }
 

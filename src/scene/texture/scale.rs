@@ -80,3 +80,30 @@ pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: boo
     let is_scaled = [scaled.width, scaled.height] != whole;
     (scaled, is_scaled.then_some(whole))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texels that are all the same need no arithmetic, and must be what it gives.
+    #[test]
+    fn the_mean_of_equal_texels_is_any_of_them() {
+        for code in 0..=255 {
+            let texel = [code, 255 - code, code / 3, code];
+            let of = |last: [u8; 4]| Texture {
+                name: String::new(),
+                width: 3,
+                height: 2,
+                rgba8: [[texel; 5].concat(), last.to_vec()].concat(),
+                rgba16: Vec::new(),
+            };
+            for is_color in [false, true] {
+                assert_eq!(halved(&of(texel), is_color).rgba8, texel);
+                // With one that differs in opacity alone, colours are computed.
+                let [r, g, b, a] = texel;
+                let other = halved(&of([r, g, b, a.wrapping_add(1)]), is_color).rgba8;
+                assert_eq!(other[..3], texel[..3], "{is_color}");
+            }
+        }
+    }
+}
