@@ -13,6 +13,9 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[cfg(unix)]
+#[path = "suite/bounded.rs"]
+mod bounded;
 #[path = "suite/bounds.rs"]
 mod bounds;
 #[path = "suite/brushed.rs"]
@@ -237,6 +240,8 @@ mod ui_pictures;
 mod ui_queue;
 #[path = "suite/ui_scene.rs"]
 mod ui_scene;
+#[path = "suite/ui_strangers.rs"]
+mod ui_strangers;
 #[path = "suite/ui_study.rs"]
 mod ui_study;
 #[path = "suite/ui_textures.rs"]

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -41,17 +41,6 @@ impl Destination {
         match self {
             Self::File(path) if !is_special(path) => super::parse::check_writable(path),
             _ => Ok(()),
-        }
-    }
-
-    /// The file, opened to be written into; an existing one is overwritten. None for standard output.
-    fn open(&self) -> anyhow::Result<Option<File>> {
-        let open = |path: &PathBuf| {
-            File::create(path).with_context(|| format!("{}: cannot be written; check the folder", path.display()))
-        };
-        match self {
-            Self::Output => Ok(None),
-            Self::File(path) => open(path).map(Some),
         }
     }
 }
@@ -98,22 +87,35 @@ impl Answer {
     }
 }
 
-/// Values that are printed as they become known: a line of JSON each.
+/// Values that are printed as they become known: a line of JSON each. A file has all lines so far, and never a part of one; pipes
+/// and devices are written into.
 pub(super) struct Lines {
     to: Destination,
-    file: Option<File>,
+    place: LinesPlace,
+}
+
+enum LinesPlace {
+    Output,
+    /// A pipe or a device.
+    Special(File),
+    /// A file, which is replaced as pictures are, with what is in it.
+    File(String),
 }
 
 impl Lines {
-    /// Opens the destination; an existing file is overwritten.
+    /// Opens the destination; an existing file is replaced by the first line.
     ///
     /// # Errors
     /// If it cannot be written there.
     pub(super) fn open(destination: &Destination) -> anyhow::Result<Self> {
-        Ok(Self {
-            to: destination.clone(),
-            file: destination.open()?,
-        })
+        destination.check_writable()?;
+        let place = match destination {
+            Destination::Output => LinesPlace::Output,
+            Destination::File(path) if is_special(path) => LinesPlace::Special(opened(path)?),
+            Destination::File(_) => LinesPlace::File(String::new()),
+        };
+        let to = destination.clone();
+        Ok(Self { to, place })
     }
 
     /// Writes a line, at once.
@@ -125,13 +127,27 @@ impl Lines {
     }
 
     fn text(&mut self, text: &str) -> anyhow::Result<()> {
-        let Some(file) = &mut self.file else {
-            put!("{text}");
-            return Ok(());
-        };
-        let written = file.write_all(format!("{text}\n").as_bytes());
-        written.with_context(|| format!("{}: the answer could not be written; is there room?", self.to))
+        match (&mut self.place, &self.to) {
+            (LinesPlace::File(lines), Destination::File(path)) => {
+                *lines += &format!("{text}\n");
+                Ok(save_atomically(path, lines.as_bytes())?)
+            }
+            (LinesPlace::Special(file), to) => {
+                let written = file.write_all(format!("{text}\n").as_bytes());
+                written.with_context(|| format!("{to}: the answer could not be written; is there room?"))
+            }
+            _ => {
+                put!("{text}");
+                Ok(())
+            }
+        }
     }
+}
+
+/// A pipe or a device, opened to be written into.
+fn opened(path: &Path) -> anyhow::Result<File> {
+    let opened = OpenOptions::new().write(true).open(path);
+    opened.with_context(|| format!("{}: cannot be written; check the folder", path.display()))
 }
 
 /// Writes a value as JSON. A file has the old answer or the new, never a part; pipes and devices are written into.

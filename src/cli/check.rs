@@ -7,6 +7,7 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::{Destination, write_json};
+use super::parse::check_writable;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 use crate::render::hard::{self, HardOptions, HardRow};
 use crate::render::{EngineChoice, EngineInfo, EngineKind};
@@ -51,6 +52,8 @@ impl CheckArguments {
 /// # Errors
 /// Where a check fails, the engine does, or the file can't be written.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
+    arguments.output.iter().try_for_each(Destination::check_writable)?;
+    arguments.markdown.iter().try_for_each(|path| check_writable(path))?;
     if arguments.hard {
         return run_hard(arguments);
     }

@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::answer::{Destination, write_json};
 use super::names;
+use super::parse::check_writable;
 use crate::document::ImportLobe;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
@@ -23,7 +24,7 @@ pub struct ConvertArguments {
     /// What to convert, then where to: materials, projects or models, or names of shipped materials; then a file, or a
     /// folder with --to.
     #[arg(required = true, num_args = 2.., value_name = "IN... OUT")]
-    paths: Vec<String>,
+    paths: Vec<PathBuf>,
     /// The format to write, where OUT is a folder or its ending says too little.
     #[arg(long, value_name = "FORMAT", value_parser = format)]
     to: Option<&'static Registered>,
@@ -75,7 +76,6 @@ pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
     let Some((output, inputs)) = arguments.paths.split_last() else {
         bail!("give what to convert and where to");
     };
-    let output = Path::new(output);
     let is_folder = inputs.len() > 1 || output.is_dir();
     if is_folder && arguments.to.is_none() {
         bail!(
@@ -88,6 +88,8 @@ pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
             .with_context(|| format!("{}: the folder cannot be made; give another", output.display()))?;
     }
     let targets = targets(inputs, output, arguments.to.filter(|_| is_folder))?;
+    targets.iter().try_for_each(|target| check_writable(target))?;
+    arguments.report.iter().try_for_each(Destination::check_writable)?;
     let (mut reports, mut failed) = (Vec::new(), 0);
     for (input, target) in inputs.iter().zip(&targets) {
         match convert(input, target, arguments) {
@@ -112,17 +114,18 @@ pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
 }
 
 /// Where each input goes: no two to the same file.
-fn targets(inputs: &[String], output: &Path, to: Option<&Registered>) -> anyhow::Result<Vec<PathBuf>> {
+fn targets(inputs: &[PathBuf], output: &Path, to: Option<&Registered>) -> anyhow::Result<Vec<PathBuf>> {
     let Some(format) = to else {
         return Ok(vec![output.to_owned()]);
     };
     let mut targets: Vec<PathBuf> = Vec::new();
     for input in inputs {
-        let stem = Path::new(input).file_stem().unwrap_or_default();
+        let stem = input.file_stem().unwrap_or_default();
         let target = output.join(stem).with_extension(format.extensions[0]);
         if targets.contains(&target) {
             bail!(
-                "{input}: {} would be written twice; convert files of the same name into different folders",
+                "{}: {} would be written twice; convert files of the same name into different folders",
+                input.display(),
                 target.display()
             );
         }
@@ -131,7 +134,7 @@ fn targets(inputs: &[String], output: &Path, to: Option<&Registered>) -> anyhow:
     Ok(targets)
 }
 
-fn convert(input: &str, output: &Path, arguments: &ConvertArguments) -> anyhow::Result<Report> {
+fn convert(input: &Path, output: &Path, arguments: &ConvertArguments) -> anyhow::Result<Report> {
     let format = match arguments.to {
         Some(format) => format,
         None => exchange::by_ending(output)?,
@@ -139,16 +142,18 @@ fn convert(input: &str, output: &Path, arguments: &ConvertArguments) -> anyhow::
     let options = ReadOptions {
         lobe: arguments.import_lobe,
         is_plain: arguments.without_exact,
+        ..ReadOptions::default()
     };
-    let mut subject = match preset::material_by_name(input) {
+    let name = input.to_string_lossy();
+    let mut subject = match preset::material_by_name(&name) {
         Some(material) => Subject::of(material.clone()),
-        None if Path::new(input).extension().is_none() => Subject::of(preset::find(input)?.value),
-        None => exchange::read(Path::new(input), options)?,
+        None if input.extension().is_none() => Subject::of(preset::find(&name)?.value),
+        None => exchange::read(input, options)?,
     };
     if let Some(wanted) = &arguments.material {
-        subject = chosen(subject, wanted).with_context(|| format!("{input}: --material {wanted}"))?;
+        subject = chosen(subject, wanted).with_context(|| format!("{name}: --material {wanted}"))?;
     }
-    let mut prepared = exchange::prepare(&subject, input, output, format)?;
+    let mut prepared = exchange::prepare(&subject, &name, output, format)?;
     if let Some(Destination::File(path)) = &arguments.report {
         compare(&mut prepared.report, path)?;
     }

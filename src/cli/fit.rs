@@ -9,6 +9,7 @@ use super::answer::Answer;
 use super::lobe::{check_ending, write_view};
 use super::lobe_spec::lobe_model;
 use super::names;
+use super::parse::check_writable;
 use crate::analysis::fit::Merl;
 use crate::document::MaterialSettings;
 use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
@@ -70,7 +71,10 @@ fn parse_target(text: &str) -> Result<TargetArgument, String> {
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     if let Some(path) = &arguments.plot {
         check_ending(path)?;
+        check_writable(path)?;
     }
+    check_writable(&arguments.output)?;
+    arguments.answer.check_writable()?;
     let (target, view_angle_deg) = match &arguments.target {
         TargetArgument::Lobe(model) => (Target::Lobe((**model).clone()), VIEW_ANGLE_DEG),
         TargetArgument::File(path) => {

@@ -8,6 +8,7 @@ use clap::Args;
 use super::answer::Answer;
 use super::lobe_spec::lobe_model;
 use super::names;
+use super::parse::check_writable;
 use crate::document::match_look::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
@@ -57,6 +58,8 @@ fn parse_angle(text: &str) -> Result<f64, String> {
 /// A material that can't be read or is a mirror, a file that can't be written.
 pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
     check_ending(&arguments.output)?;
+    check_writable(&arguments.output)?;
+    arguments.answer.check_writable()?;
     let lobes = lobes(arguments)?;
     let angles_deg = if arguments.view_angle.is_empty() {
         arguments.plot.view_angles_deg()

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
@@ -56,7 +57,7 @@ pub struct ScatterArguments {
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
     /// .csv: columns x,y,z,density, a row a sample; .png: the samples seen from the lobe's middle.
-    #[arg(long, value_name = "FILE.csv|FILE.png", value_parser = parse_output)]
+    #[arg(long, value_name = "FILE.csv|FILE.png", value_parser = output())]
     output: PathBuf,
     #[command(flatten)]
     answer: Answer,
@@ -142,8 +143,11 @@ fn named_curve(text: &str) -> Result<Curve, String> {
     }
 }
 
-fn parse_output(text: &str) -> anyhow::Result<PathBuf> {
-    let path = PathBuf::from(text);
-    format_of(&path)?;
-    Ok(path)
+/// The name of the file; its ending is one of those that are written.
+fn output() -> impl TypedValueParser<Value = PathBuf> {
+    let checked = |path: PathBuf| match format_of(&path) {
+        Ok(_) => Ok(path),
+        Err(error) => Err(error.to_string()),
+    };
+    PathBufValueParser::new().try_map(checked)
 }

@@ -149,7 +149,28 @@ impl SceneArguments {
             document.assign(assignment)?;
         }
         document.check()?;
+        self.check_textures(&document, session)?;
         Ok(document)
+    }
+
+    /// Refuses pictures that are named here and can't be had; of those that files name the log tells. What is read stays with the
+    /// session.
+    fn check_textures(&self, document: &Document, session: &mut Session) -> anyhow::Result<()> {
+        let files = || self.textures.iter().flat_map(TextureArgument::files);
+        if self.textures.is_empty() {
+            return Ok(());
+        }
+        for own in session.own_pictures(document)? {
+            if let Err(why) = own.picture
+                && files().any(|file| *file == own.file)
+            {
+                bail!(
+                    "{}: this texture can't be had: {why}; give another file",
+                    own.file.display()
+                );
+            }
+        }
+        Ok(())
     }
 
     /// The length of a unit that a document will have, metres; its textures come later.
@@ -195,6 +216,9 @@ impl SceneArguments {
         import.texture_side_max = self.texture_size.map_or(import.texture_side_max, |side| side as u32);
         let takes_materials = source.is_some() || self.scene.is_some() || self.variant.is_some();
         document.model = source.unwrap_or(document.model.clone());
+        self.import_report
+            .iter()
+            .try_for_each(|path| parse::check_writable(path))?;
         let model = session.assets().model(&document.model, &document.import)?;
         if let Some(path) = &self.import_report {
             write_import_report(path, &model, self.import_lobe)?;

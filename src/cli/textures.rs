@@ -69,6 +69,11 @@ fn existing(path: &str) -> Result<PathBuf, String> {
 }
 
 impl TextureArgument {
+    /// The pictures.
+    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.textures.iter().map(|(_, texture)| &texture.file)
+    }
+
     /// Puts the pictures on the materials of a document.
     ///
     /// # Errors

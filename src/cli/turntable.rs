@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use clap::builder::ArgPredicate;
+use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 
 use super::answer::{Destination, write_json};
 use super::render::bar;
@@ -36,7 +36,7 @@ pub struct TurntableArguments {
     )]
     output: Option<PathBuf>,
     /// Write a video: .mp4 (H.264) or .gif, which repeats for ever.
-    #[arg(long, value_name = "FILE", value_parser = video)]
+    #[arg(long, value_name = "FILE", value_parser = video_file())]
     video: Option<PathBuf>,
     /// Frames a second of the video, 1 to 120.
     #[arg(long, default_value_t = FPS, value_name = "N", allow_negative_numbers = true, value_parser = fps)]
@@ -48,10 +48,9 @@ pub struct TurntableArguments {
     scene: SceneArguments,
 }
 
-fn video(text: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(text);
-    let checked = VideoFormat::of(&path).map(|_| ());
-    checked.map_err(|error| error.to_string()).map(|()| path)
+/// The name of a video; its ending is one of those that are written.
+fn video_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| VideoFormat::of(&path).map(|_| path))
 }
 
 fn fps(text: &str) -> Result<f64, String> {

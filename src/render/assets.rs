@@ -4,13 +4,14 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::memory;
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
 use crate::scene::light::AreaShape;
 use crate::scene::picture::read_texture;
 use crate::scene::texture::{Pack, TextureAssignment, Textures};
-use crate::scene::{self, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource, Texture};
+use crate::scene::{self, Budget, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource, Texture};
 
 /// What a geometry is made of: model, ground, area lights, hidden objects.
 type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
@@ -227,6 +228,7 @@ impl Kept {
             return Ok(model);
         }
         let (source, options) = key;
+        loading.allow(memory::of_import());
         let model = Arc::new(scene::load_watched(source, options, loading)?);
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
@@ -247,7 +249,7 @@ impl Kept {
             return Ok(textures);
         }
         let model = self.model(&key.0, loading)?;
-        let textures = Arc::new(self.pack(&key.0, &model, assigned).textures(&model, assigned));
+        let textures = Arc::new(self.pack(&key.0, &model, assigned, loading).textures(&model, assigned));
         // Each assignment is an entry of its own and takes little memory; only the last few are ever needed again.
         while self.textures.count(|_| true) >= TEXTURES {
             self.textures.drop_oldest(|_| true);
@@ -257,7 +259,7 @@ impl Kept {
     }
 
     /// The texels of a model's and the user's own textures, whatever their placement.
-    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
+    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment], loading: &Loading) -> Arc<Pack> {
         let now = self.now();
         let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
         own.sort();
@@ -267,12 +269,17 @@ impl Kept {
             return pack;
         }
         let pictures = RefCell::new(&mut self.pictures);
+        // The user's own are of one import with the model's.
+        loading.allow(memory::of_import());
+        let budget = Budget::of(loading);
+        let _ = budget.take((model.bytes() as u64).min(budget.left()));
         let read = |path: &Path, is_color: bool| {
             let key = (path.to_owned(), is_color);
             if let Some(picture) = pictures.borrow_mut().get(&key, now) {
-                return Ok(picture);
+                let taken = budget.take(picture.bytes() as u64);
+                return taken.map(|()| picture).map_err(|over| over.to_string());
             }
-            let picture = Arc::new(read_texture(path, is_color, of.1.texture_side_max)?);
+            let picture = Arc::new(read_texture(path, is_color, of.1.texture_side_max, &budget)?);
             pictures.borrow_mut().put(key, picture.clone(), now);
             Ok(picture)
         };

@@ -20,7 +20,7 @@ use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::medium::medium_at;
-use crate::scene::texture::Textures;
+use crate::scene::texture::{OwnPicture, Textures};
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
@@ -56,6 +56,23 @@ impl CatcherKey {
     }
 }
 
+/// The textures of a document whose materials are those of the model's slots.
+fn textures_of(
+    document: &Document,
+    slots: &[MaterialSettings],
+    assets: &Assets,
+) -> Result<Arc<Textures>, SessionError> {
+    assets.textures(&document.model, &document.import, &texture_assignments(slots))
+}
+
+/// The pictures of the user's own that a document's materials look up, read or not.
+pub(super) fn own_pictures(document: &Document, assets: &Assets) -> Result<Vec<OwnPicture>, SessionError> {
+    let document = &*without_what_is_off(document);
+    let model = assets.model(&document.model, &document.import)?;
+    let slots = slot_materials(document, model.slots.len());
+    Ok(textures_of(document, &slots[..model.slots.len()], assets)?.own.clone())
+}
+
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
@@ -80,7 +97,7 @@ impl Compiler {
         let lighting = &document.lighting;
         let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
         let mut slots = slot_materials(document, model.slots.len());
-        let textures = assets.textures(source, options, &texture_assignments(&slots[..model.slots.len()]))?;
+        let textures = textures_of(document, &slots[..model.slots.len()], assets)?;
         slots.extend(document.catcher_reflection());
         let first_light = model.slots.len() + usize::from(document.ground);
         let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();

@@ -5,9 +5,7 @@ use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 use crate::job::Job;
 use crate::job::effect::EffectId;
 use crate::job::film::Extras;
-
-/// The environment variable that says how much memory a picture may take, in MiB, whatever there is.
-pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
+pub use crate::scene::LIMIT_VARIABLE;
 
 /// Bytes a pixel beside the film: the mean picture, what of it is shown, and what is written to a file.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;
@@ -21,6 +19,8 @@ const DENOISER_BYTES_MOST: u64 = 1_600 << 20;
 const SOFTWARE_GPU_BYTES: u64 = 56;
 /// The share of the free memory that a picture may take: the rest of the program and other programs live on.
 const SHARE: f64 = 0.9;
+/// The share of that which the files of one import may take: the scene is made of them, and the picture comes after.
+const IMPORT_SHARE: f64 = 0.5;
 
 /// A picture that is too large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -114,6 +114,11 @@ impl Needs {
 pub(super) fn limit() -> Option<u64> {
     let mib: u64 = std::env::var(LIMIT_VARIABLE).ok()?.trim().parse().ok()?;
     Some(mib.saturating_mul(1 << 20))
+}
+
+/// The bytes that the files of one import may take.
+pub(super) fn of_import() -> u64 {
+    limit().unwrap_or_else(|| (IMPORT_SHARE * free(0) as f64) as u64)
 }
 
 /// The bytes that the process may take besides what it has, where it has a limit (`ulimit -v`).

@@ -1,14 +1,21 @@
 //! The files beside a model: in its folder, or in the archive that it came in.
 
+use std::collections::HashMap;
 use std::fs::{self, File};
-use std::io::{self, BufReader, Read};
+use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use zip::ZipArchive;
 
+use super::budget::Budget;
 use super::loading::Loading;
 use super::resource::{self, BYTES_MAX, Reach, is_elsewhere};
+
+/// From this size on what an archive holds may be [`PACKED_MOST`] times as large as it is packed.
+const PACKED_FROM: u64 = 64 << 20;
+/// Pictures and models are packed to a hundredth at best; what claims to be larger still is made to fill the memory.
+const PACKED_MOST: u64 = 500;
 
 /// The files that a model may name, and what is told while it is read.
 #[derive(Debug)]
@@ -16,10 +23,39 @@ pub(super) struct Files {
     place: Place,
     /// Files that were given with the model.
     given: Vec<PathBuf>,
+    /// What they are read for.
+    pub import: Import,
+}
+
+/// One import: what all its files have in common. Clones are the same one.
+#[derive(Clone, Debug)]
+pub(super) struct Import {
     /// Files that were asked for, by the names that they have on the disk.
-    asked: Seen,
+    pub asked: Seen,
+    /// What they may take together, with their pictures.
+    pub budget: Budget,
     /// Who waits.
     pub loading: Loading,
+}
+
+impl Import {
+    /// An import that begins now.
+    pub fn new(loading: &Loading) -> Self {
+        Self {
+            asked: Seen::default(),
+            budget: Budget::of(loading),
+            loading: loading.clone(),
+        }
+    }
+
+    /// The contents of a file, which count for the import.
+    ///
+    /// # Errors
+    /// As [`resource::read`], and where the import takes too much or was cancelled.
+    pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.budget.take(resource::open(path)?.metadata()?.len())?;
+        resource::read_watched(path, BYTES_MAX, &self.loading)
+    }
 }
 
 /// Files that were asked for, shared with who wants to know.
@@ -47,29 +83,85 @@ enum Place {
     /// In a folder.
     Folder(PathBuf),
     /// In an archive, below one of its folders (with a slash at its end, or empty).
-    Archive(Mutex<ZipArchive<BufReader<File>>>, String),
+    Archive(Box<Archive>, String),
+}
+
+/// An archive with its names.
+#[derive(Debug)]
+struct Archive {
+    zip: Mutex<ZipArchive<BufReader<File>>>,
+    /// The names of its files that can be written as text, in its order.
+    names: Vec<String>,
+    /// The first of them by each spelling that finds it: as it is; in lower case; without its folder, in lower case.
+    found: [HashMap<String, usize>; 3],
+}
+
+impl Archive {
+    fn open(path: &Path) -> io::Result<Self> {
+        let zip = ZipArchive::new(BufReader::new(resource::open(path)?))?;
+        let names: Vec<String> = zip.file_names().flatten().map(|name| name.into_owned()).collect();
+        let mut found: [HashMap<String, usize>; 3] = Default::default();
+        for (place, name) in names.iter().enumerate() {
+            for (by, spelling) in found.iter_mut().zip(spellings(name)) {
+                by.entry(spelling).or_insert(place);
+            }
+        }
+        let zip = Mutex::new(zip);
+        Ok(Self { zip, names, found })
+    }
+
+    /// The contents of a file; where none has this name, of one whose name is nearly the same.
+    fn read(&self, wanted: &str, import: &Import) -> io::Result<Vec<u8>> {
+        let mut spelled = self.found.iter().zip(spellings(wanted));
+        let place = spelled.find_map(|(by, spelling)| by.get(&spelling));
+        let name = &self.names[*place.ok_or(ErrorKind::NotFound)?];
+        let mut zip = self.zip.lock().unwrap_or_else(PoisonError::into_inner);
+        let file = zip.by_name(name)?;
+        let size = file.size();
+        if size > PACKED_FROM && size / PACKED_MOST > file.compressed_size() {
+            let why = format!(
+                "it is packed to a {PACKED_MOST}th of its {} MiB, as no model or picture is; unpack the archive where you trust it",
+                size >> 20
+            );
+            return Err(io::Error::new(ErrorKind::InvalidData, why));
+        }
+        import.budget.take(size)?;
+        let mut bytes = Vec::new();
+        import.loading.watched(file.take(size + 1)).read_to_end(&mut bytes)?;
+        match bytes.len() as u64 > size {
+            true => Err(io::Error::new(
+                ErrorKind::InvalidData,
+                "it is longer than the archive says",
+            )),
+            false => Ok(bytes),
+        }
+    }
+}
+
+/// What a file of an archive is found by, the best first.
+fn spellings(name: &str) -> [String; 3] {
+    let lower = name.to_ascii_lowercase();
+    let last = lower.rsplit('/').next().unwrap_or(&lower).to_owned();
+    [name.to_owned(), lower, last]
 }
 
 impl Files {
-    fn at(place: Place, given: &[PathBuf], asked: &Seen, loading: &Loading) -> Self {
+    /// Those in a folder.
+    pub(super) fn in_folder(folder: &Path, given: &[PathBuf], import: &Import) -> Self {
         Self {
-            place,
+            place: Place::Folder(folder.to_owned()),
             given: given.to_owned(),
-            asked: asked.clone(),
-            loading: loading.clone(),
+            import: import.clone(),
         }
     }
 
-    /// Those in a folder.
-    pub(super) fn in_folder(folder: &Path, given: &[PathBuf], asked: &Seen, loading: &Loading) -> Self {
-        Self::at(Place::Folder(folder.to_owned()), given, asked, loading)
-    }
-
     /// Those in an archive.
-    pub(super) fn in_archive(path: &Path, asked: &Seen, loading: &Loading) -> io::Result<Self> {
-        let archive = ZipArchive::new(BufReader::new(resource::open(path)?))?;
-        let place = Place::Archive(Mutex::new(archive), String::new());
-        Ok(Self::at(place, &[], asked, loading))
+    pub(super) fn in_archive(path: &Path, import: &Import) -> io::Result<Self> {
+        Ok(Self {
+            place: Place::Archive(Box::new(Archive::open(path)?), String::new()),
+            given: Vec::new(),
+            import: import.clone(),
+        })
     }
 
     /// Every file, relative to where they are looked for: in a folder those directly in it, in an archive all.
@@ -80,10 +172,7 @@ impl Files {
                 .filter(|entry| entry.path().is_file())
                 .filter_map(|entry| entry.file_name().into_string().ok())
                 .collect(),
-            Place::Archive(archive, _) => {
-                let archive = archive.lock().unwrap_or_else(PoisonError::into_inner);
-                names_in(&archive)
-            }
+            Place::Archive(archive, _) => archive.names.clone(),
         };
         names.sort();
         Ok(names)
@@ -105,47 +194,32 @@ impl Files {
     /// lies beside the model instead of in another folder, or that was given with the model, is taken.
     pub(super) fn read(&self, name: &str) -> io::Result<Vec<u8>> {
         let name = name.replace('\\', "/");
-        let base = name.rsplit('/').next().unwrap_or(&name);
         match &self.place {
-            Place::Folder(folder) => {
-                let wanted = folder.join(&name);
-                let reach = Reach::of_folder(folder);
-                if is_elsewhere(&wanted) {
-                    reach.check(&wanted)?;
-                }
-                let found = if wanted.is_file() {
-                    wanted
-                } else {
-                    same_but_for_case(&wanted)
-                        .or_else(|| same_but_for_case(&folder.join(base)))
-                        .or_else(|| self.given.iter().find(|given| is_called(given, base)).cloned())
-                        .unwrap_or(wanted)
-                };
-                if !self.given.contains(&found) {
-                    reach.check(&found)?;
-                }
-                self.asked.note(&found);
-                resource::read(&found, BYTES_MAX)
-            }
-            Place::Archive(archive, folder) => {
-                let mut archive = archive.lock().unwrap_or_else(PoisonError::into_inner);
-                let wanted = normal_path(&format!("{folder}{name}"));
-                let names = names_in(&archive);
-                let last = |known: &str| {
-                    known
-                        .rsplit('/')
-                        .next()
-                        .is_some_and(|last| last.eq_ignore_ascii_case(base))
-                };
-                let found = names.iter().find(|known| **known == wanted);
-                let found = found.or_else(|| names.iter().find(|known| known.eq_ignore_ascii_case(&wanted)));
-                let found = found.or_else(|| names.iter().find(|known| last(known)));
-                let mut bytes = Vec::new();
-                let file = archive.by_name(found.ok_or(io::ErrorKind::NotFound)?)?;
-                file.take(BYTES_MAX).read_to_end(&mut bytes)?;
-                Ok(bytes)
-            }
+            Place::Folder(folder) => self.read_in(folder, &name),
+            Place::Archive(archive, folder) => archive.read(&normal_path(&format!("{folder}{name}")), &self.import),
         }
+    }
+
+    fn read_in(&self, folder: &Path, name: &str) -> io::Result<Vec<u8>> {
+        let base = name.rsplit('/').next().unwrap_or(name);
+        let wanted = folder.join(name);
+        let (reach, loading) = (Reach::of_folder(folder), &self.import.loading);
+        if is_elsewhere(&wanted) {
+            reach.check(&wanted, loading)?;
+        }
+        let found = if wanted.is_file() {
+            wanted
+        } else {
+            same_but_for_case(&wanted)
+                .or_else(|| same_but_for_case(&folder.join(base)))
+                .or_else(|| self.given.iter().find(|given| is_called(given, base)).cloned())
+                .unwrap_or(wanted)
+        };
+        if !self.given.contains(&found) {
+            reach.check(&found, loading)?;
+        }
+        self.import.asked.note(&found);
+        self.import.read(&found)
     }
 }
 
@@ -153,11 +227,6 @@ impl Files {
 fn is_called(path: &Path, name: &str) -> bool {
     let known = path.file_name().and_then(|known| known.to_str());
     known.is_some_and(|known| known.eq_ignore_ascii_case(name))
-}
-
-/// The names of an archive's files that can be written as text.
-fn names_in(archive: &ZipArchive<BufReader<File>>) -> Vec<String> {
-    archive.file_names().flatten().map(|name| name.into_owned()).collect()
 }
 
 /// A path without `.` and `..`.

@@ -46,14 +46,24 @@ impl FloatPicture {
     }
 }
 
+/// Columns and rows of a TIFF picture, whatever its numbers; nothing where it is none.
+pub(super) fn size(bytes: &[u8]) -> Option<[u32; 2]> {
+    let (width, height) = is_tiff(bytes).then(|| Decoder::new(Cursor::new(bytes)).ok()?.dimensions().ok())??;
+    Some([width, height])
+}
+
+fn is_tiff(bytes: &[u8]) -> bool {
+    [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"]
+        .iter()
+        .any(|start| bytes.starts_with(*start))
+}
+
 /// The picture in a file's bytes; nothing where it is not of numbers with a point.
 ///
 /// # Errors
 /// Why it cannot be had, in a few words.
 pub(super) fn decode(bytes: &[u8]) -> Result<Option<FloatPicture>, String> {
-    let is_tiff = bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*");
-    let is_big = bytes.starts_with(b"II+\0") || bytes.starts_with(b"MM\0+");
-    if !is_tiff && !is_big {
+    if !is_tiff(bytes) {
         return Ok(None);
     }
     let text = |error: tiff::TiffError| error.to_string();

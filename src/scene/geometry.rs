@@ -88,13 +88,14 @@ impl Geometry {
             !hidden.iter().any(|hidden| Some(*hidden) == object)
         };
         let object_of = |triangle| model.object_of(triangle).map_or(NO_OBJECT, |object| object as u32);
-        let chosen = (0..mesh.triangles.len()).filter(is_usable);
+        let chosen = loading.while_wanted(0..mesh.triangles.len()).filter(is_usable);
         let mut part = Part::default();
         let closed = if hidden.is_empty() {
             part.add(mesh, chosen, object_of, to_units)
         } else {
             part.add(mesh, chosen.filter(is_shown), object_of, to_units)
         };
+        loading.check()?;
         part.build(loading)?;
         Ok(Self {
             model_is_convex: is_convex(&part.positions, &part.triangles, loading)?,

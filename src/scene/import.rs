@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::endings::{MODELS, ending, has_ending};
-use super::files::{Files, Seen};
+use super::files::{Files, Import};
 use super::geometry::Framing;
 use super::loading::Loading;
 use super::model::{Model, ModelError, ModelOptions, Texture};
 use super::report::{Fate, ImportReport};
-use super::resource::{self, Reach};
+use super::resource::Reach;
 use super::stage::{LIGHTS_MAX, LightKind, ModelLight};
 use super::{gltf, obj, ply, stl};
 
@@ -32,8 +32,8 @@ const LIGHTS: [LightFate; 3] = [
 
 /// Loads the model in a file, a folder or an archive, and those that were given with it.
 pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
-    let seen = Seen::default();
-    let mut model = load_one(path, options, &seen, loading)?;
+    let import = Import::new(loading);
+    let mut model = load_one(path, options, &import)?;
     let stem = if path.is_dir() {
         path.file_name()
     } else {
@@ -41,13 +41,14 @@ pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Re
     };
     model.name = stem.map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
     for part in options.beside.iter().filter(|file| is_model(file)) {
-        let other = load_one(part, options, &seen, loading)?;
+        let other = load_one(part, options, &import)?;
         let name = part.file_name().unwrap_or_default().to_string_lossy();
         model.report.note(Fate::Used, "models shown together with it", &name);
         model.join(other);
     }
+    loading.check()?;
     finish(&mut model);
-    model.files = seen.take();
+    model.files = import.asked.take();
     note_outside(&mut model, path, &options.beside);
     Ok(model)
 }
@@ -65,23 +66,26 @@ fn note_outside(model: &mut Model, path: &Path, given: &[PathBuf]) {
 }
 
 /// Loads one model.
-fn load_one(path: &Path, options: &ModelOptions, seen: &Seen, loading: &Loading) -> Result<Model, ModelError> {
+fn load_one(path: &Path, options: &ModelOptions, import: &Import) -> Result<Model, ModelError> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-    loading.step(format!("reading {name}"))?;
-    let read = |source| ModelError::Read {
-        path: path.to_owned(),
-        source,
+    import.loading.step(format!("reading {name}"))?;
+    let read = |source| match import.loading.check() {
+        Err(cancelled) => cancelled.into(),
+        Ok(()) => ModelError::Read {
+            path: path.to_owned(),
+            source,
+        },
     };
-    let in_folder = |folder: &Path| Files::in_folder(folder, &options.beside, seen, loading);
+    let in_folder = |folder: &Path| Files::in_folder(folder, &options.beside, import);
     if path.is_dir() {
         return load_inside(path, in_folder(path), options);
     }
-    seen.note(path);
+    import.asked.note(path);
     if ending(path) == "zip" {
-        let files = Files::in_archive(path, seen, loading).map_err(read)?;
+        let files = Files::in_archive(path, import).map_err(read)?;
         return load_inside(path, files, options);
     }
-    let bytes = resource::read(path, resource::BYTES_MAX).map_err(read)?;
+    let bytes = import.read(path).map_err(read)?;
     load_file(path, in_folder(path.parent().unwrap_or(Path::new(""))), bytes, options)
 }
 
@@ -128,8 +132,8 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
 fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let model = match ending(path).as_str() {
         "obj" => obj::load(path, &files, &bytes, options)?,
-        "ply" => ply::load(path, &bytes)?,
-        "stl" => stl::load(path, &bytes)?,
+        "ply" => ply::load(path, &bytes, &files.import.loading)?,
+        "stl" => stl::load(path, &bytes, &files.import.loading)?,
         // Whatever a glTF file is called: its first bytes tell.
         _ => gltf::load(path, files, bytes, options)?,
     };

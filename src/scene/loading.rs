@@ -1,16 +1,35 @@
-//! What is being done to open something, for those who wait for it: they may read it, and call it off.
+//! What is being done to open something, for those who wait for it: they may read it, call it off, and hear what was refused.
 
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
+
+use super::budget::USUAL;
 
 /// Tells what is being done and hears whether it is still wanted. Clones are the same one.
 #[derive(Clone, Debug, Default)]
 pub struct Loading(Arc<State>);
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct State {
     doing: Mutex<String>,
     is_cancelled: AtomicBool,
+    /// The bytes that each import may take.
+    allowed: AtomicU64,
+    /// Files that were named and not allowed, since they were last asked for.
+    refused: Mutex<Vec<PathBuf>>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            doing: Mutex::default(),
+            is_cancelled: AtomicBool::default(),
+            allowed: AtomicU64::new(USUAL),
+            refused: Mutex::default(),
+        }
+    }
 }
 
 /// Nobody wants it any more.
@@ -55,7 +74,56 @@ impl Loading {
         self.0.doing.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
+    /// Says how many bytes each import may take from now on.
+    pub fn allow(&self, bytes: u64) {
+        self.0.allowed.store(bytes, Relaxed);
+    }
+
+    /// The bytes that each import may take.
+    pub fn allowed(&self) -> u64 {
+        self.0.allowed.load(Relaxed)
+    }
+
+    /// Keeps the name of a file that was not allowed, once.
+    pub(super) fn refuse(&self, file: &Path) {
+        let mut refused = self.0.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        if !refused.iter().any(|known| known == file) {
+            refused.push(file.to_owned());
+        }
+    }
+
+    /// The files that were refused since this was last asked: of these loads alone, not of others beside them.
+    pub fn take_refused(&self) -> Vec<PathBuf> {
+        std::mem::take(&mut self.0.refused.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The same items, until they are not wanted: for long loops whose outcome is thrown away then.
+    pub(super) fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
+        const BETWEEN: usize = 1 << 12;
+        let is_wanted = |(place, _): &(usize, I::Item)| place % BETWEEN != 0 || self.check().is_ok();
+        items.enumerate().take_while(is_wanted).map(|(_, item)| item)
+    }
+
+    /// The same source, which fails once it is not wanted: long reads and parsers end then.
+    pub(super) fn watched<R: Read>(&self, source: R) -> Watched<'_, R> {
+        let loading = self;
+        Watched { loading, source }
+    }
+
     fn say(&self, doing: String) {
         *self.0.doing.lock().unwrap_or_else(PoisonError::into_inner) = doing;
+    }
+}
+
+/// A source that is read until it is not wanted.
+pub(super) struct Watched<'a, R> {
+    loading: &'a Loading,
+    source: R,
+}
+
+impl<R: Read> Read for Watched<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.loading.check().map_err(io::Error::other)?;
+        self.source.read(buffer)
     }
 }

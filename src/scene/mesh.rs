@@ -4,6 +4,8 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 
+use super::loading::Loading;
+
 /// Triangles with attributes at their vertices. Counter-clockwise order seen from outside; right-handed, +Y up.
 ///
 /// All attribute vectors have the length of `positions` (`second_uvs` and `colors` may be empty), `slots` has the length
@@ -140,10 +142,10 @@ impl Mesh {
     }
 
     /// Gives every vertex the mean normal of its triangles, weighed by their areas: for scanned surfaces, which have no
-    /// creases.
-    pub fn smooth_normals(&mut self) {
+    /// creases. Left half done where it is not wanted any more.
+    pub fn smooth_normals(&mut self, loading: &Loading) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
-        for triangle in 0..self.triangles.len() {
+        for triangle in loading.while_wanted(0..self.triangles.len()) {
             let [a, b, c] = self.corners(triangle);
             let doubled_area = (b - a).cross(c - a);
             for vertex in self.triangles[triangle] {
@@ -167,23 +169,23 @@ impl Mesh {
 
     /// Tangents along growing u of a texture, as [`Mesh::mikktspace_tangents`] where `is_exact` (a normal texture is made
     /// for these), else as [`Mesh::generate_tangents`], which is faster.
-    pub fn make_tangents(&mut self, texture_from_uv: [f32; 6], is_exact: bool) {
+    pub fn make_tangents(&mut self, texture_from_uv: [f32; 6], is_exact: bool, loading: &Loading) {
         if is_exact {
             self.mikktspace_tangents(texture_from_uv);
         } else {
-            self.generate_tangents(texture_from_uv);
+            self.generate_tangents(texture_from_uv, loading);
         }
     }
 
     /// Tangents along growing u of a texture that the texture coordinates look into by these coefficients
     /// (`TextureRef::texture_from_mesh_uv`), averaged over the triangles at a vertex by their angles there. A vertex
     /// whose triangles disagree about the handedness of the texture is split; one without usable texture coordinates
-    /// gets any tangent.
-    pub fn generate_tangents(&mut self, texture_from_uv: [f32; 6]) {
+    /// gets any tangent. Left half done where it is not wanted any more.
+    pub fn generate_tangents(&mut self, texture_from_uv: [f32; 6], loading: &Loading) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         let mut signs = vec![0.0f32; self.positions.len()];
         let mut mirrored: HashMap<u32, u32> = HashMap::new();
-        for triangle in 0..self.triangles.len() {
+        for triangle in loading.while_wanted(0..self.triangles.len()) {
             let Some((along_u, sign)) = self.texture_frame(triangle, texture_from_uv) else {
                 continue;
             };

@@ -2,6 +2,7 @@
 
 mod alias;
 mod basis;
+mod budget;
 pub mod camera;
 pub mod catcher;
 mod coarse;
@@ -40,6 +41,7 @@ mod tangents;
 pub mod teapot;
 pub mod texture;
 
+pub use budget::{Budget, LIMIT_VARIABLE, OverBudget};
 pub use geometry::{Geometry, NO_OBJECT};
 pub use gltf::{FileParameter, GLTF_PARAMETERS, Goes, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};

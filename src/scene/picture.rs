@@ -1,12 +1,14 @@
 //! Pictures of models, whatever their format.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
 use image::error::{LimitError, LimitErrorKind};
-use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
+use image::{DynamicImage, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
 
+use super::budget::Budget;
 use super::environment::exr_header;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
@@ -23,6 +25,10 @@ use crate::panics::contained;
 const DECODED_MAX: u64 = 2 << 30;
 /// Texels that a byte may stand for, and beyond them: a run of one colour takes PNG and WebP next to nothing.
 const GROWTH: [u64; 2] = [1 << 14, 1 << 20];
+/// Bytes that decoding takes for a texel in passing: of codes of 8 bits, and of deeper numbers.
+const TEXEL_COSTS: [u64; 2] = [12, 28];
+/// Bytes that decoding takes for each of a container of a GPU.
+const CONTAINER_COST: u64 = 8;
 /// The first bytes of an OpenEXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The most columns or rows of an OpenEXR picture.
@@ -90,26 +96,97 @@ impl Decoded {
     }
 }
 
-/// The picture in a file, its longest side at most `side_max`.
+/// A picture as its file has it.
+pub(super) struct Encoded<'a> {
+    /// What it is called.
+    pub name: String,
+    /// The file.
+    pub bytes: Cow<'a, [u8]>,
+}
+
+impl Encoded<'_> {
+    /// The memory that decoding takes in passing, near enough, by what the header says.
+    pub fn cost(&self) -> u64 {
+        let [of_codes, of_numbers] = TEXEL_COSTS;
+        let texels = header(&self.name, &self.bytes).map_or(0, |header| {
+            let of_one = if header.is_deep { of_numbers } else { of_codes };
+            of_one * header.texels()
+        });
+        // Containers say their size in many ways: their blocks hold a texel a byte at most.
+        texels.max(CONTAINER_COST * self.bytes.len() as u64)
+    }
+
+    /// Decodes it, where the budget of its import has room for that.
+    ///
+    /// # Errors
+    /// Why it cannot be had, in a few words.
+    pub fn decode(self, budget: &Budget) -> Result<Decoded, String> {
+        budget.check(self.cost()).map_err(|over| over.to_string())?;
+        decode_bytes(self.name, &self.bytes)
+    }
+}
+
+/// What the first bytes of a picture say of the rest.
+struct Header {
+    size: [u32; 2],
+    /// It has more than 8 bits a channel.
+    is_deep: bool,
+}
+
+impl Header {
+    fn texels(&self) -> u64 {
+        self.size.map(u64::from).iter().product()
+    }
+}
+
+/// The header of a picture; none where it has another kind, or is damaged.
+fn header(name: &str, bytes: &[u8]) -> Option<Header> {
+    if gpu_picture::is_container(bytes) {
+        return None;
+    }
+    if bytes.starts_with(&EXR) {
+        let meta = contained(|| MetaData::read_from_buffered(Cursor::new(bytes), false))?.ok()?;
+        let size = meta.headers.first()?.layer_size;
+        let side = |side: usize| u32::try_from(side).unwrap_or(u32::MAX);
+        return Some(Header {
+            size: [side(size.0), side(size.1)],
+            is_deep: true,
+        });
+    }
+    if let Some(size) = float_tiff::size(bytes) {
+        return Some(Header { size, is_deep: true });
+    }
+    let decoder = contained(|| reader(name, bytes).ok()?.into_decoder().ok())??;
+    let color = decoder.color_type();
+    Some(Header {
+        size: decoder.dimensions().into(),
+        is_deep: color.bytes_per_pixel() > color.channel_count(),
+    })
+}
+
+/// The picture in a file, its longest side at most `side_max`, within what its import may take.
 ///
 /// # Errors
 /// Why it can't be had, in a few words.
-pub fn read_texture(path: &Path, is_color: bool, side_max: u32) -> Result<Texture, String> {
+pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
     let bytes = resource::read(path, resource::BYTES_MAX).map_err(|error| error.to_string())?;
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let picture = decode_bytes(name, &bytes)?.texture(is_color);
-    Ok(scaled_to(picture, side_max, is_color).0)
+    let bytes = Cow::Owned(bytes);
+    let picture = Encoded { name, bytes }.decode(budget)?.texture(is_color);
+    let (scaled, _) = scaled_to(picture, side_max, is_color);
+    budget.take(scaled.bytes() as u64).map_err(|over| over.to_string())?;
+    Ok(scaled)
 }
 
 /// Decodes a picture of any known format.
 ///
 /// # Errors
 /// Why it cannot be had, in a few words.
-pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
+fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));
     let (width, height, texels) = decoded?;
@@ -138,6 +215,10 @@ fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
+    let [growth, floor] = GROWTH;
+    if header(name, bytes).is_some_and(|header| header.texels() > growth * bytes.len() as u64 + floor) {
+        return Err("it is far larger than its file can tell".to_owned());
+    }
     if gpu_picture::is_container(bytes) {
         let faces = gpu_picture::decode(bytes, [u32::MAX; 2])?;
         let face = faces.into_iter().next().ok_or("it has no texels")?;
@@ -181,27 +262,29 @@ fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
 
 /// A picture in one of the formats of screens; the name counts where its bytes do not tell which.
 pub(super) fn decode_image(name: &str, bytes: &[u8]) -> ImageResult<DynamicImage> {
-    let guessed = || -> ImageResult<_> {
-        let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-        // A TGA has nothing to tell it by but its name.
-        if reader.format().is_none()
-            && let Ok(format) = ImageFormat::from_path(name)
-        {
-            reader.set_format(format);
-        }
-        Ok(reader)
-    };
-    let (width, height) = guessed()?.into_dimensions()?;
+    let (width, height) = reader(name, bytes)?.into_dimensions()?;
     let [growth, floor] = GROWTH;
     if u64::from(width) * u64::from(height) > growth * bytes.len() as u64 + floor {
         let kind = LimitErrorKind::InsufficientMemory;
         return Err(ImageError::Limits(LimitError::from_kind(kind)));
     }
-    let mut reader = guessed()?;
+    let mut reader = reader(name, bytes)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(DECODED_MAX);
     reader.limits(limits);
     reader.decode()
+}
+
+/// Reads bytes by their format; the name counts where they do not tell it.
+fn reader<'a>(name: &str, bytes: &'a [u8]) -> ImageResult<ImageReader<Cursor<&'a [u8]>>> {
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
+    // A TGA has nothing to tell it by but its name.
+    if reader.format().is_none()
+        && let Ok(format) = ImageFormat::from_path(name)
+    {
+        reader.set_format(format);
+    }
+    Ok(reader)
 }
 
 /// The width and the texels of a picture that is being filled.

@@ -8,6 +8,7 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Encoding, Property, PropertyAccess, PropertyAccessResult};
 
+use super::loading::Loading;
 use super::mesh::Mesh;
 use super::model::{Model, ModelError, Slot};
 use super::report::{Fate, ImportReport};
@@ -97,12 +98,12 @@ impl PropertyAccess for Skipped {
 }
 
 /// Loads the contents of a PLY file.
-pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
+pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
     let invalid = |error: &dyn std::fmt::Display| ModelError::Invalid {
         path: path.to_owned(),
         reason: error.to_string().replace('\n', " "),
     };
-    let mut reader = Reader::new(BufReader::new(bytes));
+    let mut reader = Reader::new(BufReader::new(loading.watched(bytes)));
     let (vertex, face, skipped) = (Parser::<Vertex>::new(), Parser::<Face>::new(), Parser::<Skipped>::new());
     let header = vertex.read_header(&mut reader).map_err(|error| invalid(&error))?;
     let mut vertices = Vec::new();
@@ -129,6 +130,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
                     .map(drop)
             }
         };
+        loading.check()?;
         if let Err(error) = read {
             // What stands before the damage may be enough.
             if vertices.is_empty() || faces.is_empty() {
@@ -143,7 +145,8 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
         }
     }
     let mut slot = Slot::neutral("default");
-    let mesh = assemble(&vertices, &faces, &mut report);
+    loading.step("normals and tangents")?;
+    let mesh = assemble(&vertices, &faces, &mut report, loading);
     if !mesh.colors.is_empty() {
         (slot.base_color, slot.has_vertex_colors) = ([1.0; 3], true);
         report.note(Fate::Used, "vertex colours", "");
@@ -158,7 +161,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
 }
 
 /// Triangles of vertices and faces.
-fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport) -> Mesh {
+fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport, loading: &Loading) -> Mesh {
     let is_there = |face: &&Face| face.0.iter().all(|&corner| (corner as usize) < vertices.len());
     let usable: Vec<&Face> = faces.iter().filter(is_there).collect();
     report.count(
@@ -201,10 +204,10 @@ fn assemble(vertices: &[Vertex], faces: &[Face], report: &mut ImportReport) -> M
             .collect();
     }
     if !has_normals {
-        mesh.smooth_normals();
+        mesh.smooth_normals(loading);
     }
     mesh.repair_normals();
-    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
+    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false, loading);
     mesh
 }
 

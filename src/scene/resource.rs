@@ -8,20 +8,20 @@ use std::io::{self, ErrorKind, Read as _};
 use std::path::{Component, Path, PathBuf, Prefix};
 use std::sync::{Mutex, PoisonError};
 
+use super::loading::Loading;
+
 /// The most bytes of one file.
 pub(super) const BYTES_MAX: u64 = 4 << 30;
 
-/// What the user allows, and what was refused since that was last asked.
+/// What the user allows, whatever names it.
 static PERMITS: Mutex<Permits> = Mutex::new(Permits {
     everything: false,
     allowed: Vec::new(),
-    refused: Vec::new(),
 });
 
 struct Permits {
     everything: bool,
     allowed: Vec<PathBuf>,
-    refused: Vec<PathBuf>,
 }
 
 fn permits() -> std::sync::MutexGuard<'static, Permits> {
@@ -47,11 +47,6 @@ pub fn allow(files: &[PathBuf]) {
 pub fn allowed() -> Vec<PathBuf> {
     let allowed = permits().allowed.clone();
     allowed.into_iter().filter(|path| path.to_str().is_some()).collect()
-}
-
-/// The files that were refused since this was last asked.
-pub fn take_refused() -> Vec<PathBuf> {
-    std::mem::take(&mut permits().refused)
 }
 
 /// Opens a regular file. Devices and pipes, of which some never end and some never begin, are refused without waiting.
@@ -81,6 +76,14 @@ pub fn open(path: &Path) -> io::Result<File> {
 /// # Errors
 /// What the system says, that it is no file, or that it is larger.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    read_watched(path, most, &Loading::default())
+}
+
+/// The same for those who wait.
+///
+/// # Errors
+/// As [`read`], and where it was cancelled.
+pub(super) fn read_watched(path: &Path, most: u64, loading: &Loading) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("larger than {} MiB", most >> 20));
     let length = file.metadata()?.len();
@@ -88,7 +91,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         return Err(too_large());
     }
     let mut bytes = Vec::with_capacity(length as usize);
-    match file.take(most + 1).read_to_end(&mut bytes)? as u64 {
+    match loading.watched(file.take(most + 1)).read_to_end(&mut bytes)? as u64 {
         read if read > most => Err(too_large()),
         _ => Ok(bytes),
     }
@@ -110,18 +113,15 @@ impl Reach {
         Self(above.map_or(folder.clone(), Path::to_owned))
     }
 
-    /// Whether a file may be named; what may not is kept for [`take_refused`].
+    /// Whether a file may be named; what may not is kept by the loading that asks.
     ///
     /// # Errors
     /// That it lies outside, with the remedy.
-    pub fn check(&self, path: &Path) -> io::Result<()> {
+    pub fn check(&self, path: &Path, loading: &Loading) -> io::Result<()> {
         if self.has(path) {
             return Ok(());
         }
-        let mut permits = permits();
-        if !permits.refused.iter().any(|refused| refused == path) {
-            permits.refused.push(path.to_owned());
-        }
+        loading.refuse(path);
         let why = format!(
             "it lies outside of {}, and was not allowed (--allow-outside, or the window's question)",
             self.0.display()
@@ -199,10 +199,15 @@ mod tests {
         }
         let named = place.path().join("x.png");
         std::fs::write(&named, b"x").expect("written");
-        assert!(reach.check(&own.join("../../x.png")).is_err());
-        assert!(take_refused().contains(&own.join("../../x.png")));
+        // Two loads side by side: each hears of what it was refused.
+        let (loading, other) = (Loading::default(), Loading::default());
+        assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
+        assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
+        assert_eq!(other.take_refused(), [PathBuf::new(); 0]);
+        assert_eq!(loading.take_refused(), [own.join("../../x.png")]);
+        assert_eq!(loading.take_refused(), [PathBuf::new(); 0]);
         allow(std::slice::from_ref(&named));
-        assert!(reach.check(&own.join("../../x.png")).is_ok());
+        assert!(reach.check(&own.join("../../x.png"), &loading).is_ok());
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink("/etc/passwd", own.join("link")).expect("a link");

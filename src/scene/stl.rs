@@ -5,12 +5,13 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
+use super::loading::Loading;
 use super::mesh::Mesh;
 use super::model::{Model, ModelError, Slot};
 use super::report::{Fate, ImportReport};
 
 /// Loads the contents of an STL file. Its Z is upwards, as in most programs that write them: it is turned to our +Y.
-pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
+pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
     let invalid = |error: std::io::Error| ModelError::Invalid {
         path: path.to_owned(),
         reason: error.to_string(),
@@ -19,6 +20,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
     let mut report = ImportReport::default();
     let mut read: Vec<stl_io::Triangle> = Vec::new();
     for triangle in stl_io::create_stl_reader(&mut source).map_err(invalid)? {
+        loading.check()?;
         match triangle {
             Ok(triangle) => read.push(triangle),
             // What stands before the damage is shown.
@@ -33,6 +35,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
             }
         }
     }
+    loading.step("tangents")?;
     let corners = read.iter().flat_map(|triangle| triangle.vertices);
     let place = |vertex: stl_io::Vertex| {
         let [x, y, z] = vertex.0.map(f64::from);
@@ -49,7 +52,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
         triangles: (0..read.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     };
-    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
+    mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false, loading);
     report.note(Fate::Used, "meshes", "");
     Ok(Model {
         mesh,

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json, json};
 
-use super::file::{self, FileError, Loaded};
+use super::file::{self, FileError, Loaded, SIZE_MAX};
 use super::replace::save_atomically;
 use super::{own, preset};
-use crate::document::Document;
+use crate::document::{Document, MaterialSettings};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::{OwnTexture, TextureTarget};
@@ -19,6 +19,10 @@ use crate::scene::texture::{OwnTexture, TextureTarget};
 pub const VERSION: u64 = 1;
 /// Slots before which older files may put a picture: each makes the materials before it.
 const SLOTS_MAX: usize = 1 << 12;
+/// Most materials of a file that is read: each takes kilobytes, of which the file may say none.
+const MATERIALS_MAX: usize = 1 << 16;
+/// The least bytes that a material takes in a file that is written.
+const MATERIAL_BYTES: u64 = 1 << 10;
 /// The key of the version, by which such a file is known.
 pub const MARK: &str = "glossmith-document";
 
@@ -69,9 +73,19 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
         path: path.to_owned(),
         reason,
     };
+    let count = object.get("materials").and_then(Json::as_array).map_or(0, Vec::len);
+    if count > MATERIALS_MAX {
+        return Err(content(format!(
+            "{count} materials, and at most {MATERIALS_MAX} are read; take out what no model shows"
+        )));
+    }
     let mut document = document_from_json(&object).map_err(|reason| content(format!("{reason}; correct it there")))?;
     document.check().map_err(|error| content(error.to_string()))?;
-    document.extra = unknown_part(&object, &known_part(&document).map_err(content)?);
+    // Materials keep by themselves what they do not know: one stands for all.
+    let materials = std::mem::replace(&mut document.materials, vec![MaterialSettings::default()]);
+    let known = known_part(&document).map_err(content)?;
+    document.materials = materials;
+    document.extra = unknown_part(&object, &known);
     document.extra.shift_remove(MARK);
     document.extra.shift_remove(own::KEY);
     for (slot, file) in pictures {
@@ -131,13 +145,28 @@ pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> 
 /// The contents of a document's file at `path`, with the mark of the user's own where it names files elsewhere.
 ///
 /// # Errors
-/// As [`document_text`].
+/// As [`document_text`], and for a file that would be too large to be opened again.
 pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
+    let count = document.materials.len();
+    let too_large = || FileError::Content {
+        path: path.to_owned(),
+        reason: format!(
+            "{count} materials do not fit the {} MiB of a project; join those of the model that are alike",
+            SIZE_MAX >> 20
+        ),
+    };
+    if count as u64 > SIZE_MAX / MATERIAL_BYTES {
+        return Err(too_large());
+    }
     let mut object = document_object(path, document)?;
     if let Some(mark) = own::mark(path, &named(document)) {
         object.insert(own::KEY.to_owned(), mark.into());
     }
-    Ok(file::text(&object))
+    let text = file::text(&object);
+    if text.len() as u64 > SIZE_MAX {
+        return Err(too_large());
+    }
+    Ok(text)
 }
 
 /// The contents of a document's file at `path`, the same whoever saves it.

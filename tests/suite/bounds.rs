@@ -75,16 +75,32 @@ fn a_limit_of_the_process_is_seen() {
 fn names_that_are_no_unicode_are_written() {
     use std::os::unix::ffi::OsStrExt as _;
     let place = Workplace::new();
-    for (option, bytes) in [("--output", &b"a\xff.exr"[..]), ("--report", &b"r\xff.json"[..])] {
+    let render = "render --model sphere --engine cpu --size 8x8 --samples 1";
+    let frames = "turntable --model sphere --engine cpu --size 16x16 --samples 1 --frames 2";
+    for (command, option, bytes) in [
+        (render, "--output", &b"a\xff.exr"[..]),
+        (render, "--report", &b"r\xff.json"[..]),
+        (frames, "--video", &b"v\xff.gif"[..]),
+        (
+            "scatter --lobe ggx --count 9 --engine cpu",
+            "--output",
+            &b"s\xff.csv"[..],
+        ),
+        ("convert gold", "--without-exact", &b"c\xff.mtlx"[..]),
+    ] {
         let name = std::ffi::OsStr::from_bytes(bytes);
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
-            .args(format!("render --model sphere {}", QUICK.replace(" --output a.exr", "")).split_whitespace())
+            .args(command.split_whitespace())
             .arg(option)
             .arg(name)
             .current_dir(place.path(""))
             .output()
             .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        assert!(place.path("").join(name).is_file(), "{option}");
+        assert!(
+            output.status.success(),
+            "{command}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        assert!(place.path("").join(name).is_file(), "{command} {option}");
     }
 }

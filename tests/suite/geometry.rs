@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use glossmith::scene::mesh::{Mesh, plane_normal};
-use glossmith::scene::{Geometry, Hit, Model, ModelSource, RayFrame, Slot, intersect_triangle, load, shapes, teapot};
+use glossmith::scene::{
+    Geometry, Hit, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, load, shapes, teapot,
+};
 
 use super::support::Random;
 
@@ -104,7 +106,7 @@ fn generated_tangents_are_the_analytic_ones() {
     for source in BUILT_IN {
         let mesh = built_in(&source).mesh;
         let mut generated = mesh.clone();
-        generated.generate_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        generated.generate_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], &Loading::default());
         assert_eq!(
             generated.positions.len(),
             mesh.positions.len(),

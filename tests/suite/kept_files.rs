@@ -93,3 +93,50 @@ fn a_batch_makes_a_picture_anew_that_was_damaged() {
     );
     assert_eq!(std::fs::read(&file).unwrap(), whole);
 }
+
+/// Who reads the lines of a batch finds whole ones, and the old file until there is one.
+#[cfg(unix)]
+#[test]
+fn the_lines_of_a_batch_are_replaced_whole() {
+    use std::os::unix::fs::MetadataExt as _;
+    let place = Workplace::new();
+    let batch = "materials = [\"gold\", \"silver\"]\n[common]\nsize = \"16x16\"\nsamples = 1\n";
+    place.write("batch.toml", batch.as_bytes());
+    place.write("lines.json", b"old");
+    let old = std::fs::File::open(place.path("lines.json")).unwrap();
+    place.done("batch batch.toml --engine cpu --json lines.json");
+    assert_ne!(
+        old.metadata().unwrap().ino(),
+        place.path("lines.json").metadata().unwrap().ino()
+    );
+    assert_eq!(std::io::read_to_string(old).unwrap(), "old");
+    let lines = place.read("lines.json");
+    let status = |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap()["status"].clone();
+    assert_eq!(lines.lines().map(status).collect::<Vec<_>>(), ["rendered", "rendered"]);
+    // Devices are written into.
+    place.done("batch batch.toml --engine cpu --json /dev/null");
+    use std::os::unix::fs::FileTypeExt as _;
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+}
+
+/// A target that can't be written is told before the work, whichever command it is of: the model is not even read.
+#[test]
+fn every_target_is_asked_before_the_work() {
+    let place = Workplace::new();
+    std::fs::create_dir(place.path("folder.png")).unwrap();
+    std::fs::create_dir(place.path("folder.json")).unwrap();
+    place.write("m.obj", b"not a model");
+    for (target, arguments) in [
+        ("none/a.json", "convert m.obj none/a.json"),
+        ("none/r.json", "convert m.obj a.json --report none/r.json"),
+        ("none/r.json", "render m.obj --import-report none/r.json"),
+        ("none/t.gif", "turntable m.obj --video none/t.gif"),
+        ("none/s.csv", "scatter --lobe ggx --count 100000000 --output none/s.csv"),
+        ("folder.png", "scatter --lobe ggx --count 100000000 --output folder.png"),
+        ("folder.png", "lobe --plot polar --lobe ggx:0.3 --output folder.png"),
+        ("none/c.json", "check --output none/c.json"),
+        ("folder.json", "fit --target ggx:0.3 --output folder.json"),
+    ] {
+        place.refused(1, arguments, &[target]);
+    }
+}

@@ -109,8 +109,9 @@ impl App {
                     ..ReadOptions::default()
                 };
                 self.files.disk.open(move || {
+                    let loading = options.loading.clone();
                     let opened = exchange::open(&path, options);
-                    Done::Read(path, opened)
+                    Done::Read(path, opened, loading.take_refused())
                 });
             }
             Opening::Textures => {
@@ -135,7 +136,10 @@ impl App {
         let mut has_failed = false;
         for done in self.files.disk.take_done() {
             match done {
-                Done::Read(path, opened) => self.take_opened(ctx, path, opened),
+                Done::Read(path, opened, refused) => {
+                    self.ask_about(&path, refused);
+                    self.take_opened(ctx, path, opened);
+                }
                 Done::Prepared(ready) => self.take_prepared(ctx, *ready),
                 Done::Copied(copied) => self.take_copied(ctx, copied),
                 Done::SavedProject(path, document, saved) => {
@@ -205,8 +209,7 @@ impl App {
             Err(error) => {
                 self.say(Level::Error, error.to_string());
                 if let ExchangeError::File(FileError::Outside { path, files }) = error {
-                    self.unsaved.outside.ask(files);
-                    self.unsaved.outside.named_by = Some(path);
+                    self.ask_about(&path, files);
                 }
             }
         }

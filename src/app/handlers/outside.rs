@@ -1,13 +1,23 @@
 //! What the window does about files that others name outside of their surroundings.
 
+use std::path::{Path, PathBuf};
+
 use crate::app::App;
 use crate::scene::resource;
 
 impl App {
+    /// Asks about files that a file names, which is opened again once they are allowed.
+    pub(in crate::app) fn ask_about(&mut self, path: &Path, files: Vec<PathBuf>) {
+        if !files.is_empty() {
+            self.unsaved.outside.ask(files);
+            self.unsaved.outside.named_by = Some(path.to_owned());
+        }
+    }
+
     /// Asks once for all that was refused; what is allowed is remembered, and read.
     pub(in crate::app) fn show_outside(&mut self, ctx: &egui::Context) {
         let outside = &mut self.unsaved.outside;
-        outside.ask(resource::take_refused());
+        outside.ask(self.worker.loading().take_refused());
         if outside.files.is_empty() {
             outside.named_by = None;
             return;

@@ -15,8 +15,8 @@ use crate::store::file::Opened;
 
 /// What came of a job.
 pub(in crate::app) enum Done {
-    /// A file was read.
-    Read(PathBuf, Result<Opened, ExchangeError>),
+    /// A file was read; and the files that it names and may not.
+    Read(PathBuf, Result<Opened, ExchangeError>, Vec<PathBuf>),
     /// A file for another program is ready to be written.
     Prepared(Box<Result<Ready, String>>),
     /// A material as text for another program, and what to say about it.

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::assets::{Assets, Reloaded};
 use super::calibration;
-use super::compile::Compiler;
+use super::compile::{self, Compiler};
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision};
 use super::memory;
@@ -22,6 +22,7 @@ use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
+use crate::scene::texture::OwnPicture;
 
 /// Why a session refuses a document or fails.
 #[derive(Debug, thiserror::Error)]
@@ -279,6 +280,14 @@ impl Session {
     /// Models and environments, loaded and kept.
     pub fn assets(&self) -> &Assets {
         &self.assets
+    }
+
+    /// The pictures of the user's own that a document's materials look up, each with why it can't be had where that is so.
+    ///
+    /// # Errors
+    /// A model that can't be loaded.
+    pub fn own_pictures(&self, document: &Document) -> Result<Vec<OwnPicture>, SessionError> {
+        compile::own_pictures(document, &self.assets)
     }
 
     /// Forgets what was rendered, so that the next submission starts over even with the same document.

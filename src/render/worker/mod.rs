@@ -406,7 +406,12 @@ impl Worker {
 
     /// Calls off what is being loaded or made ready; what is rendered goes on.
     pub fn cancel_loading(&self) {
-        self.assets.loading().cancel();
+        self.loading().cancel();
+    }
+
+    /// What is being loaded for the window.
+    pub fn loading(&self) -> &Loading {
+        self.assets.loading()
     }
 
     fn order(&self, change: impl FnOnce(&mut Orders)) {

@@ -6,10 +6,13 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use gltf::json;
+use json::validation::Validate as _;
 use rayon::prelude::*;
+use serde::Deserialize as _;
 use serde_json::Value as Json;
 
 use super::compressed;
+use super::json::Plain;
 use crate::scene::files::Files;
 use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
@@ -63,7 +66,7 @@ pub(super) struct Document {
     pub files: Files,
     /// The JSON. Its indices may be out of range.
     pub root: json::Root,
-    /// The JSON once more, for what the crate does not know.
+    /// The JSON once more, for what the crate does not know; without `extras`.
     pub raw: Json,
     /// The contents of the buffers; empty where they are missing.
     pub buffers: Vec<Vec<u8>>,
@@ -77,7 +80,7 @@ impl Document {
     /// Reads a file with its buffers; its pictures are read when asked for.
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
-        let mut raw: Json = parse(path, text)?;
+        let Plain(mut raw) = parse(path, text)?;
         complete(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
@@ -191,21 +194,15 @@ impl Document {
             report.note(Fate::Ignored, what, "");
             return;
         }
-        if let Err(gltf::Error::Validation(errors)) = gltf::Document::from_json(self.root.clone()) {
-            let is_told = |(path, error): &&(json::Path, json::validation::Error)| {
-                // A texture may leave its picture to an extension.
-                let is_sourceless =
-                    path.to_string().ends_with("].source") && *error == json::validation::Error::Missing;
-                !is_sourceless && !is_harmless(&path.to_string())
-            };
-            for (path, error) in errors.iter().filter(is_told) {
-                report.note(
-                    Fate::Ignored,
-                    format!("a breach of the format's rules, {error}"),
-                    &path.to_string(),
-                );
+        let mut tell = |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
+            let path = path().to_string();
+            // A texture may leave its picture to an extension.
+            let is_sourceless = path.ends_with("].source") && error == json::validation::Error::Missing;
+            if !is_sourceless && !is_harmless(&path) {
+                report.note(Fate::Ignored, format!("a breach of the format's rules, {error}"), &path);
             }
-        }
+        };
+        self.root.validate(&self.root, json::Path::new, &mut tell);
     }
 
     fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {
@@ -294,13 +291,13 @@ impl Document {
 
 /// The JSON as the crate reads it, which asks for whole numbers without a point. Details that cannot be read are told.
 fn root(raw: &mut Json, report: &mut ImportReport) -> serde_json::Result<json::Root> {
-    let read = serde_json::from_value(raw.clone()).or_else(|_| {
+    let read = json::Root::deserialize(&*raw).or_else(|_| {
         without_points(raw);
-        serde_json::from_value(raw.clone())
+        json::Root::deserialize(&*raw)
     });
     read.or_else(|_: serde_json::Error| {
         without_broken_details(raw, report);
-        serde_json::from_value(raw.clone())
+        json::Root::deserialize(&*raw)
     })
 }
 

@@ -1,8 +1,10 @@
 //! The pictures of a file or beside it.
 
+use std::borrow::Cow;
+
 use super::container::Document;
 use crate::scene::model::ModelError;
-use crate::scene::picture::{Decoded, decode_bytes};
+use crate::scene::picture::Encoded;
 
 /// What to call a picture: its name, its file or its number.
 pub(super) fn name(document: &Document, index: usize) -> String {
@@ -16,28 +18,20 @@ pub(super) fn name(document: &Document, index: usize) -> String {
         .unwrap_or_else(|| format!("image {index}"))
 }
 
-/// Decodes a picture.
+/// A picture as the file has it.
 ///
 /// # Errors
 /// Why it cannot be had, in a few words.
-pub(super) fn decode(document: &Document, index: usize) -> Result<Decoded, String> {
+pub(super) fn encoded(document: &Document, index: usize) -> Result<Encoded<'_>, String> {
     let image = document.root.images.get(index).ok_or("it is out of bounds")?;
     let name = name(document, index);
-    let owned;
-    let view;
-    let bytes: &[u8] = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => {
-            owned = document.read_uri(&name, uri).map_err(|error| match error {
-                ModelError::Resource { reason, .. } => reason,
-                other => other.to_string(),
-            })?;
-            &owned
-        }
-        (None, Some(index)) => {
-            view = document.view(index.value()).map_err(|error| error.to_string())?;
-            &view
-        }
+    let bytes = match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => Cow::Owned(document.read_uri(&name, uri).map_err(|error| match error {
+            ModelError::Resource { reason, .. } => reason,
+            other => other.to_string(),
+        })?),
+        (None, Some(index)) => document.view(index.value()).map_err(|error| error.to_string())?,
         (None, None) => return Err("it has no data".to_owned()),
     };
-    decode_bytes(name, bytes)
+    Ok(Encoded { name, bytes })
 }

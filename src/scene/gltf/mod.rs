@@ -10,6 +10,7 @@ mod compressed;
 mod container;
 mod draco;
 mod image;
+mod json;
 mod material;
 mod material_extensions;
 mod nodes;
@@ -53,7 +54,7 @@ pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOpt
         return Err(nothing_to_show(&document, path, &contents.meshes, &report));
     }
     let (slots, textures) = materials.finish(&mut report);
-    document.files.loading.check()?;
+    document.files.import.loading.check()?;
     Ok(Model {
         mesh,
         slots,
@@ -92,6 +93,7 @@ fn assemble(
     for (place, node) in nodes.iter().enumerate() {
         document
             .files
+            .import
             .loading
             .step(format!("mesh {} of {}", place + 1, nodes.len()))?;
         let name = nodes::node_name(&document.root, node.node);

@@ -1,5 +1,7 @@
 //! The pose of a model: where its nodes are, how its morph targets are mixed, and what that makes of skinned meshes.
 
+use std::collections::HashMap;
+
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::json;
 use json::animation::{Interpolation, Property};
@@ -11,10 +13,10 @@ use super::container::Document;
 pub(super) struct Pose {
     /// Each node's own transform, its parent's space from its own.
     pub parent_from_node: Vec<DMat4>,
-    /// Where each node is, whether or not it is in the scene.
-    pub world_from_node: Vec<DMat4>,
-    /// Weights of morph targets of nodes; empty where the mesh has them.
-    weights: Vec<Vec<f32>>,
+    /// Where each node is, whether or not it is in the scene; empty where no skin asks.
+    world_from_node: Vec<DMat4>,
+    /// Weights of morph targets of nodes that an animation changes.
+    weights: HashMap<usize, Vec<f32>>,
 }
 
 /// Translation, rotation and scale of a node.
@@ -60,19 +62,23 @@ impl Pose {
     /// The nodes where the file puts them or, with a time, where its first animation has moved them then.
     pub(super) fn new(document: &Document, time_s: Option<f32>) -> Self {
         let nodes = &document.root.nodes;
-        let mut placements: Vec<Placement> = nodes.iter().map(Placement::of).collect();
-        let mut weights: Vec<Vec<f32>> = nodes
-            .iter()
-            .map(|node| node.weights.clone().unwrap_or_default())
-            .collect();
+        let mut moved: HashMap<usize, Placement> = HashMap::new();
+        let mut weights = HashMap::new();
         if let (Some(time_s), Some(animation)) = (time_s, document.root.animations.first()) {
             for channel in &animation.channels {
                 // A channel that cannot be read moves nothing.
-                let _ = animate(document, animation, channel, time_s, &mut placements, &mut weights);
+                let _ = animate(document, animation, channel, time_s, &mut moved, &mut weights);
             }
         }
-        let parent_from_node: Vec<DMat4> = placements.iter().map(Placement::parent_from_node).collect();
-        let world_from_node = world_transforms(nodes, &parent_from_node);
+        let place = |(index, node): (usize, &json::Node)| {
+            let moved = moved.get(&index).copied();
+            moved.unwrap_or_else(|| Placement::of(node)).parent_from_node()
+        };
+        let parent_from_node: Vec<DMat4> = nodes.iter().enumerate().map(place).collect();
+        let world_from_node = match document.root.skins.is_empty() {
+            true => Vec::new(),
+            false => world_transforms(nodes, &parent_from_node),
+        };
         Self {
             parent_from_node,
             world_from_node,
@@ -80,13 +86,15 @@ impl Pose {
         }
     }
 
-    /// The weights of a node's morph targets: its own, else its mesh's.
+    /// The weights of a node's morph targets: those of an animation, else its own, else its mesh's.
     pub(super) fn weights<'a>(&'a self, document: &'a Document, node: usize) -> &'a [f32] {
-        let own = self.weights.get(node).map_or(&[][..], Vec::as_slice);
-        if !own.is_empty() {
+        let animated = self.weights.get(&node);
+        let node = document.root.nodes.get(node);
+        let own = animated.or(node.and_then(|node| node.weights.as_ref()));
+        if let Some(own) = own.filter(|own| !own.is_empty()) {
             return own;
         }
-        let mesh = document.root.nodes.get(node).and_then(|node| node.mesh);
+        let mesh = node.and_then(|node| node.mesh);
         let mesh = mesh.and_then(|mesh| document.root.meshes.get(mesh.value()));
         mesh.and_then(|mesh| mesh.weights.as_deref()).unwrap_or_default()
     }
@@ -142,8 +150,8 @@ fn animate(
     animation: &json::Animation,
     channel: &json::animation::Channel,
     time_s: f32,
-    placements: &mut [Placement],
-    weights: &mut [Vec<f32>],
+    moved: &mut HashMap<usize, Placement>,
+    weights: &mut HashMap<usize, Vec<f32>>,
 ) -> Option<()> {
     let node = channel.target.node.value();
     let sampler = animation.samplers.get(channel.sampler.value())?;
@@ -157,7 +165,8 @@ fn animate(
         Checked::Invalid => Interpolation::Linear,
     };
     let output = sampler.output.value();
-    let placement = placements.get_mut(node)?;
+    let at_rest = Placement::of(document.root.nodes.get(node)?);
+    let placement = moved.entry(node).or_insert(at_rest);
     match path {
         Property::Translation | Property::Scale => {
             let values = document.read_vectors::<3>(output, "animation").ok()?;
@@ -193,7 +202,7 @@ fn animate(
                     .collect();
                 sample(&times, &values, interpolation, time_s, false).map(|value| value.x as f32)
             };
-            *weights.get_mut(node)? = (0..targets).map(of_target).collect::<Option<_>>()?;
+            weights.insert(node, (0..targets).map(of_target).collect::<Option<_>>()?);
         }
     }
     Some(())

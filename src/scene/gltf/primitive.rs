@@ -38,7 +38,11 @@ pub(super) fn read_mesh(
         return whole;
     };
     let name = mesh_name(source, index);
+    let loading = &document.files.import.loading;
     for (part, primitive) in source.primitives.iter().enumerate() {
+        if loading.check().is_err() {
+            break;
+        }
         let raw = &document.raw["meshes"][index]["primitives"][part];
         match read_primitive(document, primitive, raw, &name, bending, materials, report) {
             Ok(mesh) if !mesh.triangles.is_empty() => whole.append(mesh),
@@ -180,7 +184,8 @@ impl Reader<'_> {
             );
         }
         if !has_tangents {
-            mesh.make_tangents(uv_use.normal_texture_from_uv, uv_use.has_normal_texture);
+            let loading = &self.document.files.import.loading;
+            mesh.make_tangents(uv_use.normal_texture_from_uv, uv_use.has_normal_texture, loading);
         }
         Ok(mesh)
     }

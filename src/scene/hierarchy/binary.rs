@@ -13,6 +13,14 @@ use crate::scene::loading::{Cancelled, Loading};
 
 /// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
 const MANY: usize = 200_000;
+/// Cells an axis of the grid whose cells are clusters: so many that only duplicates meet, or so few that the builder's time,
+/// which is quadratic where all boxes overlap, does not matter.
+const FINE: u32 = 1 << 21;
+const COARSE: u32 = 1 << 4;
+/// Fewer triangles than this are built in no time whatever they are.
+const SLIVERS_FROM: usize = 1 << 12;
+/// The share of the bounds' area that a box of slivers has at least, in the mean.
+const SLIVERS_SHARE: f64 = 1.0 / 16.0;
 
 /// The tree over triangles, and the order of its leaves. More triangles than `part_max` are halved along the longest side
 /// of their bounds until they are parts, of which each is built by itself: building takes several hundred bytes a triangle.
@@ -55,7 +63,7 @@ impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
         let box_of = &self.box_of;
         if triangles.len() <= self.part_max {
             let boxes: Vec<Aabb> = triangles.par_iter().map(|&triangle| box_of(triangle)).collect();
-            let (part, order) = Tree::of(&build(&boxes));
+            let (part, order) = Tree::of(&build(&boxes, self.loading)?);
             let sorted: Vec<u32> = order.into_iter().map(|place| triangles[place as usize]).collect();
             triangles.copy_from_slice(&sorted);
             self.tree.left_leaves.extend(part.left_leaves);
@@ -91,16 +99,28 @@ fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + 
 /// The hierarchy over the boxes of triangles, in units of the bounding radius, with one triangle a leaf.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
-fn build(boxes: &[Aabb]) -> Bvh2 {
-    let clusters = Clusters::new(boxes);
+fn build(boxes: &[Aabb], loading: &Loading) -> Result<Bvh2, Cancelled> {
+    let clusters = Clusters::new(boxes, if are_slivers(boxes) { COARSE } else { FINE });
+    loading.check()?;
     let mut binary = clusters.build_binary(boxes);
     let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
-    ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
+    // Rounds that take ever fewer nodes, from the top.
+    for part in (1..32).step_by(2).map(|round| 1.0 / round as f32) {
+        loading.check()?;
+        ReinsertionOptimizer::default().run(&mut binary, reinsertion, Some(vec![part]));
+    }
     clusters.expand(&mut binary, boxes);
-    binary
+    Ok(binary)
 }
 
-/// Triangles whose centres are in the same cell of a very fine grid, such as duplicates.
+/// Whether boxes mostly lie over each other, as those of a polygon's triangles that all begin at one corner.
+fn are_slivers(boxes: &[Aabb]) -> bool {
+    let whole = boxes.iter().fold(Aabb::INVALID, |all, aabb| all.union(aabb));
+    let areas: f64 = boxes.iter().map(|aabb| f64::from(aabb.half_area())).sum();
+    boxes.len() > SLIVERS_FROM && areas > SLIVERS_SHARE * boxes.len() as f64 * f64::from(whole.half_area())
+}
+
+/// Triangles whose centres are in the same cell of a grid: of a very fine one, such as duplicates.
 ///
 /// The builder pairs nearest neighbours and makes hardly any pairs where all are equally near: thousands of equal boxes
 /// would take it quadratic time. It sees each cluster as one box; below that come balanced trees.
@@ -112,9 +132,9 @@ struct Clusters {
 }
 
 impl Clusters {
-    fn new(boxes: &[Aabb]) -> Self {
+    fn new(boxes: &[Aabb], cells_per_axis: u32) -> Self {
         let cell_of = |aabb: &Aabb| {
-            let cells_per_axis = (1 << 21) as f32;
+            let cells_per_axis = cells_per_axis as f32;
             // From [−1, 1]; the ground's centres are beyond and meet in the outermost cells.
             let place = ((aabb.min + aabb.max) * 0.25 + 0.5) * cells_per_axis;
             let [x, y, z] = place

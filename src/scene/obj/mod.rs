@@ -16,11 +16,12 @@ use tobj::{LoadError, LoadOptions, Material};
 
 use crate::panics::contained;
 use crate::scene::files::Files;
+use crate::scene::loading::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::model::{
     AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap,
 };
-use crate::scene::picture::decode_bytes;
+use crate::scene::picture::Encoded;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::scale::scaled_to;
 
@@ -36,7 +37,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     // Some malformed faces make the crate panic.
     let loaded = contained(|| {
         tobj::load_obj_buf(
-            &mut BufReader::new(&*lines::of_model(bytes)),
+            &mut BufReader::new(files.import.loading.watched(&*lines::of_model(bytes))),
             &load_options,
             |library| read_library(files, library, &report),
         )
@@ -45,6 +46,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
         path: path.to_owned(),
         reason,
     };
+    files.import.loading.check()?;
     let (parts, materials) = loaded
         .ok_or_else(|| invalid("its faces contradict each other".to_owned()))?
         .map_err(|error: LoadError| invalid(error.to_string()))?;
@@ -54,9 +56,13 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     let mut mesh = Mesh::default();
     let mut objects: Vec<ModelObject> = Vec::new();
     for (place, part) in parts.iter().enumerate() {
-        files.loading.step(format!("mesh {} of {}", place + 1, parts.len()))?;
+        files
+            .import
+            .loading
+            .step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
-        let read = read_part(&part.mesh, slot, slots.slots[slot as usize].normal_texture);
+        let normal_texture = slots.slots[slot as usize].normal_texture;
+        let read = read_part(&part.mesh, slot, normal_texture, &files.import.loading);
         if !read.colors.is_empty() {
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
@@ -105,7 +111,7 @@ fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -
 }
 
 /// The triangles of one part.
-fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>) -> Mesh {
+fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>, loading: &Loading) -> Mesh {
     let positions = source.positions.as_chunks::<3>().0;
     let count = positions.len();
     let normals = source.normals.as_chunks::<3>().0;
@@ -146,7 +152,7 @@ fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>)
         mesh.repair_normals();
     }
     let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
-    mesh.make_tangents(texture_from_uv, normal_texture.is_some());
+    mesh.make_tangents(texture_from_uv, normal_texture.is_some(), loading);
     mesh
 }
 
@@ -311,23 +317,35 @@ impl<'a> Slots<'a> {
 
     /// Adds the picture in a file to those of the model; its number.
     fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
+        let budget = &self.files.import.budget;
         let decoded = self
             .files
             .read(name)
             .map_err(|error| error.to_string())
-            .and_then(|bytes| decode_bytes(name.to_owned(), &bytes));
-        let decoded = match decoded {
-            Ok(decoded) => decoded,
+            .and_then(|bytes| {
+                Encoded {
+                    name: name.to_owned(),
+                    bytes: bytes.into(),
+                }
+                .decode(budget)
+            });
+        let scaled = decoded.and_then(|decoded| {
+            let note = decoded.note.filter(|_| is_color);
+            let (texture, scaled_from) = scaled_to(decoded.texture(is_color), self.side_max, is_color);
+            budget.take(texture.bytes() as u64).map_err(|over| over.to_string())?;
+            Ok((texture, scaled_from, note))
+        });
+        let (texture, scaled_from, note) = match scaled {
+            Ok(scaled) => scaled,
             Err(reason) => {
                 report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name);
                 return None;
             }
         };
         report.note(Fate::Used, "textures", name);
-        if let Some(note) = decoded.note.filter(|_| is_color) {
+        if let Some(note) = note {
             report.note(Fate::Approximated, note, name);
         }
-        let (texture, scaled_from) = scaled_to(decoded.texture(is_color), self.side_max, is_color);
         if let Some([width, height]) = scaled_from {
             let what = format!(
                 "a picture of {width} × {height}, used at {} × {}",

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
+use crate::scene::budget::Budget;
 use crate::scene::model::Texture;
 use crate::scene::picture::read_texture;
 
@@ -39,7 +40,7 @@ pub fn texture_mean(picture: &Texture) -> TextureMean {
 /// # Errors
 /// What is wrong with the file.
 pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
-    Ok(texture_mean(&read_texture(path, true, u32::MAX)?))
+    Ok(texture_mean(&read_texture(path, true, u32::MAX, &Budget::default())?))
 }
 
 /// The mean of a picture of sRGB codes, linear.

@@ -1,5 +1,7 @@
 //! Pictures made smaller.
 
+use std::ops::Range;
+
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::Texture;
@@ -24,6 +26,11 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     let mut rgba16 = Vec::new();
     for y in 0..height {
         for x in 0..width {
+            if let Some(one) = same(picture, span(y, picture.height, height), span(x, picture.width, width)) {
+                rgba8.extend_from_slice(&picture.rgba8[4 * one..4 * one + 4]);
+                rgba16.extend_from_slice(picture.rgba16.get(4 * one..4 * one + 4).unwrap_or_default());
+                continue;
+            }
             let (mut color, mut alpha, mut count) = (Vec3::zero(), 0.0, 0.0);
             for row in span(y, picture.height, height) {
                 for column in span(x, picture.width, width) {
@@ -52,6 +59,17 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     }
 }
 
+/// The first of some texels, where all are the same: of large pictures of little contents nearly all are.
+fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<usize> {
+    let place = |row: u32, column: u32| (row * picture.width + column) as usize;
+    let texels8 = picture.rgba8.as_chunks::<4>().0;
+    let texels16 = picture.rgba16.as_chunks::<4>().0;
+    let first = place(rows.start, columns.start);
+    let is_same = |other: usize| texels8[other] == texels8[first] && texels16.get(other) == texels16.get(first);
+    let all = rows.all(|row| columns.clone().all(|column| is_same(place(row, column))));
+    all.then_some(first)
+}
+
 /// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
 pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
     let whole = [picture.width, picture.height];
@@ -61,4 +79,31 @@ pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: boo
     }
     let is_scaled = [scaled.width, scaled.height] != whole;
     (scaled, is_scaled.then_some(whole))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texels that are all the same need no arithmetic, and must be what it gives.
+    #[test]
+    fn the_mean_of_equal_texels_is_any_of_them() {
+        for code in 0..=255 {
+            let texel = [code, 255 - code, code / 3, code];
+            let of = |last: [u8; 4]| Texture {
+                name: String::new(),
+                width: 3,
+                height: 2,
+                rgba8: [[texel; 5].concat(), last.to_vec()].concat(),
+                rgba16: Vec::new(),
+            };
+            for is_color in [false, true] {
+                assert_eq!(halved(&of(texel), is_color).rgba8, texel);
+                // With one that differs in opacity alone, colours are computed.
+                let [r, g, b, a] = texel;
+                let other = halved(&of([r, g, b, a.wrapping_add(1)]), is_color).rgba8;
+                assert_eq!(other[..3], texel[..3], "{is_color}");
+            }
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! A scene for Mitsuba 3: a ball with the material in even light, its material to be taken from there.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use super::surface::{Law, Surface, Takes};
@@ -72,7 +73,7 @@ impl Format for Mitsuba {
         let kind = Kind::of(material);
         let (surface, mut report) = shown(material, &kind.takes());
         report.entries.splice(0..0, surface.rotation_loss());
-        let name = identifier(&material.name, &mut Vec::new());
+        let name = identifier(&material.name, &mut HashMap::new());
         let mut bsdf = match kind {
             Kind::Diffuse => bsdf("diffuse").child(rgb("reflectance", surface.base_color)),
             Kind::Conductor => conductor(material, &surface),

@@ -26,8 +26,8 @@ use super::file::{self, FileError, Loaded, Opened};
 use super::preset;
 use super::replace::save_atomically;
 use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::scene::ModelError;
 use crate::scene::endings::ending;
+use crate::scene::{Loading, ModelError};
 
 pub use self::snippet::Language;
 
@@ -136,8 +136,10 @@ pub static FORMATS: &[Registered] = registered! {
 };
 
 /// How files are read.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct ReadOptions {
+    /// Who hears which files were refused that the file names.
+    pub loading: Loading,
     /// The lobe of materials that know only GGX.
     pub lobe: ImportLobe,
     /// Take what the file shows, though it also has the exact parameters.

@@ -1,5 +1,6 @@
 //! USD as text: each material with a UsdPreviewSurface for whatever reads USD, and MaterialX's OpenPBR for what reads that.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -14,7 +15,7 @@ pub struct Usd;
 
 impl Format for Usd {
     fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
-        let (mut taken, mut reports) = (Vec::new(), Vec::new());
+        let (mut taken, mut reports) = (HashMap::new(), Vec::new());
         let mut text =
             "#usda 1.0\n(\n    defaultPrim = \"Materials\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
                         def Scope \"Materials\"\n{\n"

@@ -1,5 +1,6 @@
 //! Documents of elements with attributes, read and written.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use roxmltree::Document;
@@ -102,20 +103,22 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A name of letters, digits and underscores that begins with a letter and is not among `taken`, to which it is added.
-pub(super) fn identifier(name: &str, taken: &mut Vec<String>) -> String {
+/// A name of letters, digits and underscores that begins with a letter and is not among `taken`, to which it is added. There each name
+/// has the number that is tried next for one like it.
+pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let mut base: String = name.trim().chars().map(plain).collect();
     if !base.starts_with(|c: char| c.is_ascii_alphabetic()) {
         base.insert_str(0, "material_");
     }
     let mut name = base.clone();
-    let mut number = 2;
-    while taken.contains(&name) {
+    let mut number = taken.get(&base).copied().unwrap_or(2);
+    while taken.contains_key(&name) {
         name = format!("{base}_{number}");
         number += 1;
     }
-    taken.push(name.clone());
+    taken.insert(base, number);
+    taken.entry(name.clone()).or_insert(2);
     name
 }
 
@@ -123,4 +126,19 @@ pub(super) fn identifier(name: &str, taken: &mut Vec<String>) -> String {
 pub(super) fn numbers(values: &[f32]) -> String {
     let texts: Vec<String> = values.iter().map(f32::to_string).collect();
     texts.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identifiers_are_each_there_once_and_soon() {
+        let mut taken = HashMap::new();
+        let names = ["a b", "a_b", "a_b_2", "a b", "7"].map(|name| identifier(name, &mut taken));
+        assert_eq!(names, ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "material_7"]);
+        // Compared with each other these would take minutes.
+        let last = (0..100_000).map(|_| identifier("same", &mut taken)).last();
+        assert_eq!(last.as_deref(), Some("same_100000"));
+    }
 }

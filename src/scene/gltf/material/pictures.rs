@@ -1,7 +1,6 @@
 //! The pictures that slots look up: which are in use, how they are placed, what becomes of those that cannot be had.
 
 use std::collections::HashMap;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use gltf::json;
 use json::extensions::texture::TextureTransform;
@@ -10,8 +9,10 @@ use json::validation::Checked;
 use rayon::prelude::*;
 
 use super::{Materials, Reference};
+use crate::scene::files::Import;
 use crate::scene::gltf::image;
 use crate::scene::model::{Filter, Slot, Texture, TextureRef, Wrap};
+use crate::scene::picture::Encoded;
 use crate::scene::report::Fate;
 use crate::scene::texture::scale::scaled_to;
 
@@ -27,40 +28,55 @@ pub(super) enum PictureKey {
 }
 
 impl Materials<'_> {
-    /// Decodes pictures on all cores, none larger than wished. Those that cannot be had are told.
+    /// Decodes pictures, none larger than wished, within what the import may take. Those that cannot be had are told.
     pub(super) fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
-        let is_color = |image: usize| {
-            let is_used_as_color = |slot: &Slot| {
-                let colors = [slot.base_color_texture, slot.emissive_texture];
-                colors
-                    .into_iter()
-                    .flatten()
-                    .any(|r| self.pictures[r.texture] == PictureKey::Image(image))
-            };
-            self.slots.iter().any(|(slot, _)| is_used_as_color(slot))
-        };
-        let side_max = self.texture_side_max;
-        let (begun, count) = (AtomicUsize::new(0), images.len());
-        let loading = &self.document.files.loading;
-        let results: Vec<_> = images
-            .into_par_iter()
-            .map(|image| {
-                let number = begun.fetch_add(1, Relaxed) + 1;
-                let wanted = loading.step(format!("picture {number} of {count}"));
-                let texture = wanted
-                    .map_err(|cancelled| cancelled.to_string())
-                    .and_then(|()| image::decode(self.document, image));
-                let is_color = is_color(image);
-                let scaled = texture.map(|texture| {
-                    let note = texture.note.filter(|_| is_color);
-                    (scaled_to(texture.texture(is_color), side_max, is_color), note)
-                });
-                (image, scaled)
-            })
-            .collect();
+        let (document, count) = (self.document, images.len());
+        let Import { budget, loading, .. } = &document.files.import;
         let mut decoded = HashMap::new();
+        let mut beside: Vec<(usize, Encoded<'_>)> = Vec::new();
+        let mut cost = 0;
+        for (place, image) in images.into_iter().enumerate() {
+            if loading.step(format!("picture {} of {count}", place + 1)).is_err() {
+                break;
+            }
+            match image::encoded(document, image) {
+                Ok(encoded) => {
+                    let of_this = encoded.cost();
+                    if cost + of_this > budget.left() {
+                        self.decode_beside(std::mem::take(&mut beside), &mut decoded);
+                        cost = 0;
+                    }
+                    cost += of_this;
+                    beside.push((image, encoded));
+                }
+                Err(reason) => self.miss(image, &reason),
+            }
+        }
+        self.decode_beside(beside, &mut decoded);
+        decoded
+    }
+
+    /// Decodes pictures side by side, on all cores, for which there is room together.
+    fn decode_beside(&mut self, pictures: Vec<(usize, Encoded<'_>)>, decoded: &mut HashMap<usize, Texture>) {
+        let Import { budget, loading, .. } = &self.document.files.import;
+        let side_max = self.texture_side_max;
+        let decode = |(image, encoded): (usize, Encoded<'_>)| {
+            let is_color = self.is_color(image);
+            let wanted = loading.check().map_err(|cancelled| cancelled.to_string());
+            let picture = wanted.and_then(|()| encoded.decode(budget));
+            let scaled = picture.map(|picture| {
+                let note = picture.note.filter(|_| is_color);
+                (scaled_to(picture.texture(is_color), side_max, is_color), note)
+            });
+            (image, scaled)
+        };
+        let results: Vec<_> = pictures.into_par_iter().map(decode).collect();
         for (image, result) in results {
-            match result {
+            let kept = result.and_then(|scaled| {
+                let bytes = scaled.0.0.bytes() as u64;
+                budget.take(bytes).map_err(|over| over.to_string()).map(|()| scaled)
+            });
+            match kept {
                 Ok(((texture, scaled_from), note)) => {
                     self.report.note(Fate::Used, "textures", &texture.name);
                     if let Some(note) = note {
@@ -75,14 +91,24 @@ impl Materials<'_> {
                     }
                     decoded.insert(image, texture);
                 }
-                Err(reason) => {
-                    let name = image::name(self.document, image);
-                    self.report
-                        .note(Fate::Missing, format!("a texture, grey instead ({reason})"), &name);
-                }
+                Err(reason) => self.miss(image, &reason),
             }
         }
-        decoded
+    }
+
+    /// Whether a slot looks an image up for colours.
+    fn is_color(&self, image: usize) -> bool {
+        let is_it = |place: &TextureRef| self.pictures[place.texture] == PictureKey::Image(image);
+        let colors = |slot: &Slot| [slot.base_color_texture, slot.emissive_texture];
+        let mut slots = self.slots.iter();
+        slots.any(|(slot, _)| colors(slot).iter().flatten().any(is_it))
+    }
+
+    /// Tells of an image that can't be had.
+    fn miss(&mut self, image: usize, reason: &str) {
+        let what = format!("a texture, grey instead ({reason})");
+        self.report
+            .note(Fate::Missing, what, &image::name(self.document, image));
     }
 
     /// The image of a texture.

@@ -116,9 +116,9 @@ impl Format for Gltf {
         let model = load(&source)?;
         let mut materials = materials_of(&model, options.lobe);
         let mut losses: Vec<Vec<Entry>> = materials.iter().map(|_| losses_of(&model, options.lobe)).collect();
-        let raw = document_json(path);
+        let written = materials_in(path);
         for ((slot, material), losses) in model.slots.iter().zip(&mut materials).zip(&mut losses) {
-            let of_file = slot.file_material.map(|index| &raw["materials"][index]);
+            let of_file = slot.file_material.and_then(|index| written.get(index));
             let exact = of_file.and_then(|raw| carried::from_json(raw["extras"][carried::MARK].clone()));
             let (Some(exact), Some(of_file), false) = (exact, of_file, options.is_plain) else {
                 continue;
@@ -184,11 +184,14 @@ fn losses_of(model: &Model, lobe: ImportLobe) -> Vec<Entry> {
     import_report(model, lobe).entries.iter().filter_map(entry).collect()
 }
 
-/// The JSON of a file; null if it can't be read.
-fn document_json(path: &Path) -> Json {
-    let Ok(bytes) = resource::read(path, u64::MAX - 1) else {
-        return Json::Null;
-    };
+/// The JSON of a file's materials, of which nothing else is kept; none if it can't be read.
+fn materials_in(path: &Path) -> Vec<Json> {
+    #[derive(Default, serde::Deserialize)]
+    struct Written {
+        #[serde(default)]
+        materials: Vec<Json>,
+    }
+    let bytes = resource::read(path, u64::MAX - 1).unwrap_or_default();
     let json = match bytes.strip_prefix(b"glTF") {
         Some(rest) => {
             let length = rest
@@ -197,9 +200,9 @@ fn document_json(path: &Path) -> Json {
                 .map_or(0, u32::from_le_bytes);
             rest.get(16..16 + length as usize).unwrap_or_default()
         }
-        None => &bytes[..],
+        None => bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes),
     };
-    serde_json::from_slice(json).unwrap_or_default()
+    serde_json::from_slice::<Written>(json).unwrap_or_default().materials
 }
 
 /// Whether a material of a file has the numbers of another, but for the digits that other programs write; textures and

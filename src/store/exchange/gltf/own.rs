@@ -3,6 +3,7 @@
 use crate::document::MaterialSettings;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
+use crate::scene::Budget;
 use crate::scene::picture::read_texture;
 use crate::scene::texture::{OwnTexture, TextureProjection, TextureTarget, slots_with_coordinates};
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
@@ -105,7 +106,7 @@ fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &OwnTextu
     if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
         return Err("the format does not turn normals with their picture".to_owned());
     }
-    let read = read_texture(&texture.file, target.is_color(), u32::MAX)?;
+    let read = read_texture(&texture.file, target.is_color(), u32::MAX, &Budget::default())?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
     let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
     Ok(Texture {

@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use roxmltree::Document;
 
 use super::graph::{shaders, worth};
+use crate::scene::Loading;
 
 /// The program of MaterialX, and the folder that it lies in where [`TOOLS_VARIABLE`] does not say another.
 const PROGRAM: &str = "baketextures";
@@ -105,7 +106,10 @@ fn bake(path: &Path) -> Result<Values, String> {
     for (shader, material) in shaders(document.root_element()) {
         let name = material.unwrap_or(shader).attribute("name").unwrap_or_default();
         for input in shader.children().filter(|node| node.has_tag_name("input")) {
-            if let (Some(key), Ok(Some(found))) = (input.attribute("name"), worth(input, folder.path())) {
+            if let (Some(key), Ok(Some(found))) = (
+                input.attribute("name"),
+                worth(input, folder.path(), &Loading::default()),
+            ) {
                 values.insert((name.to_owned(), key.to_owned()), found.color());
             }
         }

@@ -1,16 +1,20 @@
 //! What inputs of a MaterialX document are worth: constants, pictures by their mean, and what the usual nodes compute of these.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use roxmltree::Node;
 
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
+use crate::scene::Loading;
 use crate::scene::resource::Reach;
 use crate::scene::texture::mean_of_file;
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
+/// Most inputs that are followed for one value: nodes that each use the one before twice would be as many as 2 to their number.
+const STEPS_MAX: usize = 1 << 16;
 /// Weights of red, green and blue in a luminance where a node gives none: MaterialX's, of ACEScg.
 const LUMINANCE: [f32; 3] = [0.2722287, 0.6740818, 0.0536895];
 
@@ -123,19 +127,27 @@ fn of_interface<'a>(place: Node<'a, 'a>) -> Option<Node<'a, 'a>> {
 ///
 /// # Errors
 /// Why that cannot be told.
-pub(super) fn worth(input: Node<'_, '_>, folder: &Path) -> Result<Option<Worth>, Unknown> {
-    Graph { folder }.input(input, 0)
+pub(super) fn worth(input: Node<'_, '_>, folder: &Path, loading: &Loading) -> Result<Option<Worth>, Unknown> {
+    let steps = Cell::new(0);
+    Graph { folder, loading, steps }.input(input, 0)
 }
 
 /// A document's nodes, followed.
 struct Graph<'p> {
     folder: &'p Path,
+    /// Who hears which pictures were refused.
+    loading: &'p Loading,
+    /// How many inputs were followed.
+    steps: Cell<usize>,
 }
 
 impl Graph<'_> {
     fn input(&self, input: Node<'_, '_>, depth: usize) -> Result<Option<Worth>, Unknown> {
-        if depth > DEPTH_MAX {
-            return Err(Unknown::missing("a graph that goes in a circle, or is too deep"));
+        self.steps.update(|steps| steps + 1);
+        if depth > DEPTH_MAX || self.steps.get() > STEPS_MAX {
+            return Err(Unknown::Missing(format!(
+                "a graph deeper than {DEPTH_MAX} nodes or of more than {STEPS_MAX} steps, if it does not go in a circle"
+            )));
         }
         if let Some(value) = input.attribute("value") {
             return Ok(value_of(input, value).map(Worth::of));
@@ -205,7 +217,7 @@ impl Graph<'_> {
         let prefix: String = prefixes.into_iter().rev().collect();
         let file = PathBuf::from(format!("{prefix}{name}"));
         let path = self.folder.join(&file);
-        let reached = Reach::of_folder(self.folder).check(&path);
+        let reached = Reach::of_folder(self.folder).check(&path, self.loading);
         let mean = reached
             .map_err(|error| error.to_string())
             .and_then(|()| mean_of_file(&path));
@@ -391,7 +403,7 @@ mod tests {
         let text = format!("<materialx>{elements}</materialx>");
         let document = Document::parse(&text).expect("well-formed");
         let last = document.root_element().last_element_child().expect("an element");
-        worth(child(last, "x").expect("an input"), folder)
+        worth(child(last, "x").expect("an input"), folder, &Loading::default())
     }
 
     fn constant(elements: &str) -> [f32; 4] {

@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::Node;
 
+use crate::scene::Loading;
 use crate::scene::resource::Reach;
 use crate::store::exchange::xml::{self, escaped};
 
@@ -17,12 +18,12 @@ const COLORSPACE: &str = "colorspace";
 ///
 /// # Errors
 /// Which of them can't be read, and why.
-pub(super) fn whole_text(path: &Path, text: String) -> Result<String, String> {
+pub(super) fn whole_text(path: &Path, text: String, loading: &Loading) -> Result<String, String> {
     let mut files = vec![path.to_owned()];
-    expanded(path, text, &mut files)
+    expanded(path, text, &mut files, loading)
 }
 
-fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>) -> Result<String, String> {
+fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>, loading: &Loading) -> Result<String, String> {
     let document = xml::parse(&text)?;
     let includes = document.descendants().filter(is_include);
     let places: Vec<_> = includes
@@ -32,7 +33,7 @@ fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>) -> Result<Strin
     let mut done = 0;
     for (place, name) in places {
         whole += &text[done..place.start];
-        whole += &included(path, &name, files)?;
+        whole += &included(path, &name, files, loading)?;
         done = place.end;
     }
     whole += &text[done..];
@@ -44,7 +45,7 @@ fn is_include(node: &Node<'_, '_>) -> bool {
 }
 
 /// The elements of a document beside another one.
-fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>) -> Result<String, String> {
+fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>, loading: &Loading) -> Result<String, String> {
     let wrong = |reason: String| format!("it includes {name}: {reason}");
     let relative = Path::new(name);
     let is_beside = relative
@@ -64,10 +65,10 @@ fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>) -> Result<String,
         return Err(wrong(format!("there are more than {FILES_MAX} files")));
     }
     let reach = Reach::of_folder(files[0].parent().unwrap_or(Path::new("")));
-    reach.check(&file).map_err(|error| wrong(error.to_string()))?;
+    reach.check(&file, loading).map_err(|error| wrong(error.to_string()))?;
     files.push(file.clone());
     let bytes = crate::store::file::read(&file).map_err(|error| error.to_string())?;
-    let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files).map_err(wrong)?;
+    let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files, loading).map_err(wrong)?;
     let document = xml::parse(&text).map_err(wrong)?;
     let folder = relative.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.map_or_else(String::new, |folder| format!("{}/", folder.display()));

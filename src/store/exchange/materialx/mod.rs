@@ -6,6 +6,7 @@ mod graph;
 mod include;
 mod read;
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use self::artistic::edge_color;
@@ -34,7 +35,7 @@ impl Format for MaterialX {
         let mut root = Element::new("materialx")
             .with("version", "1.39")
             .with("colorspace", "lin_rec709");
-        let (mut taken, mut reports) = (Vec::new(), Vec::new());
+        let (mut taken, mut reports) = (HashMap::new(), Vec::new());
         for material in &subject.materials {
             let takes = if self.is_standard { STANDARD } else { Takes::OPEN_PBR };
             let (surface, report) = shown(material, &takes);

@@ -14,7 +14,7 @@ use super::{CARRIER, MaterialX};
 use crate::document::MaterialSettings;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::anisotropy_from_ratio;
-use crate::scene::widths_from_gltf;
+use crate::scene::{Loading, widths_from_gltf};
 use crate::store::exchange::open_pbr::{NITS, widening};
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
@@ -42,7 +42,7 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
         format: "MaterialX",
         reason,
     };
-    let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned()).map_err(wrong)?;
+    let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned(), &options.loading).map_err(wrong)?;
     let document = xml::parse(&text).map_err(wrong)?;
     let root = document.root_element();
     if !root.has_tag_name("materialx") {
@@ -52,9 +52,9 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
     let mut refused = Vec::new();
     let mut baker = Baker::of(path);
     for (shader, material) in shaders(root) {
-        match read_surface(shader, material, path, &mut baker) {
+        match read_surface(shader, material, (path, &options.loading), &mut baker) {
             Ok((surface, losses)) => {
-                let (material, losses) = exact_or_shown(&surface, losses, material, shader, options);
+                let (material, losses) = exact_or_shown(&surface, losses, material, shader, &options);
                 subject.materials.push(material);
                 subject.losses.push(losses);
             }
@@ -83,7 +83,7 @@ fn exact_or_shown(
     mut losses: Vec<Entry>,
     material: Option<Node<'_, '_>>,
     shader: Node<'_, '_>,
-    options: ReadOptions,
+    options: &ReadOptions,
 ) -> (MaterialSettings, Vec<Entry>) {
     let text = material.and_then(|material| material.attribute(CARRIER));
     if let Some(exact) = text.filter(|_| !options.is_plain).and_then(carried::from_text) {
@@ -116,7 +116,16 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
     let document = Document::parse(&text).ok()?;
     let (shader, material) = shaders(document.root_element()).into_iter().next()?;
     let nowhere = Path::new("");
-    Some(read_surface(shader, material, nowhere, &mut Baker::of(nowhere)).ok()?.0)
+    Some(
+        read_surface(
+            shader,
+            material,
+            (nowhere, &Loading::default()),
+            &mut Baker::of(nowhere),
+        )
+        .ok()?
+        .0,
+    )
 }
 
 /// Whether two surfaces are the same but for the digits that other programs write.
@@ -183,7 +192,7 @@ impl Inputs {
 fn read_surface(
     shader: Node<'_, '_>,
     material: Option<Node<'_, '_>>,
-    path: &Path,
+    (path, loading): (&Path, &Loading),
     baker: &mut Baker<'_>,
 ) -> Result<(Surface, Vec<Entry>), String> {
     let mut inputs = Inputs {
@@ -192,7 +201,9 @@ fn read_surface(
     };
     let named = material.unwrap_or(shader);
     let own_name = named.attribute("name").unwrap_or("material");
-    let turn_deg = read_inputs(shader, path, &mut inputs, &mut |input| baker.mean(own_name, input));
+    let turn_deg = read_inputs(shader, (path, loading), &mut inputs, &mut |input| {
+        baker.mean(own_name, input)
+    });
     let name = named.attribute("uiname").unwrap_or(own_name);
     let mut surface = match shader.tag_name().name() {
         "open_pbr_surface" => open_pbr(&mut inputs),
@@ -211,7 +222,7 @@ fn read_surface(
 /// what is not computed here.
 fn read_inputs(
     shader: Node<'_, '_>,
-    path: &Path,
+    (path, loading): (&Path, &Loading),
     inputs: &mut Inputs,
     baked: &mut dyn FnMut(&str) -> Result<[f32; 3], String>,
 ) -> f32 {
@@ -234,7 +245,7 @@ fn read_inputs(
             }
             continue;
         }
-        match worth(input, folder) {
+        match worth(input, folder, loading) {
             Ok(Some(found)) => {
                 let pictures: Vec<String> = found.pictures.iter().map(|file| file.display().to_string()).collect();
                 let of = if found.is_computed {

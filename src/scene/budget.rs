@@ -1,0 +1,105 @@
+//! What one import may take of the memory: its files, archives and pictures together.
+
+use std::io::{self, ErrorKind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use super::loading::Loading;
+
+/// The environment variable that says how much memory a picture, and what is opened for it, may take, in MiB.
+pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
+/// The bytes that one import may take where nobody says how many.
+pub(super) const USUAL: u64 = 8 << 30;
+
+/// The bytes that one import has taken, of those that it may. Clones are the same one.
+#[derive(Clone, Debug)]
+pub struct Budget(Arc<State>);
+
+#[derive(Debug)]
+struct State {
+    allowed: u64,
+    taken: AtomicU64,
+}
+
+/// An import that takes too much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "it takes {} MiB, and {} are left of the {} MiB that everything of one import may take; make it smaller or leave others \
+     out, or allow more by {LIMIT_VARIABLE}=MIB",
+    needed.div_ceil(1 << 20), left >> 20, allowed >> 20
+)]
+pub struct OverBudget {
+    needed: u64,
+    left: u64,
+    allowed: u64,
+}
+
+impl From<OverBudget> for io::Error {
+    fn from(over: OverBudget) -> Self {
+        Self::new(ErrorKind::FileTooLarge, over)
+    }
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self::new(USUAL)
+    }
+}
+
+impl Budget {
+    /// A budget of so many bytes, of which nothing is taken.
+    pub fn new(allowed: u64) -> Self {
+        let taken = AtomicU64::new(0);
+        Self(Arc::new(State { allowed, taken }))
+    }
+
+    /// The budget of an import that begins now.
+    pub fn of(loading: &Loading) -> Self {
+        Self::new(loading.allowed())
+    }
+
+    /// The bytes that are left.
+    pub fn left(&self) -> u64 {
+        self.0.allowed.saturating_sub(self.0.taken.load(Relaxed))
+    }
+
+    /// Whether so many bytes are left, for what takes them in passing.
+    ///
+    /// # Errors
+    /// [`OverBudget`].
+    pub fn check(&self, needed: u64) -> Result<(), OverBudget> {
+        let (left, allowed) = (self.left(), self.0.allowed);
+        let over = OverBudget { needed, left, allowed };
+        if needed <= left { Ok(()) } else { Err(over) }
+    }
+
+    /// Takes so many bytes for what stays. Called in the order of the files and pictures, whichever is read first: what is left
+    /// out must not depend on the clock.
+    ///
+    /// # Errors
+    /// [`OverBudget`]; nothing is taken then.
+    pub fn take(&self, needed: u64) -> Result<(), OverBudget> {
+        self.check(needed)?;
+        self.0.taken.fetch_add(needed, Relaxed);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_takes_nothing_and_says_what_would() {
+        let budget = Budget::new(10 << 20);
+        let same = budget.clone();
+        budget.take(7 << 20).expect("it fits");
+        assert_eq!(same.left(), 3 << 20);
+        let told = same.take(4 << 20).expect_err("it does not fit").to_string();
+        for words in ["takes 4 MiB", "3 are left of the 10 MiB", "GLOSSMITH_MEMORY"] {
+            assert!(told.contains(words), "{told}");
+        }
+        same.take(3 << 20).expect("it fits exactly");
+        assert_eq!(budget.left(), 0);
+    }
+}

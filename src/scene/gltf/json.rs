@@ -1,0 +1,95 @@
+//! The JSON of a file without what other programs keep in it for themselves, of any size.
+
+use std::fmt;
+
+use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::{Map, Value};
+
+/// Under this key any program may put anything.
+const EXTRAS: &str = "extras";
+
+/// A value without `extras`, which are passed over while they are read: they may be most of a file.
+pub(super) struct Plain(pub Value);
+
+impl<'de> Deserialize<'de> for Plain {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_any(PlainVisitor).map(Self)
+    }
+}
+
+struct PlainVisitor;
+
+impl<'de> Visitor<'de> for PlainVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("JSON")
+    }
+
+    fn visit_unit<E: Error>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_string<E: Error>(self, value: String) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
+        let mut values = Vec::new();
+        while let Some(Plain(value)) = list.next_element()? {
+            values.push(value);
+        }
+        Ok(Value::Array(values))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Value, A::Error> {
+        let mut values = Map::new();
+        while let Some(key) = object.next_key::<String>()? {
+            if key == EXTRAS {
+                object.next_value::<IgnoredAny>()?;
+            } else {
+                values.insert(key, object.next_value::<Plain>()?.0);
+            }
+        }
+        Ok(Value::Object(values))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_but_extras_is_as_it_was() {
+        let text = r#"{"a": [1, -2, 0.5, -0.0, 1e300, true, null, "x\u0041"], "extras": [[{"b": 1}]],
+                       "c": {"extras": 1, "d": {}, "c": []}}"#;
+        let Plain(plain) = serde_json::from_str(text).expect("JSON");
+        let mut whole: Value = serde_json::from_str(text).expect("JSON");
+        for part in ["", "/c"] {
+            let part = whole.pointer_mut(part).and_then(Value::as_object_mut);
+            part.expect("an object").remove(EXTRAS);
+        }
+        assert_eq!(plain, whole);
+        assert!(serde_json::from_str::<Plain>(r#"{"extras": [}"#).is_err());
+    }
+}
