@@ -1,5 +1,6 @@
 //! Where a command's answer goes: a file, or standard output for the program that called.
 
+use std::borrow::Cow;
 use std::ffi::OsString;
 use std::fmt;
 use std::fs::{File, OpenOptions};
@@ -160,6 +161,11 @@ pub(super) fn write_json(destination: &Destination, value: &impl Serialize) -> a
         Destination::File(path) if !is_special(path) => Ok(save_atomically(path, (text + "\n").as_bytes())?),
         _ => Lines::open(destination)?.text(&text),
     }
+}
+
+/// Names of files as JSON can have them: what is no Unicode is replaced.
+pub(super) fn file_names<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Cow<'a, str>> {
+    files.into_iter().map(|file| file.to_string_lossy()).collect()
 }
 
 /// Whether this is a pipe or a device, into which is written.

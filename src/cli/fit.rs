@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::answer::Answer;
+use super::answer::{Answer, file_names};
 use super::lobe::{check_ending, write_view};
 use super::lobe_spec::lobe_model;
 use super::names;
@@ -120,7 +120,7 @@ fn json(found: &LookMatch, arguments: &FitArguments) -> serde_json::Value {
         "curve": found.curve.as_ref().map(|curve| curve.points()),
         "base_color": found.colors.as_ref().map(|colors| colors.base.to_f64()),
         "specular_color": found.colors.as_ref().map(|colors| colors.highlight.to_f64()),
-        "files": files.into_iter().flatten().collect::<Vec<_>>(),
+        "files": file_names(files.into_iter().flatten()),
     })
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::Answer;
+use super::answer::{Answer, file_names};
 use super::lobe_spec::lobe_model;
 use super::names;
 use super::parse::check_writable;
@@ -73,7 +73,7 @@ pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
         "plot": arguments.plot.name(),
         "lobes": lobes.iter().map(|lobe| &lobe.name).collect::<Vec<_>>(),
         "view_angles_deg": angles_deg,
-        "files": [&arguments.output],
+        "files": file_names([&arguments.output]),
     }))
 }
 

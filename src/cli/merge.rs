@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 
-use super::answer::Answer;
+use super::answer::{Answer, file_names};
 use super::render::{add_denoised, check_takes, say_written, write_pictures};
 use super::{names, parse};
 use crate::document::Denoise;
@@ -69,7 +69,7 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         "samples": whole.samples,
         "samples_per_pixel": whole.sample_count(),
         "mean_samples_per_pixel": samples,
-        "files": arguments.outputs,
+        "files": file_names(&arguments.outputs),
     });
     add_denoised(&mut answer, &whole.document, denoised.as_ref());
     arguments.answer.write(&answer)

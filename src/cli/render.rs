@@ -8,7 +8,7 @@ use anyhow::bail;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::answer::{Destination, write_json};
+use super::answer::{Destination, file_names, write_json};
 use super::parse;
 use super::scene::SceneArguments;
 use super::signals::Signals;
@@ -168,7 +168,7 @@ fn render(
     if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
-        report["files"] = serde_json::json!(targets.outputs);
+        report["files"] = serde_json::json!(file_names(targets.outputs));
         if ended_by.is_some() {
             report["stopped_by"] = "signal".into();
         }

@@ -16,7 +16,7 @@ use crate::say::say;
 use crate::scene::endings::ending;
 use crate::store::replace::{save_atomically, save_by};
 
-use super::answer::Answer;
+use super::answer::{Answer, file_names};
 use super::names::choice;
 use super::parse::{check_writable, number_in};
 
@@ -104,7 +104,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
         "view_angle_deg": arguments.view_angle,
         "samples": request.count,
         "absorbed": cloud.absorbed,
-        "files": [&arguments.output],
+        "files": file_names([&arguments.output]),
     }))
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 
-use super::answer::{Destination, write_json};
+use super::answer::{Destination, file_names, write_json};
 use super::render::bar;
 use super::scene::SceneArguments;
 use super::signals::Signals;
@@ -129,8 +129,8 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         "render_seconds": outcome.render_seconds,
         "dropped_samples": outcome.dropped,
         "seed": render.seed,
-        "files": pictures.iter().chain(video).collect::<Vec<_>>(),
-        "video": video,
+        "files": file_names(pictures.iter().chain(video)),
+        "video": video.map(|video| video.to_string_lossy()),
         "fps": video.map(|_| table.fps),
         "stopped_by": ended_by.map(|_| "signal"),
     });

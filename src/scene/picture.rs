@@ -121,6 +121,7 @@ impl Encoded<'_> {
     /// # Errors
     /// Why it cannot be had, in a few words.
     pub fn decode(self, budget: &Budget) -> Result<Decoded, String> {
+        check_growth(&self.name, &self.bytes)?;
         budget.check(self.cost()).map_err(|over| over.to_string())?;
         decode_bytes(self.name, &self.bytes)
     }
@@ -136,6 +137,17 @@ struct Header {
 impl Header {
     fn texels(&self) -> u64 {
         self.size.map(u64::from).iter().product()
+    }
+}
+
+/// Refuses a picture that claims more texels than its bytes can tell, before memory is asked for.
+fn check_growth(name: &str, bytes: &[u8]) -> Result<(), String> {
+    let [growth, floor] = GROWTH;
+    match header(name, bytes) {
+        Some(header) if header.texels() > growth * bytes.len() as u64 + floor => {
+            Err("it is far larger than its file can tell".to_owned())
+        }
+        _ => Ok(()),
     }
 }
 
@@ -215,10 +227,6 @@ fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
-    let [growth, floor] = GROWTH;
-    if header(name, bytes).is_some_and(|header| header.texels() > growth * bytes.len() as u64 + floor) {
-        return Err("it is far larger than its file can tell".to_owned());
-    }
     if gpu_picture::is_container(bytes) {
         let faces = gpu_picture::decode(bytes, [u32::MAX; 2])?;
         let face = faces.into_iter().next().ok_or("it has no texels")?;

@@ -126,7 +126,7 @@ fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
 /// that it is convex. It is called off at ever later times, until it is done before.
 #[test]
 fn loading_ends_soon_wherever_it_is_called_off() {
-    const SIDE: usize = 700;
+    const SIDE: usize = 350;
     let folder = Folder::new();
     let place = |i: usize| (i as f32 / SIDE as f32, ((i * i) % 97) as f32 / 9700.0);
     let mut ply = format!(
@@ -155,7 +155,7 @@ fn loading_ends_soon_wherever_it_is_called_off() {
         let model = load_watched(&source, &ModelOptions::default(), loading);
         model.is_ok_and(|model| Geometry::of_model(&model, &[], loading).is_ok())
     };
-    for wait_ms in (0..).map(|step| 60 * step) {
+    for wait_ms in (0..).map(|step| 30 * step) {
         let loading = Loading::default();
         let (is_done, late) = std::thread::scope(|scope| {
             let loads = scope.spawn(|| (load(&loading), Instant::now()));

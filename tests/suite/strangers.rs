@@ -188,9 +188,10 @@ fn a_texture_that_the_command_line_names_must_be_read() {
         &["broken.png", "can't be had", "give another file"],
     );
     assert!(!place.path("a.exr").exists());
+    place.write("broken_roughness.png", b"no picture");
     place.refused(1, "plan --texture broken_roughness.png", &["broken_roughness.png"]);
     // The same picture, named by a project.
-    let project = json!({"glossmith-document": 1, "materials": [{"base": {"color_map": {"file": "broken.png"}}}]});
+    let project = json!({"glossmith-document": 1, "materials": [{"name": "m", "material": {"base.color_map": {"file": "broken.png"}}}]});
     place.write("p.json", project.to_string().as_bytes());
     let run = place.done(&format!("render p.json {QUICK}"));
     assert!(

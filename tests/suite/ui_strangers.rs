@@ -64,7 +64,7 @@ fn a_project_from_elsewhere_is_asked_about_once_and_ones_own_never() {
     request(&mut harness, Action::Open(old.clone()));
     see_label(&mut harness, QUESTION);
     harness.check_accessibility();
-    assert!(harness.query_by_label_contains("far.obj").is_some());
+    assert!(harness.query_all_by_label_contains("far.obj").count() > 0);
     press(&mut harness, "Deny");
     assert_eq!(*harness.state().document(), before);
     assert!(says(&harness, "--allow-outside"));
@@ -112,6 +112,6 @@ fn a_window_asks_about_its_own_files_alone() {
     std::fs::write(&graph, text).unwrap();
     request(&mut harness, Action::Open(graph));
     see_label(&mut harness, QUESTION);
-    assert!(harness.query_by_label_contains("far.png").is_some());
+    assert!(harness.query_all_by_label_contains("far.png").count() > 0);
     assert!(!asks(&mut other));
 }

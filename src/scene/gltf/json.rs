@@ -59,6 +59,8 @@ impl<'de> Visitor<'de> for PlainVisitor {
         while let Some(Plain(value)) = list.next_element()? {
             values.push(value);
         }
+        // Files have millions of lists of one number.
+        values.shrink_to_fit();
         Ok(Value::Array(values))
     }
 

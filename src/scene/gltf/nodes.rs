@@ -50,7 +50,7 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
             report.note(Fate::Ignored, what, &node_name(root, index));
             continue;
         }
-        let world_from_node = world_from_parent * pose.parent_from_node[index];
+        let world_from_node = world_from_parent * pose.parent_from_node(index, node);
         let is_hidden = is_parent_hidden || hides(document, index);
         if is_hidden {
             report.note(Fate::Used, "hidden nodes, not shown", &node_name(root, index));

@@ -11,8 +11,8 @@ use super::container::Document;
 
 /// The nodes of a file at one time.
 pub(super) struct Pose {
-    /// Each node's own transform, its parent's space from its own.
-    pub parent_from_node: Vec<DMat4>,
+    /// The nodes that an animation moves.
+    moved: HashMap<usize, Placement>,
     /// Where each node is, whether or not it is in the scene; empty where no skin asks.
     world_from_node: Vec<DMat4>,
     /// Weights of morph targets of nodes that an animation changes.
@@ -70,20 +70,21 @@ impl Pose {
                 let _ = animate(document, animation, channel, time_s, &mut moved, &mut weights);
             }
         }
-        let place = |(index, node): (usize, &json::Node)| {
-            let moved = moved.get(&index).copied();
-            moved.unwrap_or_else(|| Placement::of(node)).parent_from_node()
-        };
-        let parent_from_node: Vec<DMat4> = nodes.iter().enumerate().map(place).collect();
-        let world_from_node = match document.root.skins.is_empty() {
-            true => Vec::new(),
-            false => world_transforms(nodes, &parent_from_node),
-        };
-        Self {
-            parent_from_node,
-            world_from_node,
+        let mut pose = Self {
+            moved,
+            world_from_node: Vec::new(),
             weights,
+        };
+        if !document.root.skins.is_empty() {
+            pose.world_from_node = world_transforms(nodes, |index| pose.parent_from_node(index, &nodes[index]));
         }
+        pose
+    }
+
+    /// A node's own transform, its parent's space from its own.
+    pub(super) fn parent_from_node(&self, index: usize, node: &json::Node) -> DMat4 {
+        let moved = self.moved.get(&index).copied();
+        moved.unwrap_or_else(|| Placement::of(node)).parent_from_node()
     }
 
     /// The weights of a node's morph targets: those of an animation, else its own, else its mesh's.
@@ -115,7 +116,7 @@ impl Pose {
 }
 
 /// The transforms of all nodes, from those that are no node's child down.
-fn world_transforms(nodes: &[json::Node], parent_from_node: &[DMat4]) -> Vec<DMat4> {
+fn world_transforms(nodes: &[json::Node], parent_from_node: impl Fn(usize) -> DMat4) -> Vec<DMat4> {
     let mut world = vec![DMat4::IDENTITY; nodes.len()];
     let mut seen = vec![false; nodes.len()];
     let mut open: Vec<(usize, DMat4)> = root_nodes(nodes)
@@ -126,7 +127,7 @@ fn world_transforms(nodes: &[json::Node], parent_from_node: &[DMat4]) -> Vec<DMa
         if index >= nodes.len() || std::mem::replace(&mut seen[index], true) {
             continue;
         }
-        world[index] = world_from_parent * parent_from_node[index];
+        world[index] = world_from_parent * parent_from_node(index);
         let children = nodes[index].children.iter().flatten();
         open.extend(children.map(|child| (child.value(), world[index])));
     }

@@ -1,7 +1,7 @@
 //! What became of a material on its way into another program's format, as a value and in words.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
@@ -166,11 +166,17 @@ pub struct Report {
     /// The file or the shipped material that was read.
     pub input: String,
     /// The file that was written.
+    #[serde(serialize_with = "as_text")]
     pub output: PathBuf,
     /// The name of its format.
     pub format: &'static str,
     /// What became of the materials.
     pub materials: Vec<MaterialReport>,
+}
+
+/// A name of a file as JSON can have it: what is no Unicode is replaced.
+fn as_text<S: serde::Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&path.to_string_lossy())
 }
 
 impl Report {
