@@ -1,5 +1,6 @@
 // The pictures of a model: filtered by hand, so that both engines find the same numbers. Twin of src/scene/texture/mod.rs.
 #import "optics/frame"
+#import "optics/albedo"
 #import "optics/material"
 #import "scene/intersect"
 #import "scene/layout"
