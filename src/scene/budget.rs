@@ -4,13 +4,10 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use super::loading::Loading;
+use super::loading::{Loading, USUAL};
 
 /// The environment variable that says how much memory a picture, and what is opened for it, may take, in MiB.
 pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
-/// The bytes that one import may take where nobody says how many.
-pub(super) const USUAL: u64 = 8 << 30;
-
 /// The bytes that one import has taken, of those that it may. Clones are the same one.
 #[derive(Clone, Debug)]
 pub struct Budget(Arc<State>);

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::budget::USUAL;
+/// The bytes that one import may take where nobody says how many.
+pub(super) const USUAL: u64 = 8 << 30;
 
 /// Tells what is being done and hears whether it is still wanted. Clones are the same one.
 #[derive(Clone, Debug, Default)]

@@ -25,13 +25,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "asks the plan's constants, which the CPU engine does not have: it looks at the values themselves",
-        &[
-            "has_vertex_flag",
-            "looks_up_textures",
-            "material_has_coat",
-            "planned",
-            "transmits_anywhere",
-        ],
+        &["has_vertex_flag", "looks_up_textures", "planned", "transmits_anywhere"],
     ),
     (
         "is a method of numbers in Rust (src/optics/elementary.rs)",
@@ -54,13 +48,13 @@ const ALONE: &[(&str, &[&str])] = &[
         &["surface_of", "hit_uvs"],
     ),
     (
-        "is a step of the loop over the layers of a material, which in Rust is written out (src/optics/material/sample.rs)",
+        "is a part of a layer whose share in Rust is a default of the layers' trait (src/optics/layer)",
         &[
-            "base_narrowed",
-            "below_layer",
-            "layer_shape",
+            "base_seen_albedo",
+            "cover_choose",
             "material_scatter",
-            "share_of_base",
+            "specular_chance",
+            "transmission_seen_albedo",
         ],
     ),
 ];
