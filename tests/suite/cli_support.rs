@@ -23,9 +23,9 @@ pub fn passes_alone(test: &str) {
         .args(["--ignored", "--exact", test])
         .output()
         .expect("this very program");
-    let told = String::from_utf8_lossy(&child.stdout);
-    assert!(child.status.success(), "{told}");
-    assert!(told.contains("1 passed"), "{told}");
+    let output = String::from_utf8_lossy(&child.stdout);
+    assert!(child.status.success(), "{output}");
+    assert!(output.contains("1 passed"), "{output}");
 }
 
 /// A folder in which the program runs.

@@ -148,11 +148,10 @@ struct PathField {
     purpose: Purpose,
     text: String,
     why: Why,
-    /// To begin with; filled when it is shown first.
+    /// To begin with; filled before the field has had the keyboard focus.
     folders: Vec<PathBuf>,
-    is_new: bool,
-    /// It has had the keys: before, what is typed goes nowhere.
-    has_had_keys: bool,
+    /// It has had the keyboard focus: before, what is typed goes nowhere.
+    has_had_focus: bool,
 }
 
 impl Dialogs {
@@ -262,8 +261,7 @@ impl Dialogs {
             text,
             why,
             folders: Vec::new(),
-            is_new: true,
-            has_had_keys: false,
+            has_had_focus: false,
         });
     }
 
@@ -305,7 +303,7 @@ impl Dialogs {
 
     fn show_field(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, PathBuf)> {
         let field = self.field.as_mut()?;
-        if field.is_new {
+        if !field.has_had_focus {
             field.folders = to_begin_with(self.folder.as_deref(), recent);
         }
         let mut outcome = None;
@@ -365,13 +363,12 @@ impl PathField {
             .desired_width(f32::INFINITY)
             .lock_focus(true);
         let response = ui.add(edit).accessible_name("Path");
-        if std::mem::take(&mut self.is_new) {
+        if !self.has_had_focus && response.has_focus() {
+            self.has_had_focus = true;
+            log::debug!("no file dialog: a path is asked for");
+        } else if !self.has_had_focus {
             response.request_focus();
             move_cursor_to_end(ui.ctx(), id, &self.text);
-        }
-        if response.has_focus() && !std::mem::replace(&mut self.has_had_keys, true) {
-            log::debug!("no file dialog: a path is asked for");
-        } else if !self.has_had_keys {
             ui.ctx().request_repaint();
         }
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
