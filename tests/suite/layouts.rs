@@ -59,7 +59,10 @@ fn rust_layouts() -> Vec<Layout> {
         Layout {
             name: "Material",
             size: size_of::<Material<f32>>(),
-            members: FIELDS.iter().map(|field| (field.name, field.offset, field.size)).collect(),
+            members: FIELDS
+                .iter()
+                .map(|field| (field.name, field.offset, field.size))
+                .collect(),
         },
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
