@@ -437,7 +437,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         let transmits = material_transmits(material);
         let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
-        var steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
+        var is_lit = false;
         var lit = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
         if may_sample_light() && samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
@@ -445,9 +445,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             xi.x = part.stretched;
             light.is_from_afar = part.is_below;
             lit = draw_light(point, part.is_below, xi);
-            if lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits) {
-                steps.x = STEP_EVALUATE;
-            }
+            is_lit = lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
@@ -456,6 +454,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
         let asked = MaterialLight(lit.direction, lit.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS));
+        let steps = material_steps(is_lit, true);
         let scattered = material_scatter(material, point.surface, layers, steps, numbers, wants_density, asked);
         if may_sample_light() && any(scattered.reflected > vec3f(0.0)) {
             light.ray = Ray(ray_origin(point, lit.direction, transmits), lit.direction);

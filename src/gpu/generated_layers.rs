@@ -62,12 +62,26 @@ pub fn layer_registry() -> String {
         numbers,
         format!("const LAYERS: u32 = {}u;\n", Layer::ALL.len()),
         format!("struct Layers {{\n{fields}}}\n"),
+        planned(),
         dispatches(),
         chosen(),
         shares(),
         seen(),
     ]
     .concat()
+}
+
+/// How many layers the plan calls for, and the number of each of them.
+fn planned() -> String {
+    let counts = each(all, "    if @ { count += 1u; }\n");
+    let found = each(
+        all,
+        "    if @ {\n        if place == before { return #; }\n        before += 1u;\n    }\n",
+    );
+    format!(
+        "fn planned_layers() -> u32 {{\n    var count = 0u;\n{counts}    return count;\n}}\n\
+         fn planned_layer(place: u32) -> u32 {{\n    var before = 0u;\n{found}    return LAYERS;\n}}\n"
+    )
 }
 
 /// A layer's functions by its number.
@@ -85,7 +99,7 @@ fn dispatches() -> String {
             format!("layer_lobe(layer: u32, {at}) -> LayerLobe"),
             all,
             "$_lobe(material, surface)",
-            "LayerLobe()",
+            "no_lobe(surface)",
         ),
         by_number(
             "layer_toward(layer: u32, material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) \

@@ -1,5 +1,6 @@
 // What layers have in common. Twin of src/optics/layer/mod.rs, which explains it, and of src/optics/layer/shares.rs.
 #import "optics/lobe/registry"
+#import "optics/material"
 #import "optics/numeric"
 
 struct LayerLobe {
@@ -40,4 +41,9 @@ fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
 fn cover_probability(reflected: f32, rest: f32) -> f32 {
     let probability = sampled_share(reflected / max(reflected + rest, 1e-9));
     return select(0.0, select(1.0, probability, rest > 0.0), reflected > 0.0);
+}
+
+// The lobe of no layer: the cheapest one, as drivers compute with it in lanes whose layer is another.
+fn no_lobe(surface: Surface) -> LayerLobe {
+    return LayerLobe(LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0), surface.frame);
 }

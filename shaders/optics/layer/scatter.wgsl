@@ -29,16 +29,17 @@ struct MaterialScatter {
     reflected: vec3f,
 }
 
-// What is done at a surface point, in order: light is weighed by each layer, then a direction is drawn, and once more where
-// the layer that was drawn from first passed on.
-const STEP_EVALUATE: u32 = 0u;
-const STEP_DRAW: u32 = LAYERS;
-const STEP_DRAW_BELOW: u32 = LAYERS + 1u;
+// The steps at a surface point, as a range: light is weighed by each planned layer (where `evaluates`), then a direction is
+// drawn (where `draws`), and once more where the layer that was drawn from first passed on.
+fn material_steps(evaluates: bool, draws: bool) -> vec2u {
+    let first_draw = planned_layers();
+    return vec2u(select(first_draw, 0u, evaluates), first_draw + select(0u, 1u + PLAN_TRANSMISSION, draws));
+}
 
 fn material_sample(
     material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, wants_density: bool,
 ) -> MaterialSample {
-    let steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
+    let steps = material_steps(false, true);
     return material_scatter(material, surface, layers, steps, numbers, wants_density, MaterialLight()).drawn;
 }
 
@@ -46,7 +47,7 @@ fn material_evaluate(
     material: Material, surface: Surface, layers: Layers, wi: vec3f, light_density: f32, competing: f32,
 ) -> vec3f {
     let light = MaterialLight(wi, light_density, competing);
-    let steps = vec2u(STEP_EVALUATE, STEP_DRAW);
+    let steps = material_steps(true, false);
     return material_scatter(material, surface, layers, steps, MaterialNumbers(), false, light).reflected;
 }
 
@@ -65,8 +66,8 @@ fn material_scatter(
     var drawn = MaterialSample();
     var reflected = vec3f(0.0);
     for (var step = steps.x; step < steps.y; step++) {
-        let draws = step >= STEP_DRAW;
-        var layer = step;
+        let draws = step >= planned_layers();
+        var layer = planned_layer(step);
         if draws {
             let choice = layer_choice(material, layers, first, number);
             layer = choice.layer;
