@@ -2,8 +2,8 @@
 //! added side by side.
 
 use super::integrator::{NEAR, Results, Tile, is_sound};
-use crate::job::guides::GUIDE_SAMPLES;
 use crate::job::film::{Film, HalfSums};
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::vec3;
 

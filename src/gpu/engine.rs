@@ -14,8 +14,8 @@ use super::scene_group::SceneForm;
 use super::sums::{Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
-use crate::job::guides::GuideSums;
 use crate::job::film::{Film, HalfSums, luminance};
+use crate::job::guides::GuideSums;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.

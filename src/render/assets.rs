@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::session::SessionError;
+use super::error::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
 use crate::scene::light::AreaShape;

@@ -15,8 +15,8 @@ use exr::prelude::{
 use crate::document::Document;
 use crate::document::change::Change;
 use crate::job::features::Features;
-use crate::job::guides::GUIDE_SAMPLES;
 use crate::job::film::{Extras, Film, HalfSums};
+use crate::job::guides::GUIDE_SAMPLES;
 use crate::render::denoise::Noisy;
 use crate::store::FileError;
 use crate::store::project::{document_text, parse_document};

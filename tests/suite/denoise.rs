@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Background, Denoise, DenoiseWhen, Document};
-use glossmith::job::guides::GuideSums;
 use glossmith::job::film::{Extras, Film, Image};
+use glossmith::job::guides::GuideSums;
 use glossmith::render::denoise::{Denoised, Denoiser, Library, LibraryError, Noisy};
 use glossmith::render::worker::{Event, Level, Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};

@@ -3,8 +3,8 @@
 
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Denoise, Document, assign};
-use glossmith::job::guides::GuideSums;
 use glossmith::job::film::{Extras, Film};
+use glossmith::job::guides::GuideSums;
 use glossmith::render::denoise::{Denoiser, Noisy};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;

@@ -2,8 +2,8 @@
 
 use super::EnvironmentError;
 use super::canvas::Canvas;
-use super::display_referred::Codes;
 use super::decoded::{Picture, Source, io};
+use super::display_referred::Codes;
 use crate::scene::gpu_picture::{self, Face, Refusal, Texels};
 use crate::scene::resource;
 

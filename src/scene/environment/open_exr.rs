@@ -262,4 +262,3 @@ fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], of
         }
     }
 }
-
