@@ -105,7 +105,7 @@ impl Module {
                     return;
                 }
                 "as" => alias = after.first().map(|&name| name.to_owned()),
-                "self" if path.len() > 0 => {}
+                "self" if !path.is_empty() => {}
                 name if is_name(name) && alias.is_none() => path.push(name.to_owned()),
                 _ => {}
             }
