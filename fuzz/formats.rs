@@ -7,7 +7,7 @@ use glossmith::document::Document;
 use glossmith::scene::environment::{self, EnvironmentSource};
 use glossmith::scene::{Geometry, ModelSource, load};
 use glossmith::store::exchange::{self, ReadOptions};
-use glossmith::store::{file, load_document, load_material};
+use glossmith::store::{load_document, load_material, opened};
 
 /// Kinds of files.
 #[allow(dead_code)]
@@ -97,7 +97,7 @@ fn try_path(format: &str, path: &Path) {
             }
         }
         _ => {
-            let _ = file::open(path);
+            let _ = opened::open(path);
             let _ = load_material(path);
             if let Ok(document) = load_document(path) {
                 assert!(document.value.check().is_ok());

@@ -16,9 +16,9 @@ use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::exchange::{self, ReadOptions};
-use crate::store::file::Opened;
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::lut;
+use crate::store::opened::Opened;
 use crate::store::replace::save_atomically;
 
 /// Arguments that describe what is rendered, and how. Options stand over what files say.

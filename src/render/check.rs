@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::engine::{EngineChoice, Sampler};
-use super::session::{Session, SessionError};
+use super::error::SessionError;
+use super::session::Session;
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use crate::document::{AreaLight, Background, CustomCurve, Document, PixelFilter, Strategy};
 use crate::job::film::Film;

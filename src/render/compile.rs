@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::assets::Assets;
-use super::session::SessionError;
+use super::error::SessionError;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,

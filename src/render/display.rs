@@ -2,12 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::shown::MIDDLE_GREY;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
 use crate::optics::tone::{Grade, srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
 use crate::store::lut;
+
+/// Luminance of middle grey.
+pub const MIDDLE_GREY: f64 = 0.18;
 
 /// Luminances that count for the automatic exposure: what is darker is taken for this.
 const LUMINANCE_MIN: f64 = 1e-4;

@@ -6,7 +6,8 @@ use image::RgbImage;
 
 use super::EngineChoice;
 use super::display::display;
-use super::session::{Session, SessionError};
+use super::error::SessionError;
+use super::session::Session;
 use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
 use crate::job::film::Film;
 use crate::plot::scale_color;

@@ -3,6 +3,7 @@
 //! `submit` a document, `step` with a budget of time until `progress` says that it is done, read `film` or `image`.
 
 mod assets;
+mod attendant;
 pub mod background;
 mod calibration;
 pub mod check;
@@ -12,6 +13,7 @@ pub mod denoise;
 pub mod display;
 mod engine;
 pub mod environment_thumbnails;
+mod error;
 pub mod explain;
 pub mod hard;
 pub mod looks;
@@ -21,6 +23,7 @@ mod picture_cache;
 pub mod precision;
 pub mod priority;
 pub mod probe;
+mod progress;
 pub mod queue;
 pub mod quiet;
 mod ray_queries;
@@ -37,8 +40,11 @@ pub mod worker;
 mod workshop;
 
 pub use assets::{Assets, Reloaded};
+pub use attendant::Attendant;
 pub use convergence::Measurement;
 pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, Sampler};
+pub use error::SessionError;
 pub use output::Layers;
+pub use progress::{Progress, StopReason};
 pub use ray_queries::RayQueries;
-pub use session::{Progress, Session, SessionError, StopReason};
+pub use session::Session;

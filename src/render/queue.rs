@@ -6,11 +6,12 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::assets::Assets;
-use super::denoise::Attendant;
+use super::attendant::Attendant;
 use super::engine::EngineChoice;
+use super::error::SessionError;
 use super::output::{self, OutputError, Rendered};
 use super::quiet;
-use super::session::{Session, SessionError};
+use super::session::Session;
 use super::to_end::{step_to_end, submit};
 use super::turntable::{self, Turntable, TurntableError};
 use crate::document::Document;

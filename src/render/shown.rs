@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::display::{display, exposure};
+use super::display::{MIDDLE_GREY, display, exposure};
 use crate::analysis::noise::relative_errors;
 use crate::document::ViewSettings;
 use crate::job::features::Features;
@@ -11,8 +11,6 @@ use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::plot::scale_color;
 
-/// Luminance of middle grey.
-pub const MIDDLE_GREY: f64 = 0.18;
 /// Stops to either side of middle grey that false colours span.
 const STOPS: f64 = 6.0;
 /// Share of the pixels above the brightest colour of a map of errors, and how many times smaller the darkest is.

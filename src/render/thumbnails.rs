@@ -8,8 +8,9 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use super::attendant::Attendant;
 use super::background::{Background, Desk};
-use super::denoise::{Attendant, Library};
+use super::denoise::Library;
 use super::display::display;
 use super::looks::ball;
 use super::{EngineChoice, Session, SessionError, picture_cache};

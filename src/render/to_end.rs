@@ -2,9 +2,12 @@
 
 use std::time::Duration;
 
-use super::denoise::{Attendant, Denoised};
+use super::attendant::Attendant;
+use super::denoise::Denoised;
 use super::engine::EngineChoice;
-use super::session::{Progress, Session, SessionError};
+use super::error::SessionError;
+use super::progress::Progress;
+use super::session::Session;
 use crate::document::Document;
 
 /// Step of the session between two looks at whether to go on.

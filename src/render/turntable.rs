@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::denoise::Attendant;
+use super::attendant::Attendant;
 use super::display::display;
 use super::engine::EngineChoice;
+use super::error::SessionError;
 use super::output::{self, OutputError, Rendered};
-use super::session::{Session, SessionError};
+use super::session::Session;
 use super::to_end::{step_to_end, submit};
 use crate::document::Document;
 use crate::document::turntable::{Turn, turned};

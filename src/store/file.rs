@@ -1,16 +1,12 @@
-//! Reading and writing JSON files with care: errors that say what to do.
+//! Reading and writing JSON files with care.
 
-use std::io::{self, Read as _};
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
-use super::{own, picture, preset, project};
-use crate::document::{Document, MaterialSettings};
-use crate::scene::resource::{self, Reach};
-
-/// Files larger than this many bytes are taken for something else.
-pub(super) const SIZE_MAX: u64 = 16 << 20;
+use super::error::{FileError, SIZE_MAX};
+use crate::scene::resource;
 
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,136 +15,6 @@ pub struct Loaded<T> {
     pub value: T,
     /// What the user should know, one sentence each.
     pub warnings: Vec<String>,
-}
-
-/// Why a material or project file cannot be read or written.
-#[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// The system can't read it.
-    #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// Too large to be one.
-    #[error("{}: too large for a material or project (over {} MiB); choose another file", path.display(), SIZE_MAX >> 20)]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Not JSON, or cut short.
-    #[error("{}: not valid JSON: {reason}; correct it there or save the file again", path.display())]
-    NotJson {
-        /// The file.
-        path: PathBuf,
-        /// What and where.
-        reason: String,
-    },
-    /// JSON of something else.
-    #[error("{}: not a Glossmith {expected}: it has no \"{mark}\" number; choose a file saved as {expected}", path.display())]
-    WrongKind {
-        /// The file.
-        path: PathBuf,
-        /// `material` or `project`.
-        expected: &'static str,
-        /// The key that tells.
-        mark: &'static str,
-    },
-    /// A picture that was not saved by Glossmith, or whose text another program left out.
-    #[error("{}: a picture without a Glossmith document inside; open one that was saved here", path.display())]
-    NoDocument {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Contents out of range, with what would be right.
-    #[error("{}: {reason}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what would be right.
-        reason: String,
-    },
-    /// It names files that lie elsewhere.
-    #[error("{}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)", path.display(), list(files))]
-    Outside {
-        /// The file.
-        path: PathBuf,
-        /// What it names.
-        files: Vec<PathBuf>,
-    },
-    /// No such preset, no such file.
-    #[error("no material is called {name} and there is no such file; the shipped ones are {known}")]
-    UnknownMaterial {
-        /// What was asked for.
-        name: String,
-        /// The names that there are.
-        known: String,
-    },
-    /// The file cannot be written.
-    #[error("{}: cannot be saved: {source}; check the folder's permissions and free space", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-}
-
-fn list(files: &[PathBuf]) -> String {
-    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
-    names.join(", ")
-}
-
-/// Refuses a file from elsewhere that names what lies outside of its surroundings; says what of it was allowed. What was saved
-/// by this user is trusted.
-///
-/// # Errors
-/// [`FileError::Outside`].
-pub(super) fn check_reach(path: &Path, mark: Option<&Json>, named: &[PathBuf]) -> Result<Vec<String>, FileError> {
-    let reach = Reach::of_folder(folder(path));
-    let is_own = mark.is_some_and(|mark| mark.as_str() == own::mark(path, named).as_deref());
-    let is_meant = |named: &PathBuf| is_own && own::leads_away(path, named);
-    let outside = named.iter().filter(|named| !is_meant(named) && !reach.encloses(named));
-    let (allowed, files): (Vec<_>, Vec<_>) = outside.cloned().partition(|named| reach.has(named));
-    if !files.is_empty() {
-        let path = path.to_owned();
-        return Err(FileError::Outside { path, files });
-    }
-    let told = |named: &PathBuf| format!("{}: names {}, which lies elsewhere", path.display(), named.display());
-    Ok(allowed.iter().map(told).collect())
-}
-
-/// A file that holds what is edited.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Opened {
-    /// A material.
-    Material(Box<Loaded<MaterialSettings>>),
-    /// A whole document.
-    Document(Box<Loaded<Document>>),
-    /// A picture with the document that it shows.
-    Picture(Box<Loaded<Document>>),
-}
-
-/// Opens a material, a project file or a picture with a document inside, whichever it is.
-///
-/// # Errors
-/// What is wrong with the file.
-pub fn open(path: &Path) -> Result<Opened, FileError> {
-    if picture::is_png(path) {
-        let text = picture::document_text_in(path)?;
-        return Ok(Opened::Picture(Box::new(project::open_document(
-            path,
-            text.as_bytes(),
-        )?)));
-    }
-    let bytes = read(path)?;
-    if object(path, &bytes)?.contains_key(project::MARK) {
-        Ok(Opened::Document(Box::new(project::open_document(path, &bytes)?)))
-    } else {
-        Ok(Opened::Material(Box::new(preset::open_material(path, &bytes)?)))
-    }
 }
 
 /// A whole file, unless it is far too large.

@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::file::FileError;
+use super::FileError;
 use super::preset::{command_line_name, load_material, save_material};
 use super::replace::save_atomically;
 use crate::document::MaterialSettings;

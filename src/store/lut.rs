@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
-use super::file::{self, FileError};
+use super::{FileError, file};
 use crate::optics::tone::Lut;
 
 /// Most entries along a side, of a cube and of curves.

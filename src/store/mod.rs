@@ -2,6 +2,7 @@
 //! unsaved documents, pinned states; materials in other programs' formats; examples to begin with;
 //! folders that are watched; tables of colours.
 
+mod error;
 pub mod examples;
 pub mod exchange;
 pub mod file;
@@ -10,6 +11,7 @@ pub mod library;
 pub mod lut;
 #[cfg_attr(not(feature = "video"), path = "mp4_not_built.rs")]
 mod mp4;
+pub mod opened;
 mod own;
 pub mod picture;
 pub mod preset;
@@ -20,6 +22,7 @@ pub mod shelf;
 pub mod snapshots;
 pub mod video;
 
-pub use file::{FileError, Loaded};
+pub use error::FileError;
+pub use file::Loaded;
 pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};

@@ -8,9 +8,11 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use serde_json::Value as Json;
 use siphasher::sip128::{Hasher128 as _, SipHasher24};
 
-use super::file;
+use super::{FileError, file};
+use crate::scene::resource::Reach;
 
 /// The key under which the mark is kept.
 pub(super) const KEY: &str = "saved-by";
@@ -35,6 +37,25 @@ pub(super) fn mark(path: &Path, named: &[PathBuf]) -> Option<String> {
 /// Whether a name is written from the root, and counts for the mark.
 pub(super) fn leads_away(path: &Path, named: &Path) -> bool {
     !file::seen_from(path)(named).is_relative()
+}
+
+/// Refuses a file from elsewhere that names what lies outside of its surroundings; says what of it was allowed. What was saved
+/// by this user is trusted.
+///
+/// # Errors
+/// [`FileError::Outside`].
+pub(super) fn check_reach(path: &Path, found: Option<&Json>, named: &[PathBuf]) -> Result<Vec<String>, FileError> {
+    let reach = Reach::of_folder(file::folder(path));
+    let is_own = found.is_some_and(|found| found.as_str() == mark(path, named).as_deref());
+    let is_meant = |named: &PathBuf| is_own && leads_away(path, named);
+    let outside = named.iter().filter(|named| !is_meant(named) && !reach.encloses(named));
+    let (allowed, files): (Vec<_>, Vec<_>) = outside.cloned().partition(|named| reach.has(named));
+    if !files.is_empty() {
+        let path = path.to_owned();
+        return Err(FileError::Outside { path, files });
+    }
+    let told = |named: &PathBuf| format!("{}: names {}, which lies elsewhere", path.display(), named.display());
+    Ok(allowed.iter().map(told).collect())
 }
 
 /// The user's key, made when it is first needed.

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use png::text_metadata::ITXtChunk;
 
-use super::file::{self, FileError, Loaded};
+use super::error::SIZE_MAX;
 use super::project;
+use super::{FileError, Loaded};
 use crate::document::Document;
 use crate::scene::resource;
 
@@ -93,7 +94,7 @@ fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileErr
     }
     let mut found = found.ok_or_else(|| FileError::NoDocument { path: path.to_owned() })?;
     found
-        .decompress_text_with_limit(file::SIZE_MAX as usize)
+        .decompress_text_with_limit(SIZE_MAX as usize)
         .and_then(|()| found.get_text())
         .map_err(|error| FileError::Content {
             path: path.to_owned(),

@@ -9,9 +9,9 @@ use std::sync::LazyLock;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::file::{self, FileError, Loaded};
 use super::own;
 use super::replace::save_atomically;
+use super::{FileError, Loaded, file};
 use crate::document::parameter::nearest_key;
 use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
@@ -98,7 +98,7 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
 pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
     let mut loaded = parse_material(path, bytes)?;
     let mark = file::object(path, bytes)?.shift_remove(own::KEY);
-    let allowed = file::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
+    let allowed = own::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
     loaded.warnings.extend(allowed);
     Ok(loaded)
 }

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json, json};
 
-use super::file::{self, FileError, Loaded, SIZE_MAX};
 use super::replace::save_atomically;
+use super::error::SIZE_MAX;
+use super::{FileError, Loaded, file};
 use super::{own, preset};
 use crate::document::{Document, MaterialSettings};
 use crate::scene::ModelSource;
@@ -42,7 +43,7 @@ pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
 pub(super) fn open_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
     let mut loaded = parse_document(path, bytes)?;
     let mark = file::object(path, bytes)?.shift_remove(own::KEY);
-    let allowed = file::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
+    let allowed = own::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
     loaded.warnings.extend(allowed);
     Ok(loaded)
 }

@@ -12,7 +12,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::{Value as Json, json};
 
-use super::file::FileError;
+use super::FileError;
 use super::project;
 use crate::document::Document;
 

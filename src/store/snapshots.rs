@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
-use super::file::FileError;
+use super::FileError;
 use super::library::free_path;
 use super::picture::{parse_picture_document, png_bytes};
 use super::project::document_text;

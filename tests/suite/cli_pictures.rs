@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glossmith::store::file::{self, Opened};
+use glossmith::store::opened::{self, Opened};
 use glossmith::store::picture::load_picture_document;
 use serde_json::Value;
 
@@ -125,7 +125,7 @@ fn a_png_brings_its_document_back() {
         (document.render.width, document.render.height, document.render.samples),
         (24, 16, 2)
     );
-    assert!(matches!(file::open(&place.path("a.png")).unwrap(), Opened::Picture(opened) if opened.value == document));
+    assert!(matches!(opened::open(&place.path("a.png")).unwrap(), Opened::Picture(opened) if opened.value == document));
 }
 
 #[test]

@@ -9,7 +9,8 @@ use glossmith::document::{
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::file::{self, FileError, Opened};
+use glossmith::store::FileError;
+use glossmith::store::opened::{self, Opened};
 use glossmith::store::preset::{self, PRESETS, SHIPPED};
 use glossmith::store::project;
 use proptest::prelude::*;
@@ -344,11 +345,11 @@ fn either_kind_of_file_is_told_from_the_other() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("x.json");
     project::save_document(&path, &Document::default()).expect("saved");
-    assert!(matches!(file::open(&path), Ok(Opened::Document(_))));
+    assert!(matches!(opened::open(&path), Ok(Opened::Document(_))));
     preset::save_material(&path, &PRESETS[0]).expect("saved");
-    assert!(matches!(file::open(&path), Ok(Opened::Material(_))));
+    assert!(matches!(opened::open(&path), Ok(Opened::Material(_))));
     fs::write(&path, vec![b' '; (16 << 20) + 1]).expect("written");
-    assert!(matches!(file::open(&path), Err(FileError::TooLarge { .. })));
+    assert!(matches!(opened::open(&path), Err(FileError::TooLarge { .. })));
 }
 
 fn any_json() -> impl Strategy<Value = Json> {

@@ -19,8 +19,8 @@ use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::OwnTexture;
 use crate::scene::{ModelOptions, ModelSource, holds_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
-use crate::store::file::Opened;
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
+use crate::store::opened::Opened;
 use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.

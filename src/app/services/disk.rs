@@ -11,7 +11,7 @@ use crate::panics::caught;
 use crate::render::worker::Level;
 use crate::store::FileError;
 use crate::store::exchange::ExchangeError;
-use crate::store::file::Opened;
+use crate::store::opened::Opened;
 
 /// What came of a job.
 pub(in crate::app) enum Done {

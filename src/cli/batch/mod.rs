@@ -3,6 +3,7 @@
 mod file;
 mod inputs;
 mod maker;
+mod row;
 mod sheet;
 mod template;
 
@@ -13,7 +14,8 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use self::file::{BatchFile, Picture};
-use self::maker::{Maker, Row, Status};
+use self::maker::Maker;
+use self::row::{Row, Status};
 use super::answer::{Destination, Lines};
 use super::{PartialFailure, parse};
 use crate::render::EngineChoice;

@@ -8,7 +8,7 @@ use image::RgbImage;
 use image::imageops::{FilterType, overlay, resize};
 
 use super::file::{BatchFile, Picture};
-use super::maker::Row;
+use super::row::Row;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
 use crate::plot::{PictureSheet, write_picture_sheet};

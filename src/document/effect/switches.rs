@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{EFFECTS, Effect};
+use super::Effect;
 use crate::job::effect::EffectId;
 use crate::named::named;
 
@@ -86,7 +86,8 @@ pub enum SwitchError {
 }
 
 fn names(chosen: fn(&Effect) -> bool) -> String {
-    let names: Vec<_> = EFFECTS.iter().filter(|e| chosen(e)).map(Effect::name).collect();
+    let effects = EffectId::ALL.iter().map(|id| Effect::of(*id));
+    let names: Vec<_> = effects.filter(|effect| chosen(effect)).map(Effect::name).collect();
     names.join(", ")
 }
 

@@ -4,7 +4,6 @@
 //! their mean, and what they have in common and what not tells how far it is from the truth
 //! ([`crate::analysis::denoised`]).
 
-mod attendant;
 mod filter;
 mod library;
 mod picture;
@@ -13,7 +12,6 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-pub use attendant::Attendant;
 use filter::{Device, Filter};
 pub use filter::{Guides, Quality};
 pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};

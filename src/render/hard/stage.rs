@@ -12,9 +12,10 @@ use crate::gpu::GpuError;
 use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
+use crate::render::error::SessionError;
 use crate::render::output::{self, OutputError, Rendered};
 use crate::render::probe::Prober;
-use crate::render::session::{Session, SessionError};
+use crate::render::session::Session;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{ModelSource, environment};
 

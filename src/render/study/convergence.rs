@@ -8,7 +8,7 @@ use super::references::{Effort, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::render::denoise::Attendant;
+use crate::render::Attendant;
 use crate::render::{EngineChoice, Precision, Session, StopReason};
 
 /// The reference is this many times as exact as the picture, where the time suffices.

@@ -18,7 +18,7 @@ use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
-use crate::render::denoise::Attendant;
+use crate::render::Attendant;
 use crate::render::{EngineChoice, Session};
 
 /// Samples a pixel that each picture has at least, where no more are asked for: two in either half.

@@ -13,7 +13,8 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::engine::EngineInfo;
-use super::session::{Session, SessionError};
+use super::error::SessionError;
+use super::session::Session;
 use crate::document::Document;
 use crate::store::FileError;
 

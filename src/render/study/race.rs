@@ -16,8 +16,9 @@ use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
 use crate::job::film::Image;
+use crate::render::Attendant;
 use crate::render::assets::Assets;
-use crate::render::denoise::{Attendant, Denoised};
+use crate::render::denoise::Denoised;
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
 /// References are this many times as exact as the noise to reach, where the time suffices.

@@ -7,8 +7,8 @@ use super::lock;
 use crate::document::{Denoise, DenoiseWhen, Document};
 use crate::panics::caught;
 use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
+use crate::render::progress::Progress;
 use crate::render::quiet::at_work;
-use crate::render::session::Progress;
 
 /// By how much samples grow from one denoised picture to the next.
 const GROWTH: u32 = 2;

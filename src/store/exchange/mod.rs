@@ -22,9 +22,10 @@ use std::path::{Path, PathBuf};
 
 use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
-use super::file::{self, FileError, Loaded, Opened};
+use super::opened::{self, Opened};
 use super::preset;
 use super::replace::save_atomically;
+use super::{FileError, Loaded};
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::endings::ending;
 use crate::scene::{Loading, ModelError};
@@ -342,7 +343,7 @@ pub fn holds_materials(path: &Path) -> bool {
 /// What is wrong with it.
 pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> {
     if !holds_materials(path) {
-        return Ok(file::open(path)?);
+        return Ok(opened::open(path)?);
     }
     let subject = read(path, options)?;
     let Some(material) = subject.materials.first() else {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written};
-use crate::store::file::{self, Opened};
+use crate::store::opened::{self, Opened};
 use crate::store::preset::material_text;
 use crate::store::project::own_text;
 
@@ -26,7 +26,7 @@ impl Format for Native {
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        Ok(match file::open(path)? {
+        Ok(match opened::open(path)? {
             Opened::Material(material) => Subject::of(material.value),
             Opened::Document(document) | Opened::Picture(document) => Subject {
                 materials: document.value.materials.clone(),

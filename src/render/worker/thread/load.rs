@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::State;
 use crate::panics::caught;
-use crate::render::session::SessionError;
+use crate::render::error::SessionError;
 use crate::render::worker::{Activity, Event, Level, lock};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{ModelOptions, ModelSource};

@@ -18,9 +18,10 @@ use crate::panics::caught;
 use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::engine::{EngineChoice, EngineKind};
+use crate::render::error::SessionError;
 use crate::render::output::Layers;
 use crate::render::quiet::AtWork;
-use crate::render::session::{Session, SessionError};
+use crate::render::session::Session;
 use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
 

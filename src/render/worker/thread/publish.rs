@@ -7,7 +7,7 @@ use super::State;
 use crate::document::{Denoise, ViewSettings};
 use crate::job::film::Image;
 use crate::render::display::display;
-use crate::render::session::SessionError;
+use crate::render::error::SessionError;
 use crate::render::shown::{Facts, Shown, map, map_of_errors};
 use crate::render::worker::{Activity, Level, Picture};
 

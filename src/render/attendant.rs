@@ -1,8 +1,10 @@
 //! The denoiser beside a session that is stepped to its end: by the command line, in turntables and studies.
 
-use super::{Denoised, Denoiser};
+use super::denoise::{Denoised, Denoiser};
+use super::error::SessionError;
+use super::progress::Progress;
+use super::session::Session;
 use crate::document::{Denoise, Document};
-use crate::render::session::{Progress, Session, SessionError};
 
 /// By how much samples grow from one denoised picture to the next while its error is aimed at.
 const GROWTH: f64 = 1.5;

@@ -1,0 +1,33 @@
+//! Why a session refuses a document or fails.
+
+use super::memory;
+use crate::gpu::GpuError;
+use crate::scene::ModelError;
+use crate::scene::environment::EnvironmentError;
+
+/// Why a session refuses a document or fails.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The model can't be loaded.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The environment can't be loaded.
+    #[error(transparent)]
+    Environment(#[from] EnvironmentError),
+    /// The GPU can't be used.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The picture does not fit the memory; nothing has been begun.
+    #[error(transparent)]
+    TooLarge(#[from] memory::TooLarge),
+}
+
+impl SessionError {
+    /// Whether it was cancelled rather than failed.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Model(ModelError::Cancelled(_)) | Self::Environment(EnvironmentError::Cancelled(_))
+        )
+    }
+}
