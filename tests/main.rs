@@ -79,6 +79,8 @@ mod facets;
 mod farm;
 #[path = "suite/file_colors.rs"]
 mod file_colors;
+#[path = "suite/file_parameters.rs"]
+mod file_parameters;
 #[path = "suite/file_scenes.rs"]
 mod file_scenes;
 #[path = "suite/files.rs"]

@@ -23,7 +23,7 @@ use std::path::Path;
 use glam::DMat4;
 
 pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
-pub use self::material::{FileParameter, GLTF_PARAMETERS, Goes};
+pub use self::material::GLTF_PARAMETERS;
 pub use self::material_extensions::kept_keys;
 
 use self::container::Document;
@@ -135,6 +135,10 @@ fn assemble(
             node.world_from_node
         };
         if !is_bent && *uses_left > 0 {
+            if is_first {
+                let times = (*uses_left + 1).min(MAX_REPEATED_VERTICES / local.positions.len().max(1) + 1);
+                whole.reserve(&local, times);
+            }
             kept[node.mesh] = Some(local.clone());
         }
         let first = whole.triangles.len();
@@ -152,7 +156,7 @@ fn assemble(
     Ok((whole, objects))
 }
 
-/// Why a file shows nothing: it is damaged where it has triangles.
+/// Why a file shows nothing: something is missing, or it is damaged where it has triangles.
 fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report: &ImportReport) -> ModelError {
     if let Some(name) = document.unknown_required.first() {
         return ModelError::Extension {
@@ -174,7 +178,14 @@ fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report:
     if blamed.is_empty() {
         return ModelError::NoTriangles { path: path.to_owned() };
     }
-    document.invalid(format!("no triangles in its scene; {}", blamed.join(", ")))
+    let reason = blamed.join(", ");
+    if report.of(Fate::Missing).any(|entry| entry.what.starts_with("a buffer")) {
+        return ModelError::Incomplete {
+            path: path.to_owned(),
+            reason,
+        };
+    }
+    document.invalid(format!("no triangles in its scene; {reason}"))
 }
 
 fn materials_variants(document: &Document) -> Vec<String> {

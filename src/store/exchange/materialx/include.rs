@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::Node;
 
+use super::strict::strict;
 use crate::scene::resource::Reach;
 use crate::store::exchange::xml::{self, escaped};
 
@@ -23,6 +24,7 @@ pub(super) fn whole_text(path: &Path, text: String) -> Result<String, String> {
 }
 
 fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>) -> Result<String, String> {
+    let text = strict(&text);
     let document = xml::parse(&text)?;
     let includes = document.descendants().filter(is_include);
     let places: Vec<_> = includes
