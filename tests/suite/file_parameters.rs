@@ -16,7 +16,10 @@ type Values = Vec<(&'static str, &'static str)>;
 fn layers(table: &[FileParameter], parameter: &FileParameter) -> Values {
     let mut all = Values::new();
     let mut layer = parameter.layer;
-    while let Some(row) = table.iter().find(|row| row.place == layer) {
+    // Some count only with each other.
+    let is_new =
+        |all: &Values, row: &FileParameter| row.place != parameter.place && !all.contains(&(row.place, row.example));
+    while let Some(row) = table.iter().find(|row| row.place == layer && is_new(&all, row)) {
         all.push((row.place, row.example));
         layer = row.layer;
     }

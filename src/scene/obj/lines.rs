@@ -10,12 +10,14 @@ const UNNAMED: &str = "(unnamed)";
 /// The lines of an OBJ file: those that go on after a `\` are joined, `usemtl` has a name, `vt` two coordinates, and where
 /// some vertices have a colour the others are white.
 pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let is_text = std::str::from_utf8(bytes).is_ok() && !bytes.starts_with(UTF_8);
-    let are_some_colored = has_some_colors(bytes);
-    if is_text && !are_some_colored && !bytes.split(|byte| *byte == b'\n').any(is_odd) {
-        return Cow::Borrowed(bytes);
-    }
     let text = text_of(bytes);
+    let are_some_colored = has_some_colors(text.as_bytes());
+    if let Cow::Borrowed(plain) = text
+        && !are_some_colored
+        && !plain.as_bytes().split(|byte| *byte == b'\n').any(is_odd)
+    {
+        return Cow::Borrowed(plain.as_bytes());
+    }
     let lines = joined(&text).into_iter().map(|line| {
         let words = || line.split_whitespace();
         match (words().next(), words().count()) {
@@ -74,10 +76,10 @@ pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) ->
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["newmtl"] => *line = format!("newmtl {UNNAMED}"),
             // Green and blue that are left out are as red; tobj panics without them.
-            [key @ ("Ka" | "Kd" | "Ks" | "Ke"), red] | [key @ ("Ka" | "Kd" | "Ks" | "Ke"), red, _] => {
+            [key @ ("Ka" | "Kd" | "Ks" | "Ke"), ref numbers @ ..] if numbers.len() < 3 && are_numbers(numbers) => {
+                let red = numbers.first().unwrap_or(&"-");
                 *line = format!("{key} {red} {red} {red}");
             }
-            [key @ ("Ka" | "Kd" | "Ks" | "Ke")] => *line = format!("{key} -"),
             _ => {}
         }
     }
@@ -91,6 +93,10 @@ pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) ->
         is_read
     });
     lines.join("\n").into_bytes()
+}
+
+fn are_numbers(words: &[&str]) -> bool {
+    words.iter().all(|word| word.parse::<f32>().is_ok())
 }
 
 /// Lines, those that end in `\` with the next one. A comment may end in a folder's name.

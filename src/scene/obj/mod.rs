@@ -199,7 +199,8 @@ impl<'a> Slots<'a> {
     fn read(&mut self, material: &Material, report: &mut ImportReport) -> Slot {
         report.note(Fate::Used, "materials", &material.name);
         // What is no number is as 0.
-        let unit = |x: f32| x.max(0.0).min(1.0);
+        let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+        let unit = |x: f32| within(x, 1.0);
         let number = |key: &str| {
             material
                 .unknown_param
@@ -221,7 +222,7 @@ impl<'a> Slots<'a> {
             base_color: material.diffuse.unwrap_or([0.6; 3]).map(unit),
             metalness: number("Pm").map_or(0.0, unit),
             roughness: unit(number("Pr").unwrap_or(alpha.sqrt())),
-            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| x.max(0.0).min(1e6)),
+            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
             opacity,
             alpha_mode: if opacity < 1.0 {
                 AlphaMode::Blend

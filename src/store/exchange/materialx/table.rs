@@ -189,7 +189,9 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
         .told("at most 1 in what transmits"),
     ior("ior", "1.5", To("specular.ior")),
     unit("alpha", "1", "0.25", To("geometry.opacity")).of("alpha_mode"),
-    row("alpha_mode", "0", "1", To("geometry.opacity")).within(0.0, 2.0),
+    row("alpha_mode", "0", "1", To("geometry.opacity"))
+        .within(0.0, 2.0)
+        .of("alpha"),
     unit("alpha_cutoff", "0.5", "0.125", To("geometry.opacity")).of("alpha"),
     row("iridescence", "0", "0.5", FILM),
     row("iridescence_ior", "1.3", "1.5", FILM).of("iridescence"),

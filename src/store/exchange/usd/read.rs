@@ -31,68 +31,86 @@ enum Open {
 
 /// The materials of a text.
 pub(super) fn materials(text: &str) -> Vec<Read> {
-    let mut found: Vec<Read> = Vec::new();
-    let mut open = Vec::new();
-    let mut next = Open::Other;
-    // Inputs of the shader that is open, and whether it is a preview surface.
-    let (mut inputs, mut is_preview) = (Vec::new(), false);
+    let mut lines = Lines {
+        found: Vec::new(),
+        open: Vec::new(),
+        next: Open::Other,
+        inputs: Vec::new(),
+        is_preview: false,
+    };
     for line in text.lines().map(str::trim) {
         if let Some((kind, name)) = definition(line) {
-            next = kind;
-            match kind {
-                Open::Material => found.push(Read {
-                    name,
-                    ..Read::default()
-                }),
-                Open::Shader => (inputs, is_preview) = (Vec::new(), false),
-                Open::Other => {}
-            }
+            lines.begin(kind, name);
         }
-        let bare = without_strings(line);
-        for bracket in bare.chars().filter(|letter| matches!(letter, '{' | '}')) {
-            if bracket == '{' {
+        lines.brackets(&without_strings(line));
+        lines.attribute(line);
+    }
+    lines.found
+}
+
+/// A text that is read line by line.
+struct Lines {
+    found: Vec<Read>,
+    open: Vec<Open>,
+    /// What the next `{` belongs to.
+    next: Open,
+    /// Inputs of the shader that is open, and whether it is a preview surface.
+    inputs: Vec<(String, String)>,
+    is_preview: bool,
+}
+
+impl Lines {
+    fn begin(&mut self, kind: Open, name: String) {
+        self.next = kind;
+        match kind {
+            Open::Material => self.found.push(Read {
+                name,
+                ..Read::default()
+            }),
+            Open::Shader => (self.inputs, self.is_preview) = (Vec::new(), false),
+            Open::Other => {}
+        }
+    }
+
+    fn brackets(&mut self, bare: &str) {
+        for bracket in bare.chars() {
+            match bracket {
                 // A `{` after an `=` is a dictionary of the metadata.
-                let is_of_value = bare.contains('=');
-                open.push(if is_of_value {
-                    Open::Other
-                } else {
-                    std::mem::replace(&mut next, Open::Other)
-                });
-            } else if let Some(Open::Shader) = open.pop()
-                && is_preview
-                && let Some(material) = found.last_mut()
-            {
-                material.preview = Some(std::mem::take(&mut inputs));
-            }
-        }
-        if let Some(value) = line
-            .strip_prefix("string ")
-            .and_then(|rest| rest.strip_prefix(carried::MARK))
-        {
-            let text = value.trim_start().strip_prefix('=').map(str::trim_start);
-            if let Some(material) = found.last_mut() {
-                material.exact = text.and_then(unquoted).and_then(|text| carried::from_text(&text));
-            }
-        } else if let Some((_, shown)) = line.split_once("ui:displayName =")
-            && open.last() == Some(&Open::Material)
-        {
-            let name = unquoted(shown.trim_start());
-            found
-                .last_mut()
-                .into_iter()
-                .zip(name)
-                .for_each(|(material, name)| material.name = name);
-        } else if open.last() == Some(&Open::Shader)
-            && let Some((left, value)) = line.split_once('=')
-        {
-            let left = left.trim();
-            is_preview |= left.ends_with("info:id") && value.contains(&format!("\"{PREVIEW}\""));
-            if let Some((_, name)) = left.split_once(" inputs:") {
-                inputs.push((name.to_owned(), value.trim().to_owned()));
+                '{' if bare.contains('=') => self.open.push(Open::Other),
+                '{' => self.open.push(std::mem::replace(&mut self.next, Open::Other)),
+                '}' => {
+                    let is_preview = self.open.pop() == Some(Open::Shader) && self.is_preview;
+                    if let Some(material) = self.found.last_mut().filter(|_| is_preview) {
+                        material.preview = Some(std::mem::take(&mut self.inputs));
+                    }
+                }
+                _ => {}
             }
         }
     }
-    found
+
+    fn attribute(&mut self, line: &str) {
+        let Some((left, value)) = line.split_once('=') else {
+            return;
+        };
+        let (left, value) = (left.trim(), value.trim());
+        let inside = self.open.last().copied();
+        if inside == Some(Open::Shader) {
+            self.is_preview |= left.ends_with("info:id") && value.contains(&format!("\"{PREVIEW}\""));
+            if let Some((_, name)) = left.split_once(" inputs:") {
+                self.inputs.push((name.to_owned(), value.to_owned()));
+            }
+        } else if let Some(material) = self.found.last_mut() {
+            if left == format!("string {}", carried::MARK) {
+                material.exact = unquoted(value).and_then(|text| carried::from_text(&text));
+            } else if inside == Some(Open::Material)
+                && left.ends_with("ui:displayName")
+                && let Some(name) = unquoted(value)
+            {
+                material.name = name;
+            }
+        }
+    }
 }
 
 /// The kind and the name of the prim that a line begins.
