@@ -84,20 +84,9 @@ impl Mesh {
         }
     }
 
-    /// Makes room for another mesh so many times: growing step by step would take up to twice the memory.
-    pub fn reserve(&mut self, other: &Mesh, times: usize) {
-        let (vertices, triangles) = (other.positions.len() * times, other.triangles.len() * times);
-        self.positions.reserve_exact(vertices);
-        self.normals.reserve_exact(vertices);
-        self.uvs.reserve_exact(vertices);
-        self.tangents.reserve_exact(vertices);
-        self.triangles.reserve_exact(triangles);
-        self.slots.reserve_exact(triangles);
-    }
-
     /// Adds all vertices and triangles of `other`, with their slots as they are.
     pub fn append(&mut self, other: Mesh) {
-        if self.positions.capacity() == 0 && self.triangles.capacity() == 0 {
+        if self.positions.is_empty() && self.triangles.is_empty() {
             // Most files have one mesh: nothing needs to be copied.
             *self = other;
             return;

@@ -196,13 +196,15 @@ impl Part {
         self.objects = order.iter().map(|&triangle| self.objects[triangle as usize]).collect();
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];
-        let mut old_of_new: Vec<u32> = Vec::with_capacity(self.positions.len());
+        let mut positions = room_in_large_pages(self.positions.len());
+        let mut vertices = room_in_large_pages(self.positions.len());
         let sorted = order.iter().map(|&triangle| {
             self.triangles[triangle as usize].map(|vertex| {
                 let new = &mut new_of_old[vertex as usize];
                 if *new == UNUSED {
-                    *new = old_of_new.len() as u32;
-                    old_of_new.push(vertex);
+                    *new = positions.len() as u32;
+                    positions.push(self.positions[vertex as usize]);
+                    vertices.push(self.vertices[vertex as usize]);
                 }
                 *new
             })
@@ -210,18 +212,9 @@ impl Part {
         let mut triangles = room_in_large_pages(order.len());
         triangles.extend(sorted);
         self.triangles = in_large_pages(triangles);
-        drop(new_of_old);
-        // One after the other: large models are here twice otherwise.
-        self.positions = chosen(&self.positions, &old_of_new);
-        self.vertices = chosen(&self.vertices, &old_of_new);
+        self.positions = in_large_pages(positions);
+        self.vertices = in_large_pages(vertices);
     }
-}
-
-/// The values at these places, in their order.
-fn chosen<T: Copy>(values: &[T], places: &[u32]) -> Vec<T> {
-    let mut sorted = room_in_large_pages(places.len());
-    sorted.extend(places.iter().map(|&place| values[place as usize]));
-    in_large_pages(sorted)
 }
 
 /// Whether a triangle covers anything.

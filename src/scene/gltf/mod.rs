@@ -135,10 +135,6 @@ fn assemble(
             node.world_from_node
         };
         if !is_bent && *uses_left > 0 {
-            if is_first {
-                let times = (*uses_left + 1).min(MAX_REPEATED_VERTICES / local.positions.len().max(1) + 1);
-                whole.reserve(&local, times);
-            }
             kept[node.mesh] = Some(local.clone());
         }
         let first = whole.triangles.len();
