@@ -88,6 +88,8 @@ mod farm;
 mod file_colors;
 #[path = "suite/file_kinds.rs"]
 mod file_kinds;
+#[path = "suite/file_parameters.rs"]
+mod file_parameters;
 #[path = "suite/file_scenes.rs"]
 mod file_scenes;
 #[path = "suite/files.rs"]

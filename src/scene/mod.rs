@@ -10,6 +10,7 @@ mod convex;
 pub mod endings;
 pub mod environment;
 pub mod facing;
+mod file_parameter;
 mod files;
 mod float_tiff;
 mod geometry;
@@ -42,8 +43,9 @@ pub mod teapot;
 pub mod texture;
 
 pub use budget::{Budget, LIMIT_VARIABLE, OverBudget};
+pub use file_parameter::{FileParameter, Goes};
 pub use geometry::{Geometry, NO_OBJECT};
-pub use gltf::{FileParameter, GLTF_PARAMETERS, Goes, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
+pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
 pub use import::{holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
@@ -52,6 +54,7 @@ pub use model::{
     AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, ModelSource, Slot, Texture, TextureRef, Wrap,
     load, load_watched, load_with,
 };
+pub use obj::MTL_PARAMETERS;
 pub use part::{Part, Vertex};
 pub use report::{Entry, Fate, ImportReport};
 pub use stage::{LIGHTS_MAX, LightKind, ModelCamera, ModelLens, ModelLight};

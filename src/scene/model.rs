@@ -486,6 +486,14 @@ pub enum ModelError {
         /// Which rule.
         reason: String,
     },
+    /// Nothing to draw, as something that the file refers to is missing.
+    #[error("{}: nothing to show; {reason}; put what is missing beside the model, or export as .glb", path.display())]
+    Incomplete {
+        /// The model file.
+        path: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
     /// The file needs what is not supported.
     #[error("{}: needs the glTF extension {name}, which is not supported; {remedy}", path.display())]
     Extension {

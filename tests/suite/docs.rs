@@ -13,9 +13,9 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
-use glossmith::scene::{FileParameter, GLTF_PARAMETERS, Goes};
+use glossmith::scene::{FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS};
 use glossmith::store::PRESETS;
-use glossmith::store::exchange::{FORMATS, Registered};
+use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
 use glossmith::store::file_kind::FileKind;
 use glossmith::store::preset::command_line_name;
 
@@ -234,6 +234,25 @@ fn option_name(option: &str) -> &str {
     option.trim_matches('`').split(' ').next().unwrap_or_default()
 }
 
+fn range(parameter: &FileParameter) -> String {
+    parameter
+        .range
+        .map_or(String::new(), |[least, most]| format!("from {least} to {most}"))
+}
+
+fn layer(parameter: &FileParameter) -> String {
+    match parameter.layer {
+        "" => String::new(),
+        layer => format!("part of `{layer}`"),
+    }
+}
+
+/// What becomes of the inputs of a kind of surface in MaterialX.
+fn surface_inputs(name: &str) -> String {
+    let kind = SURFACES.iter().find(|kind| kind.name == name);
+    file_parameters(kind.expect("a kind of surface").inputs)
+}
+
 /// What becomes of the parameters of a file.
 fn file_parameters(all: &[FileParameter]) -> String {
     let row = |parameter: &FileParameter| {
@@ -250,7 +269,11 @@ fn file_parameters(all: &[FileParameter]) -> String {
         vec![
             format!("`{}`", place.replace('/', ".")),
             goes,
-            parameter.told.to_owned(),
+            [parameter.told.to_owned(), range(parameter), layer(parameter)]
+                .into_iter()
+                .filter(|words| !words.is_empty())
+                .collect::<Vec<_>>()
+                .join("; "),
         ]
     };
     table(&["parameter", "goes to", "told"], all.iter().map(row))
@@ -271,9 +294,14 @@ fn block(name: &str) -> String {
         "formats" => formats(),
         "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
-        name => match name.strip_prefix("options of glossmith") {
-            Some(command) => options(command.trim()),
-            None => panic!("the guide asks for '{name}', which nobody makes"),
+        "keywords of MTL" => file_parameters(MTL_PARAMETERS),
+        name => match (
+            name.strip_prefix("inputs of "),
+            name.strip_prefix("options of glossmith"),
+        ) {
+            (Some(kind), _) => surface_inputs(kind),
+            (_, Some(command)) => options(command.trim()),
+            _ => panic!("the guide asks for '{name}', which nobody makes"),
         },
     }
 }

@@ -286,6 +286,7 @@ fn a_file_that_was_edited_elsewhere_is_taken_as_it_is() {
             "name=\"base_metalness\" type=\"float\" value=\"0.25\"",
         ),
         ("gltf", "gltf", "\"metallicFactor\": 1.0", "\"metallicFactor\": 0.25"),
+        ("usd", "usda", "inputs:metallic = 1", "inputs:metallic = 0.25"),
     ] {
         let name = format!("gold.{ending}");
         place.done(&format!("convert gold {name} --to {format}"));

@@ -260,12 +260,49 @@ fn what_is_legal_is_not_called_damaged() {
         "{message}"
     );
 
+    let (_, document) = square();
+    let text = document.to_string();
+    let message = folder
+        .load("alone.gltf", text.as_bytes())
+        .expect_err("no data")
+        .to_string();
+    assert!(
+        message.contains("a buffer that has no data") && !message.contains("damaged"),
+        "{message}"
+    );
+    let old = br#"{"asset": {"version": "1.0"}, "meshes": {"a": {}}}"#;
+    let message = folder.load("old.gltf", old).expect_err("the first version").to_string();
+    assert!(
+        message.contains("of glTF version 1.0") && !message.contains("damaged"),
+        "{message}"
+    );
+
     let (buffer, mut document) = square();
     document["textures"] = json!([{"name": "for an extension"}]);
     document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
     let model = folder.load_glb(&document, &buffer).expect("loads");
     let breach = model.report.entries.iter().find(|entry| entry.what.contains("breach"));
     assert_eq!(breach, None);
+}
+
+/// Chunks that do not begin at multiples of four bytes are found.
+#[test]
+fn chunks_without_padding_are_read() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    document["asset"]["generator"] = json!("odd");
+    while document.to_string().len() % 4 == 0 {
+        document["asset"]["generator"] = json!("oddly");
+    }
+    let text = document.to_string();
+    let length = (12 + 8 + text.len() + 8 + buffer.bytes.len()) as u32;
+    let mut bytes = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length.to_le_bytes()].concat();
+    for (kind, data) in [(b"JSON", text.as_bytes()), (b"BIN\0", &buffer.bytes)] {
+        bytes.extend((data.len() as u32).to_le_bytes());
+        bytes.extend(kind);
+        bytes.extend(data);
+    }
+    assert_eq!(folder.load("odd.glb", &bytes).expect("loads").mesh.triangles.len(), 2);
 }
 
 /// A detail that the format asks for and that is not there costs the detail alone.

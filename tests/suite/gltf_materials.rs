@@ -226,7 +226,7 @@ fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
     let mut document = buffer.document(json!([primitive]));
     document["images"] = json!([{"bufferView": view, "mimeType": "image/webp", "name": "leaf"}]);
     document["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
-    document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["materials"] = json!([{"doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
     document["extensionsRequired"] = json!(["EXT_texture_webp"]);
     let model = load_plain(&document, &buffer);
     assert_eq!(

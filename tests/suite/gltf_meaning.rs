@@ -284,6 +284,26 @@ fn put(material: &mut Value, place: &str, value: Value) {
     *keys.fold(material, |at, key| &mut at[key]) = value;
 }
 
+/// A surface that the file shows from its front alone is told where it is open; a closed one looks the same.
+#[test]
+fn open_surfaces_of_one_side_are_told() {
+    let words = "from their front alone";
+    let told = |material: Value| {
+        let (buffer, file) = painted(material, None);
+        let report = load_plain(&file, &buffer).report;
+        report.of(Fate::Approximated).any(|entry| entry.what.contains(words))
+    };
+    assert!(told(json!({})));
+    assert!(!told(json!({"doubleSided": true})));
+    // The same square once more, seen from behind: together they are closed.
+    let (mut buffer, _) = square();
+    let closed = buffer.indices(&[0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0]);
+    let mut file = buffer.document(json!([{"attributes": {"POSITION": 0}, "indices": closed, "material": 0}]));
+    file["materials"] = json!([{}]);
+    let model = load_plain(&file, &buffer);
+    assert!(model.report.is_clean(), "{:?}", model.report);
+}
+
 /// Each parameter of the table, off its default, changes the material or the report.
 #[test]
 fn no_parameter_of_a_material_is_dropped_in_silence() {

@@ -23,8 +23,8 @@ fn variants() -> (Buffer, Value) {
     document["images"] = json!([{"uri": "gone.png", "name": "bark"}]);
     document["textures"] = json!([{"source": 0}]);
     document["materials"] = json!([
-        {"name": "Day", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
-        {"name": "Night", "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0.5, 1], "metallicFactor": 0}},
+        {"name": "Day", "doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+        {"name": "Night", "doubleSided": true, "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0.5, 1], "metallicFactor": 0}},
     ]);
     let primitive = &mut document["meshes"][0]["primitives"][0];
     primitive["material"] = json!(0);

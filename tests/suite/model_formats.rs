@@ -68,7 +68,7 @@ fn obj_files_come_with_their_materials() {
 /// A square, its lines ended in ways that other programs write.
 const ODD: &str = "# C:\\models\\\nmtllib odd.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                    usemtl\tClear\nf 1/1 2/2 \\\n 3/3 4/4\nusemtl \nf 1 2 3\n";
-const ODD_MTL: &str = "newmtl Clear\nKd 0 0 1\nKs spectral steel.rfl\nTr 0.75\nTf 1 1 1\n\
+const ODD_MTL: &str = "newmtl Clear\nKd 0 0 1\nKs spectral steel.rfl\nTr 0.75\nTf 0.5 1 1\n\
                        map_Kd -s 4 2 1 -o 0.25 0 0 -clamp on -imfchan r four columns.png\nnewmtl\nKd 1 0 0\n";
 
 /// Nothing of an OBJ file is refused for a line: it goes on after a `\\`, `usemtl` may be without a name, `vt` without v.
@@ -92,7 +92,7 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     let texture = clear.base_color_texture.expect("a name with a space");
     assert_eq!(texture.texture_from_mesh_uv, [4.0, 0.0, 0.25, 0.0, 2.0, -1.0]);
     assert_eq!(texture.wrap, [Wrap::ClampToEdge; 2]);
-    for words in ["-imfchan r", "Tf of a .mtl material", "Ks spectral steel.rfl"] {
+    for words in ["-imfchan r", "passes through (Tf)", "Ks spectral steel.rfl"] {
         says(&model, Fate::Ignored, words);
     }
     // Grey, not white.
@@ -103,6 +103,30 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     assert_eq!(grey.slots[0].base_color, [0.5, 0.5, 0.0]);
     assert_eq!(grey.slots[0].emission, [0.0; 3]);
     says(&grey, Fate::Missing, "a texture, grey instead");
+}
+
+/// Some vertices with a colour, a file in UTF-16, one that begins with a mark, and colours of one number: all are read.
+#[test]
+fn what_other_programs_write_into_obj_files_is_read() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("m.mtl"), "newmtl \nKs 0\nKd 0.5 0.5\nKe\n").unwrap();
+    let text = "mtllib m.mtl\nusemtl \nv 0 0 0\nv 1 0 0 0 0 1\nv 0 1 0\nf 1 2 3\n";
+    let wide = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
+    let marked = ["\u{feff}", text].concat().into_bytes();
+    let big = [vec![0xfe, 0xff], wide(u16::to_be_bytes)].concat();
+    let little = [vec![0xff, 0xfe], wide(u16::to_le_bytes)].concat();
+    for (name, bytes) in [
+        ("plain", text.into()),
+        ("marked", marked),
+        ("big", big),
+        ("little", little),
+    ] {
+        let model = folder.load(&format!("{name}.obj"), &bytes).expect(name);
+        let white = [1.0; 4];
+        assert_eq!(model.mesh.colors, [white, [0.0, 0.0, 1.0, 1.0], white], "{name}");
+        assert_eq!(model.slots[0].base_color, [0.5; 3], "{name}: {:?}", model.report);
+        says(&model, Fate::Ignored, "a line of a library of materials");
+    }
 }
 
 fn ply_header(format: &str) -> String {

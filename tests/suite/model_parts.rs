@@ -26,7 +26,8 @@ fn scattered(folder: &Folder) -> [PathBuf; 3] {
     document["buffers"][0]["uri"] = json!("square.bin");
     document["images"] = json!([{"uri": "textures/Wood.png"}]);
     document["textures"] = json!([{"source": 0}]);
-    document["materials"] = json!([{"name": "Wood", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["materials"] =
+        json!([{"name": "Wood", "doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
     let paths = ["a/square.gltf", "b/square.bin", "c/wood.PNG"].map(|name| folder.path(name));
     for path in &paths {

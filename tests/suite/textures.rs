@@ -167,6 +167,7 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
         "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
         "emissiveTexture": {"index": 0, "texCoord": 1},
         "normalTexture": {"index": 0, "texCoord": 0},
+        "doubleSided": true,
     });
     let model = load(&material, &[four_texels()], &json!({}));
     assert_eq!(model.mesh.second_uvs[0].to_array(), [0.25, 0.75]);

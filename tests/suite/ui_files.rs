@@ -135,7 +135,8 @@ fn a_model_its_parts_and_its_light_are_dropped_together() {
     document["buffers"][0]["uri"] = json!("square.bin");
     document["images"] = json!([{"uri": "wood.png"}]);
     document["textures"] = json!([{"source": 0}]);
-    document["materials"] = json!([{"name": "Wood", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["materials"] =
+        json!([{"name": "Wood", "doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
     let path = |name: &str| folder.path(name);
     for place in ["model", "data"] {

@@ -8,6 +8,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use exr::block::chunk::{Chunk, CompressedBlock};
+use exr::compression::Compression;
 use exr::error::{Error as ExrError, Result as ExrResult};
 use exr::io::PeekRead;
 use exr::math::Vec2;
@@ -184,6 +185,10 @@ fn number(sample_type: SampleType, bytes: &[u8]) -> f32 {
 
 /// Decompresses lines. The crate takes a block's size from the bytes of a pixel, which here are a mean over the block.
 fn decompress(header: &Header, compressed: Vec<u8>, first: usize, lines: usize) -> ExrResult<Vec<u8>> {
+    // The crate's B44 takes all channels for as large as the picture.
+    if matches!(header.compression, Compression::B44 | Compression::B44A) {
+        return Err(ExrError::NotSupported("B44 compression of coarse chroma".into()));
+    }
     let width = header.layer_size.width();
     let bytes_of_line = |row: usize| {
         let of_channel = |channel: &ChannelDescription| {

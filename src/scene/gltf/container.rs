@@ -81,6 +81,7 @@ impl Document {
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
         let Plain(mut raw) = parse(path, text)?;
+        check_version(path, &raw)?;
         complete(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
@@ -94,7 +95,6 @@ impl Document {
             decompressed: HashMap::new(),
             unknown_required: Vec::new(),
         };
-        document.check_version()?;
         // The rest of a large file's bytes would be there twice.
         let blob = blob.map(|place| {
             bytes.truncate(place.end);
@@ -129,19 +129,6 @@ impl Document {
     /// An extension of a material, mesh or other part of the file, given by the way to it.
     pub fn extension(&self, part: &Json, name: &str) -> Option<Json> {
         part.get("extensions")?.get(name).cloned()
-    }
-
-    fn check_version(&self) -> Result<(), ModelError> {
-        match self.root.asset.version.split('.').next() {
-            Some("2") => Ok(()),
-            _ => {
-                let reason = format!("it is of glTF version {}", self.root.asset.version);
-                Err(ModelError::NotGltf {
-                    path: self.path.clone(),
-                    reason,
-                })
-            }
-        }
     }
 
     /// Tells of extensions that are not known: what they change is not shown, the rest is.
@@ -421,6 +408,22 @@ fn is_harmless(place: &str) -> bool {
     ends.iter().any(|end| place.ends_with(end)) || place.starts_with("animations") || place.contains("extensions")
 }
 
+/// Refuses files of other versions, whose JSON is another.
+fn check_version(path: &Path, raw: &Json) -> Result<(), ModelError> {
+    let version = raw["asset"]["version"].as_str().unwrap_or_default();
+    if version.split('.').next() != Some("2") {
+        let reason = match version {
+            "" => "it names no version of glTF".to_owned(),
+            version => format!("it is of glTF version {version}"),
+        };
+        return Err(ModelError::NotGltf {
+            path: path.to_owned(),
+            reason,
+        });
+    }
+    Ok(())
+}
+
 /// The JSON of a file's bytes, and where its binary chunk is.
 fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), ModelError> {
     let not_gltf = |reason: String| ModelError::NotGltf {
@@ -463,14 +466,21 @@ fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<Range<usize>>)> {
     if kind != *b"JSON" {
         return None;
     }
-    match next_chunk(rest) {
-        Some((kind, data, _)) => {
-            let start = glb.len() - rest.len() + 8;
-            Some((json, (kind == *b"BIN\0").then_some(start..start + data.len())))
+    let padding = json.len().next_multiple_of(4) - json.len();
+    let binary = |skipped: usize| match next_chunk(rest.get(skipped..)?)? {
+        (kind, data, _) if kind == *b"BIN\0" => {
+            let start = glb.len() - rest.len() + skipped + 8;
+            Some(start..start + data.len())
         }
-        // Some writers leave a few bytes after the last chunk.
-        None => (rest.len() < 8).then_some((json, None)),
+        _ => None,
+    };
+    // Some writers do not begin chunks at multiples of four bytes.
+    if let Some(place) = binary(padding).or_else(|| binary(0)) {
+        return Some((json, Some(place)));
     }
+    let padded = rest.get(padding..).unwrap_or_default();
+    // Some leave a few bytes after the last chunk.
+    (padded.len() < 8 || next_chunk(padded).is_some()).then_some((json, None))
 }
 
 /// The kind and the data of the first chunk, and what follows it.
@@ -478,8 +488,7 @@ fn next_chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let (head, tail) = bytes.split_at_checked(8)?;
     let [a, b, c, d, kind @ ..] = <[u8; 8]>::try_from(head).ok()?;
     let (data, rest) = tail.split_at_checked(u32::from_le_bytes([a, b, c, d]) as usize)?;
-    let padding = data.len().next_multiple_of(4) - data.len();
-    Some((kind, data, rest.get(padding..).unwrap_or_default()))
+    Some((kind, data, rest))
 }
 
 fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &[u8]) -> Result<T, ModelError> {

@@ -24,7 +24,7 @@ use std::path::Path;
 use glam::DMat4;
 
 pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
-pub use self::material::{FileParameter, GLTF_PARAMETERS, Goes};
+pub use self::material::GLTF_PARAMETERS;
 pub use self::material_extensions::kept_keys;
 
 use self::container::Document;
@@ -154,7 +154,7 @@ fn assemble(
     Ok((whole, objects))
 }
 
-/// Why a file shows nothing: it is damaged where it has triangles.
+/// Why a file shows nothing: something is missing, or it is damaged where it has triangles.
 fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report: &ImportReport) -> ModelError {
     if let Some(name) = document.unknown_required.first() {
         return ModelError::Extension {
@@ -176,7 +176,14 @@ fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report:
     if blamed.is_empty() {
         return ModelError::NoTriangles { path: path.to_owned() };
     }
-    document.invalid(format!("no triangles in its scene; {}", blamed.join(", ")))
+    let reason = blamed.join(", ");
+    if report.of(Fate::Missing).any(|entry| entry.what.starts_with("a buffer")) {
+        return ModelError::Incomplete {
+            path: path.to_owned(),
+            reason,
+        };
+    }
+    document.invalid(format!("no triangles in its scene; {reason}"))
 }
 
 fn materials_variants(document: &Document) -> Vec<String> {

@@ -14,6 +14,9 @@ use crate::scene::mesh::Mesh;
 use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
+/// Least share of a surface's area by which its sides differ where it counts as open.
+const OPEN: f64 = 0.01;
+
 /// What bends a mesh at a node.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Bending<'a> {
@@ -60,7 +63,25 @@ pub(super) fn read_mesh(
             }
         }
     }
+    if is_open(&whole, |slot| materials.is_one_sided(slot)) {
+        let what = "open surfaces that the file shows from their front alone, seen from both sides";
+        report.note(Fate::Approximated, what, &name);
+    }
     whole
+}
+
+/// Whether the triangles of the chosen slots surely are no closed surface: the areas of one, as vectors, sum up to nothing.
+fn is_open(mesh: &Mesh, is_chosen: impl Fn(u32) -> bool) -> bool {
+    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+    for triangle in (0..mesh.triangles.len()).filter(|triangle| is_chosen(mesh.slots[*triangle])) {
+        let [a, b, c] = mesh.corners(triangle);
+        let area = (b - a).cross(c - a);
+        if area.is_finite() {
+            sum += area;
+            total += area.length();
+        }
+    }
+    sum.length() > OPEN * total
 }
 
 /// Whether a mesh is said to have triangles with places, or is not there at all.

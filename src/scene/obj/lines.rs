@@ -7,42 +7,81 @@ use crate::scene::report::{Fate, ImportReport};
 /// What a material is called whose name is left out.
 const UNNAMED: &str = "(unnamed)";
 
-/// The lines of an OBJ file: those that go on after a `\` are joined, `usemtl` has a name, `vt` two coordinates.
+/// The lines of an OBJ file: those that go on after a `\` are joined, `usemtl` has a name, `vt` two coordinates, and where
+/// some vertices have a colour the others are white.
 pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let is_text = std::str::from_utf8(bytes).is_ok();
-    if is_text && !bytes.split(|byte| *byte == b'\n').any(is_odd) {
-        return Cow::Borrowed(bytes);
+    let text = text_of(bytes);
+    let are_some_colored = has_some_colors(text.as_bytes());
+    if let Cow::Borrowed(plain) = text
+        && !are_some_colored
+        && !plain.as_bytes().split(|byte| *byte == b'\n').any(is_odd)
+    {
+        return Cow::Borrowed(plain.as_bytes());
     }
-    let text = String::from_utf8_lossy(bytes);
     let lines = joined(&text).into_iter().map(|line| {
         let words = || line.split_whitespace();
         match (words().next(), words().count()) {
             (Some("usemtl"), 1) => format!("usemtl {UNNAMED}"),
             (Some("usemtl"), _) => line.replacen('\t', " ", 1),
             (Some("vt"), 2) => format!("{line} 0"),
+            (Some("v"), 4) if are_some_colored => format!("{line} 1 1 1"),
             _ => line,
         }
     });
     Cow::Owned(lines.collect::<Vec<_>>().join("\n").into_bytes())
 }
 
+/// What files in UTF-8 may begin with.
+const UTF_8: &[u8] = b"\xef\xbb\xbf";
+
+/// The text of a file in UTF-8 or UTF-16.
+fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    let of_units = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes.as_chunks::<2>().0.iter().map(|pair| unit(*pair)).collect();
+        Cow::Owned(String::from_utf16_lossy(&units))
+    };
+    match bytes {
+        [0xfe, 0xff, rest @ ..] => of_units(rest, u16::from_be_bytes),
+        [0xff, 0xfe, rest @ ..] => of_units(rest, u16::from_le_bytes),
+        _ => String::from_utf8_lossy(bytes.strip_prefix(UTF_8).unwrap_or(bytes)),
+    }
+}
+
+/// Whether some vertices have a colour and others have none.
+fn has_some_colors(bytes: &[u8]) -> bool {
+    let vertices = bytes
+        .split(|byte| *byte == b'\n')
+        .filter(|line| line.starts_with(b"v "));
+    let mut has_color = vertices.map(|line| words(line) > 4);
+    let first = has_color.next();
+    has_color.any(|has| Some(has) != first)
+}
+
+fn words(line: &[u8]) -> usize {
+    let words = line.split(u8::is_ascii_whitespace);
+    words.filter(|word| !word.is_empty()).count()
+}
+
 fn is_odd(line: &[u8]) -> bool {
     let line = line.trim_ascii();
     line.ends_with(b"\\")
         || line.starts_with(b"usemtl") && !line.starts_with(b"usemtl ")
-        || line.starts_with(b"vt")
-            && line
-                .split(u8::is_ascii_whitespace)
-                .filter(|word| !word.is_empty())
-                .count()
-                == 2
+        || line.starts_with(b"vt") && words(line) == 2
 }
 
 /// The lines of a library of materials that can be read; the others are told.
 pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) -> Vec<u8> {
-    let mut lines = joined(&String::from_utf8_lossy(bytes));
-    for line in lines.iter_mut().filter(|line| line.trim() == "newmtl") {
-        *line = format!("newmtl {UNNAMED}");
+    let mut lines = joined(&text_of(bytes));
+    for line in &mut lines {
+        match line.split_whitespace().collect::<Vec<_>>()[..] {
+            ["newmtl"] => *line = format!("newmtl {UNNAMED}"),
+            // Green and blue that are left out are as red; tobj panics without them.
+            [key @ ("Ka" | "Kd" | "Ks" | "Ke"), ref numbers @ ..] if numbers.len() < 3 && are_numbers(numbers) => {
+                let red = numbers.first().unwrap_or(&"-");
+                *line = format!("{key} {red} {red} {red}");
+            }
+            _ => {}
+        }
     }
     lines.retain(|line| {
         let alone = format!("newmtl alone\n{line}\n");
@@ -54,6 +93,10 @@ pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) ->
         is_read
     });
     lines.join("\n").into_bytes()
+}
+
+fn are_numbers(words: &[&str]) -> bool {
+    words.iter().all(|word| word.parse::<f32>().is_ok())
 }
 
 /// Lines, those that end in `\` with the next one. A comment may end in a folder's name.

@@ -5,10 +5,13 @@
 
 mod lines;
 mod map;
+mod table;
 
 use std::cell::RefCell;
 use std::io::BufReader;
 use std::path::Path;
+
+pub use self::table::MTL_PARAMETERS;
 
 use self::map::Map;
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -201,7 +204,9 @@ impl<'a> Slots<'a> {
 
     fn read(&mut self, material: &Material, report: &mut ImportReport) -> Slot {
         report.note(Fate::Used, "materials", &material.name);
-        let unit = |color: [f32; 3]| color.map(|x| x.clamp(0.0, 1.0));
+        // What is no number is as 0.
+        let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+        let unit = |x: f32| within(x, 1.0);
         let number = |key: &str| {
             material
                 .unknown_param
@@ -214,15 +219,16 @@ impl<'a> Slots<'a> {
         let shininess = material.shininess.unwrap_or(0.0).max(0.0);
         // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
         let alpha = (2.0 / (shininess + 2.0)).sqrt();
-        let specular = material.specular.unwrap_or([0.0; 3]);
+        let is_matte = matches!(material.illumination_model, Some(0 | 1));
+        let is_shiny = material.specular.is_some_and(|color| color.iter().any(|x| *x > 0.0)) || number("Pr").is_some();
         let opacity = material.dissolve.or_else(|| Some(1.0 - number("Tr")?));
-        let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
+        let opacity = opacity.map_or(1.0, unit);
         let mut slot = Slot {
             name: material.name.clone(),
-            base_color: unit(material.diffuse.unwrap_or([0.6; 3])),
-            metalness: number("Pm").unwrap_or(0.0).clamp(0.0, 1.0),
-            roughness: number("Pr").unwrap_or(alpha.sqrt()).clamp(0.0, 1.0),
-            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| x.max(0.0)),
+            base_color: material.diffuse.unwrap_or([0.6; 3]).map(unit),
+            metalness: number("Pm").map_or(0.0, unit),
+            roughness: unit(number("Pr").unwrap_or(alpha.sqrt())),
+            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
             opacity,
             alpha_mode: if opacity < 1.0 {
                 AlphaMode::Blend
@@ -231,13 +237,9 @@ impl<'a> Slots<'a> {
             },
             double_sided: true,
             ior: material.optical_density.filter(|ior| *ior >= 1.0).unwrap_or(1.5),
-            specular: if specular.iter().any(|x| *x > 0.0) || number("Pr").is_some() {
-                1.0
-            } else {
-                0.0
-            },
-            coat: number("Pc").unwrap_or(0.0).clamp(0.0, 1.0),
-            coat_roughness: number("Pcr").unwrap_or(0.0).clamp(0.0, 1.0),
+            specular: f32::from(u8::from(is_shiny && !is_matte)),
+            coat: number("Pc").map_or(0.0, unit),
+            coat_roughness: number("Pcr").map_or(0.0, unit),
             ..Slot::default()
         };
         self.read_color(material, &mut slot, report);
@@ -262,7 +264,7 @@ impl<'a> Slots<'a> {
             Picture::Missing => slot.emission = [0.0; 3],
             Picture::Unnamed => {}
         }
-        note_ignored(material, report);
+        table::tell(material, report);
         report.note(
             Fate::Approximated,
             "a .mtl material, as metalness and roughness",
@@ -372,28 +374,6 @@ impl Picture {
             Self::Found(texture) => Some(texture),
             _ => None,
         }
-    }
-}
-
-/// What is read of the keywords that tobj does not know.
-const READ: [&str; 7] = ["Pm", "Pr", "Pc", "Pcr", "Tr", "norm", "map_Ke"];
-
-/// Tells which keywords of a material are not read.
-fn note_ignored(material: &Material, report: &mut ImportReport) {
-    let known = [
-        ("map_Ks", material.specular_texture.is_some()),
-        ("map_Ns", material.shininess_texture.is_some()),
-    ];
-    let known = known.into_iter().filter_map(|(key, is_there)| is_there.then_some(key));
-    let mut others: Vec<&str> = material.unknown_param.keys().map(String::as_str).collect();
-    others.sort_unstable();
-    for key in known.chain(others.into_iter().filter(|key| !READ.contains(key))) {
-        let what = if key.starts_with("map_") {
-            format!("a texture given by {key}")
-        } else {
-            format!("{key} of a .mtl material")
-        };
-        report.note(Fate::Ignored, what, &material.name);
     }
 }
 

@@ -30,6 +30,7 @@ use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::endings::ending;
 use crate::scene::{Loading, ModelError};
 
+pub use self::materialx::{SURFACES, SurfaceKind};
 pub use self::snippet::Language;
 
 /// A format that materials are written in or read from.
@@ -120,7 +121,7 @@ pub static FORMATS: &[Registered] = registered! {
     "gltf", "glTF", ["glb", "gltf"], true, true, gltf::Gltf,
         "glTF 2.0: a project's model with its materials and textures, or a ball with the material.";
     "usd", "USD", ["usda"], true, true, usd::Usd,
-        "USD with UsdPreviewSurface and an OpenPBR surface of MaterialX. Read are the exact parameters alone.";
+        "USD as text, with UsdPreviewSurface, which is read, and an OpenPBR surface of MaterialX.";
     "mitsuba", "Mitsuba 3", ["xml"], true, true, mitsuba::Mitsuba,
         "A scene for Mitsuba 3: a ball with the material. Read are the exact parameters alone.";
     "blender", "Blender", ["py"], true, true, blender::Blender,

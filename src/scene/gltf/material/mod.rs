@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
-pub use self::table::{FileParameter, GLTF_PARAMETERS, Goes};
+pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
@@ -159,6 +159,12 @@ impl<'a> Materials<'a> {
     /// Which texture coordinates a slot's pictures use.
     pub fn uvs(&self, slot: u32) -> UvUse {
         self.slots[slot as usize].1
+    }
+
+    /// Whether the material of a slot is seen from its front alone, as the file has it.
+    pub fn is_one_sided(&self, slot: u32) -> bool {
+        let is_default = self.slot_of.get(&None) == Some(&slot);
+        !is_default && !self.slots[slot as usize].0.double_sided
     }
 
     /// Says that a mesh with this slot has colours at its vertices, with an alpha below 1 or without.

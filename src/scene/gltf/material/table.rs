@@ -3,47 +3,19 @@
 
 use serde_json::Value as Json;
 
+use crate::scene::file_parameter::{FileParameter, Goes};
 use crate::scene::report::{Fate, ImportReport};
-
-/// A parameter of a file, and what becomes of it.
-#[derive(Clone, Copy, Debug)]
-pub struct FileParameter {
-    /// Where a material has it, as a JSON pointer.
-    pub place: &'static str,
-    /// A value off its default, as JSON.
-    pub example: &'static str,
-    /// Where it goes.
-    pub goes: Goes,
-    /// What is clamped or approximated; empty where it is shown as it is.
-    pub told: &'static str,
-}
-
-/// Where a parameter of a file goes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Goes {
-    /// Into these parameters of a material.
-    To(&'static str),
-    /// Into the material's file, for when it can be shown.
-    Kept(&'static str),
-    /// Nowhere; the report says these words.
-    Nowhere(&'static str),
-}
 
 /// A reference to a texture.
 const TEXTURE: &str = r#"{"index": 0}"#;
 
 macro_rules! table {
     ($($prefix:literal { $($key:literal $example:expr => $goes:ident $to:literal $told:literal;)* })*) => {
-        &[$($(FileParameter {
-            place: concat!($prefix, $key),
-            example: $example,
-            goes: Goes::$goes($to),
-            told: $told,
-        },)*)*]
+        &[$($(FileParameter::new(concat!($prefix, $key), "", $example, Goes::$goes($to)).told($told),)*)*]
     };
 }
 
-/// Every parameter of a glTF material that the format and its extensions have.
+/// Every parameter of a glTF material that the format and its extensions have, by its JSON pointer.
 pub const GLTF_PARAMETERS: &[FileParameter] = table! {
     "/" {
         "name" r#""other""# => To "name" "";
@@ -53,7 +25,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "occlusionTexture" TEXTURE => Nowhere "an occlusion texture, which path tracing needs none of" "";
         "alphaMode" r#""BLEND""# => To "geometry.opacity_texture" "";
         "alphaCutoff" "0.25" => To "the model's slot" "";
-        "doubleSided" "true" => To "the model's slot" "every surface has two sides";
+        "doubleSided" "true" => To "the model's slot" "every surface has two sides; open ones of one side are told";
     }
     "/pbrMetallicRoughness/" {
         "baseColorFactor" "[0.5, 0.25, 0, 0.5]" => To "base.color, geometry.opacity" "";

@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::Node;
 
+use super::strict::strict;
 use crate::scene::Loading;
 use crate::scene::resource::Reach;
 use crate::store::exchange::xml::{self, escaped};
@@ -24,6 +25,7 @@ pub(super) fn whole_text(path: &Path, text: String, loading: &Loading) -> Result
 }
 
 fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>, loading: &Loading) -> Result<String, String> {
+    let text = strict(&text);
     let document = xml::parse(&text)?;
     let includes = document.descendants().filter(is_include);
     let places: Vec<_> = includes

@@ -4,10 +4,17 @@ mod artistic;
 mod bake;
 mod graph;
 mod include;
+mod inputs;
 mod read;
+mod strict;
+mod surfaces;
+mod table;
 
 use std::collections::HashMap;
 use std::path::Path;
+
+pub(super) use self::inputs::Inputs;
+pub use self::surfaces::{SURFACES, SurfaceKind};
 
 use self::artistic::edge_color;
 use super::carried;

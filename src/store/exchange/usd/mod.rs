@@ -1,5 +1,7 @@
 //! USD as text: each material with a UsdPreviewSurface for whatever reads USD, and MaterialX's OpenPBR for what reads that.
 
+mod read;
+
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,6 +11,7 @@ use super::report::Entry;
 use super::surface::{Surface, Takes};
 use super::xml::{identifier, numbers};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+use crate::document::MaterialSettings;
 
 /// Materials in a `.usda`.
 pub struct Usd;
@@ -34,13 +37,28 @@ impl Format for Usd {
         Ok(Written::text(text, reports))
     }
 
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
         let bytes = crate::store::file::read(path)?;
-        let text = String::from_utf8_lossy(&bytes);
-        let mark = format!("string {} = ", carried::MARK);
-        let marks = text.split(&mark).skip(1);
-        let materials = marks.filter_map(|rest| carried::from_text(&unquoted(rest)?));
-        carried::subject(path, materials.collect())
+        let shown_by = |material: &MaterialSettings| {
+            let inputs = preview(&Surface::of(material).0).into_iter();
+            let name = |typed: &str| typed.split_once(' ').map_or(typed, |(_, name)| name).to_owned();
+            inputs.map(|(typed, value)| (name(typed), value)).collect()
+        };
+        let found = read::materials(&String::from_utf8_lossy(&bytes)).into_iter();
+        let (materials, losses): (Vec<_>, _) = found
+            .filter_map(|read| read.material(options.lobe, options.is_plain, shown_by))
+            .unzip();
+        if materials.is_empty() {
+            return Err(ExchangeError::NoMaterial {
+                path: path.to_owned(),
+                reason: "it has no UsdPreviewSurface".to_owned(),
+            });
+        }
+        Ok(Subject {
+            materials,
+            losses,
+            ..Subject::default()
+        })
     }
 }
 

@@ -1,0 +1,89 @@
+//! The inputs of a surface that a file sets, by the table of its kind, and what becomes of them.
+
+use std::collections::BTreeMap;
+
+use crate::scene::{FileParameter, Goes};
+use crate::store::exchange::report::Entry;
+
+/// The inputs of a surface that a file sets, and what is lost of them.
+pub(in crate::store::exchange) struct Inputs {
+    kind: &'static str,
+    rows: &'static [FileParameter],
+    values: BTreeMap<String, [f32; 3]>,
+    /// What is approximated or left out.
+    pub losses: Vec<Entry>,
+}
+
+impl Inputs {
+    pub fn new(kind: &'static str, rows: &'static [FileParameter]) -> Self {
+        Self {
+            kind,
+            rows,
+            values: BTreeMap::new(),
+            losses: Vec::new(),
+        }
+    }
+
+    /// What the table says of an input.
+    pub fn row(&self, name: &str) -> Option<&'static FileParameter> {
+        self.rows.iter().find(|row| row.place == name)
+    }
+
+    pub fn set(&mut self, name: &str, value: [f32; 3]) {
+        self.values.insert(name.to_owned(), value);
+    }
+
+    /// An input as a colour: the file's, or its default.
+    pub fn color(&self, name: &str) -> [f32; 3] {
+        let row = self.row(name);
+        debug_assert!(row.is_some(), "{} has no {name} in its table", self.kind);
+        let set = self.values.get(name).copied();
+        set.or_else(|| default_of(row?)).unwrap_or_default()
+    }
+
+    /// An input as a number.
+    pub fn number(&self, name: &str) -> f32 {
+        self.color(name)[0]
+    }
+
+    /// Brings what is set into its range, and tells that and what goes nowhere.
+    pub fn settle(&mut self) {
+        let mut told = Vec::new();
+        for (name, value) in self.values.clone() {
+            let Some(row) = self.row(&name) else {
+                told.push(Entry::dropped(name, format!("{} has no such input", self.kind)));
+                continue;
+            };
+            if !row.layer.is_empty() && self.color(row.layer) == [0.0; 3] {
+                continue;
+            }
+            if let Goes::Nowhere(why) = row.goes
+                && Some(value) != default_of(row)
+            {
+                told.push(Entry::dropped(name, why));
+            } else if let Some([least, most]) = row.range {
+                let within = value.map(|x| x.clamp(least, most));
+                if within != value {
+                    let detail = format!("it is taken between {least} and {most}");
+                    told.push(Entry::approximated(name.as_str(), detail, None));
+                    self.values.insert(name, within);
+                }
+            }
+        }
+        self.losses.extend(told);
+    }
+}
+
+/// What an input is worth that is left out; nothing for directions, which are then the surface's own.
+fn default_of(row: &FileParameter) -> Option<[f32; 3]> {
+    let number = |text: &str| match text.trim() {
+        "false" => Some(0.0),
+        text => text.parse().ok(),
+    };
+    let numbers: Option<Vec<f32>> = row.default.split(',').map(number).collect();
+    match numbers?[..] {
+        [x] => Some([x; 3]),
+        [r, g, b] => Some([r, g, b]),
+        _ => None,
+    }
+}

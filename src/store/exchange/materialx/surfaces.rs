@@ -1,0 +1,258 @@
+//! The kinds of surfaces that are read, each with its inputs as a surface of Glossmith's.
+
+use super::artistic::edge_tint;
+use super::inputs::Inputs;
+use super::table;
+use crate::optics::fresnel::fresnel_f0;
+use crate::optics::lobe::anisotropy_from_ratio;
+use crate::scene::{FileParameter, widths_from_gltf};
+use crate::store::exchange::open_pbr::{NITS, widening};
+use crate::store::exchange::report::Entry;
+use crate::store::exchange::surface::Surface;
+
+/// A kind of surface that is read.
+#[derive(Debug)]
+pub struct SurfaceKind {
+    /// Name of its node.
+    pub name: &'static str,
+    /// Every input that it has, and what becomes of it.
+    pub inputs: &'static [FileParameter],
+    read: fn(&mut Inputs) -> Surface,
+}
+
+/// Every kind: name, inputs, how it is read.
+pub static SURFACES: &[SurfaceKind] = &[
+    kind("open_pbr_surface", table::OPEN_PBR, open_pbr),
+    kind("standard_surface", table::STANDARD_SURFACE, standard_surface),
+    kind("gltf_pbr", table::GLTF_PBR, gltf_pbr),
+    kind("UsdPreviewSurface", table::USD_PREVIEW_SURFACE, usd_preview_surface),
+    kind("disney_principled", table::DISNEY_PRINCIPLED, disney_principled),
+    kind("surface_unlit", table::SURFACE_UNLIT, surface_unlit),
+];
+
+const fn kind(name: &'static str, inputs: &'static [FileParameter], read: fn(&mut Inputs) -> Surface) -> SurfaceKind {
+    SurfaceKind { name, inputs, read }
+}
+
+impl SurfaceKind {
+    /// The kind of that name.
+    pub(in crate::store::exchange) fn named(name: &str) -> Option<&'static Self> {
+        SURFACES.iter().find(|kind| kind.name == name)
+    }
+
+    /// No inputs yet.
+    pub(in crate::store::exchange) fn unset(&self) -> Inputs {
+        Inputs::new(self.name, self.inputs)
+    }
+
+    /// The surface of these inputs, with what is lost of them.
+    pub(in crate::store::exchange) fn surface(&self, mut inputs: Inputs) -> (Surface, Vec<Entry>) {
+        inputs.settle();
+        let surface = (self.read)(&mut inputs);
+        (surface, inputs.losses)
+    }
+}
+
+fn weighted(color: [f32; 3], weight: f32) -> [f32; 3] {
+    color.map(|x| x * weight)
+}
+
+fn luminance(color: [f32; 3]) -> f32 {
+    0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
+}
+
+fn open_pbr(inputs: &mut Inputs) -> Surface {
+    let metalness = inputs.number("base_metalness");
+    let specular_color = inputs.color("specular_color");
+    let (tint, edge_tint) = if metalness > 0.5 {
+        ([1.0; 3], specular_color)
+    } else {
+        (specular_color, [1.0; 3])
+    };
+    let ratio = 1.0 - inputs.number("specular_roughness_anisotropy").clamp(0.0, 0.999);
+    Surface {
+        base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
+        metalness,
+        specular_weight: inputs.number("specular_weight"),
+        specular_color: tint,
+        // The weight is a metal's too, the tint is not: where both are, neither.
+        specular_on_metal: tint == [1.0; 3],
+        edge_tint,
+        ior: inputs.number("specular_ior"),
+        roughness: inputs.number("specular_roughness") / widening(ratio),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
+        transmission_weight: inputs.number("transmission_weight"),
+        transmission_color: inputs.color("transmission_color"),
+        transmission_depth: inputs.number("transmission_depth"),
+        coat_weight: inputs.number("coat_weight"),
+        coat_roughness: inputs.number("coat_roughness"),
+        coat_ior: inputs.number("coat_ior"),
+        coat_color: darkening_coat_color(inputs),
+        emission: weighted(
+            inputs.color("emission_color"),
+            inputs.number("emission_luminance") / NITS,
+        ),
+        opacity: luminance(inputs.color("geometry_opacity")),
+        ..Surface::default()
+    }
+}
+
+/// The coat's color, with what the coat takes besides by reflecting back what comes out of the base (`coat_darkening`).
+fn darkening_coat_color(inputs: &Inputs) -> [f32; 3] {
+    let color = inputs.color("coat_color");
+    let weight = inputs.number("coat_weight").clamp(0.0, 1.0);
+    let darkening = inputs.number("coat_darkening").clamp(0.0, 1.0);
+    if weight * darkening == 0.0 {
+        return color;
+    }
+    let ior = inputs.number("coat_ior");
+    let head_on = ((ior - 1.0) / (ior + 1.0)).powi(2);
+    let kept_inside = 1.0 - (1.0 - head_on) / (ior * ior);
+    let metalness = inputs.number("base_metalness");
+    let of_metal = 1.0 + (inputs.number("specular_weight") - 1.0) * metalness;
+    let base = weighted(inputs.color("base_color"), of_metal);
+    std::array::from_fn(|i| {
+        let darkened = (1.0 - kept_inside) / (1.0 - base[i] * kept_inside);
+        let left = (1.0 + (color[i] - 1.0) * weight) * (1.0 + (darkened - 1.0) * weight * darkening);
+        (1.0 + (left - 1.0) / weight).clamp(0.0, 1.0)
+    })
+}
+
+fn standard_surface(inputs: &mut Inputs) -> Surface {
+    let ratio = 1.0 - inputs.number("specular_anisotropy").clamp(0.0, 0.98);
+    let base_color = weighted(inputs.color("base_color"), inputs.number("base"));
+    let metalness = inputs.number("metalness");
+    let (weight, color) = (inputs.number("specular"), inputs.color("specular_color"));
+    // A metal has it towards its edge.
+    let (specular_weight, specular_color, edge_tint) = match metalness > 0.5 {
+        true => (1.0, [1.0; 3], edge_tint(base_color, weighted(color, weight))),
+        false => (weight, color, [1.0; 3]),
+    };
+    Surface {
+        base_color,
+        metalness,
+        specular_weight,
+        specular_color,
+        edge_tint,
+        ior: inputs.number("specular_IOR"),
+        roughness: inputs.number("specular_roughness"),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
+        rotation_deg: 360.0 * inputs.number("specular_rotation"),
+        transmission_weight: inputs.number("transmission"),
+        transmission_color: inputs.color("transmission_color"),
+        transmission_depth: inputs.number("transmission_depth"),
+        coat_weight: inputs.number("coat"),
+        coat_roughness: inputs.number("coat_roughness"),
+        coat_ior: inputs.number("coat_IOR"),
+        coat_color: inputs.color("coat_color"),
+        emission: weighted(inputs.color("emission_color"), inputs.number("emission")),
+        opacity: luminance(inputs.color("opacity")),
+        ..Surface::default()
+    }
+}
+
+fn gltf_pbr(inputs: &mut Inputs) -> Surface {
+    let distance = inputs.number("attenuation_distance");
+    let inside = inputs.color("attenuation_color");
+    let color = inputs.color("base_color");
+    let strength = inputs.number("anisotropy_strength");
+    let widths = widths_from_gltf(inputs.number("roughness"), strength);
+    if !widths.is_exact {
+        let detail = "the highlight is stretched no more than 19 : 1";
+        inputs
+            .losses
+            .push(Entry::approximated("anisotropy_strength", detail, None));
+    }
+    Surface {
+        base_color: color,
+        metalness: inputs.number("metallic"),
+        specular_weight: inputs.number("specular"),
+        specular_color: inputs.color("specular_color"),
+        ior: inputs.number("ior"),
+        roughness: widths.roughness,
+        anisotropy: widths.stretch,
+        rotation_deg: inputs.number("anisotropy_rotation").to_degrees(),
+        transmission_weight: inputs.number("transmission"),
+        transmission_color: if distance > 0.0 { inside } else { color },
+        transmission_depth: distance,
+        coat_weight: inputs.number("clearcoat"),
+        coat_roughness: inputs.number("clearcoat_roughness"),
+        emission: weighted(inputs.color("emissive"), inputs.number("emissive_strength")),
+        opacity: gltf_opacity(inputs),
+        ..Surface::default()
+    }
+}
+
+/// What is there of a surface by its alpha mode: 0 all of it, 1 all or nothing, 2 the share that alpha says.
+fn gltf_opacity(inputs: &Inputs) -> f32 {
+    let alpha = inputs.number("alpha");
+    match inputs.number("alpha_mode") {
+        0.0 => 1.0,
+        1.0 => f32::from(alpha >= inputs.number("alpha_cutoff")),
+        _ => alpha,
+    }
+}
+
+fn disney_principled(inputs: &mut Inputs) -> Surface {
+    let base_color = inputs.color("baseColor");
+    let specular = inputs.number("specular");
+    // MaterialX has the anisotropy of Standard Surface there.
+    let ratio = 1.0 - inputs.number("anisotropic").clamp(0.0, 0.98);
+    Surface {
+        base_color,
+        metalness: inputs.number("metallic"),
+        // 0.5 leaves the reflectance of the index as it is.
+        specular_weight: 2.0 * specular,
+        ior: inputs.number("ior"),
+        roughness: inputs.number("roughness"),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
+        transmission_weight: inputs.number("specTrans"),
+        transmission_color: base_color,
+        coat_weight: inputs.number("clearcoat"),
+        coat_roughness: 1.0 - inputs.number("clearcoatGloss"),
+        ..Surface::default()
+    }
+}
+
+fn usd_preview_surface(inputs: &mut Inputs) -> Surface {
+    let ior = inputs.number("ior");
+    let (opacity, threshold) = (inputs.number("opacity"), inputs.number("opacityThreshold"));
+    let is_presence = inputs.number("opacityMode") > 0.0;
+    // What is not stopped is refracted, unless the surface is cut out or is said to be there in part.
+    let (presence, transmission_weight) = match is_presence {
+        _ if threshold > 0.0 => (f32::from(opacity >= threshold), 0.0),
+        true => (opacity, 0.0),
+        false => (1.0, 1.0 - opacity),
+    };
+    let (metalness, specular_color) = match inputs.number("useSpecularWorkflow") {
+        0.0 => (inputs.number("metallic"), [1.0; 3]),
+        // The reflection head-on is a colour by itself: what the index has it is multiplied by.
+        _ => (
+            0.0,
+            weighted(inputs.color("specularColor"), fresnel_f0(ior).max(1e-3).recip()),
+        ),
+    };
+    Surface {
+        base_color: inputs.color("diffuseColor"),
+        metalness,
+        specular_color,
+        ior,
+        roughness: inputs.number("roughness"),
+        coat_weight: inputs.number("clearcoat"),
+        coat_roughness: inputs.number("clearcoatRoughness"),
+        emission: inputs.color("emissiveColor"),
+        transmission_weight,
+        opacity: presence,
+        ..Surface::default()
+    }
+}
+
+fn surface_unlit(inputs: &mut Inputs) -> Surface {
+    Surface {
+        base_color: [0.0; 3],
+        specular_weight: 0.0,
+        emission: weighted(inputs.color("emission_color"), inputs.number("emission")),
+        opacity: inputs.number("opacity"),
+        ..Surface::default()
+    }
+}
