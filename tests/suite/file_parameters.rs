@@ -65,6 +65,7 @@ fn surface(place: &Workplace, name: &str, text: &str) -> (MaterialSettings, Vec<
     let options = ReadOptions {
         lobe: ImportLobe::Ggx,
         is_plain: true,
+        ..ReadOptions::default()
     };
     let mut subject = read(&place.path(name), options).expect("is read");
     (subject.materials.remove(0), subject.losses.remove(0))
