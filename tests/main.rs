@@ -235,6 +235,8 @@ mod ui_textures;
 mod ui_workshop;
 #[path = "suite/walk.rs"]
 mod walk;
+#[path = "suite/words.rs"]
+mod words;
 #[path = "suite/worker.rs"]
 mod worker;
 #[path = "suite/xdotool_session.rs"]

@@ -158,7 +158,7 @@ fn two_metals_are_compared() {
         rival.is_some_and(|picture| picture.document.materials[0].name == "Copper")
     });
     assert_eq!(walk.app().document().materials[0].name, "Gold");
-    walk.ends("Compare two metals in one picture");
+    walk.ends("Compare two metals in one image");
 }
 
 #[test]

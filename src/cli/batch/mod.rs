@@ -23,7 +23,7 @@ use crate::store::replace::save_atomically;
 /// Arguments of `glossmith batch`.
 #[derive(Debug, Args)]
 pub struct BatchArguments {
-    /// The lists, in TOML: models, materials, environments, cameras, settings; docs/GUIDE.md shows one.
+    /// The lists, in TOML: models, materials, environments, cameras, settings; docs/tutorials/automate.md shows one.
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
     /// The folder for the pictures, in place of the file's.
