@@ -302,7 +302,9 @@ fn root() -> &'static Path {
 
 /// The pages: README, contributing, changelog, and the book in `docs`. Paths are relative to the root.
 pub fn pages() -> Vec<PathBuf> {
-    let mut found: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(PathBuf::from).into();
+    let mut found: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+        .map(PathBuf::from)
+        .into();
     let mut folders = vec![PathBuf::from("docs")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(root().join(&folder)).unwrap() {
@@ -335,7 +337,10 @@ fn the_book_has_what_the_program_has() {
             }
             continue;
         }
-        let differs = found.lines().zip(expected.lines()).position(|(found, expected)| found != expected);
+        let differs = found
+            .lines()
+            .zip(expected.lines())
+            .position(|(found, expected)| found != expected);
         assert!(
             found == expected,
             "{}, line {}: run UPDATE_DOCS=1 cargo test docs",
@@ -387,7 +392,11 @@ fn the_book_has_every_part() {
 fn files_that_the_pages_link_to_exist() {
     for page in pages() {
         let folder = page.parent().unwrap();
-        for link in text_of(&page).split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        for link in text_of(&page)
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
             let is_local = !link.contains("://") && !link.starts_with('#');
             let target = root().join(folder).join(link.split('#').next().unwrap_or_default());
             assert!(
@@ -402,7 +411,9 @@ fn files_that_the_pages_link_to_exist() {
 /// The heading's anchor as GitHub and mdBook make it.
 fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase().replace(' ', "-");
-    kept.chars().filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).collect()
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+        .collect()
 }
 
 #[test]
@@ -410,7 +421,9 @@ fn headings_that_the_pages_link_to_exist() {
     for page in pages() {
         let text = text_of(&page);
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            let Some((file, wanted)) = link.split_once('#').filter(|_| !link.contains("://")) else { continue };
+            let Some((file, wanted)) = link.split_once('#').filter(|_| !link.contains("://")) else {
+                continue;
+            };
             let target = if file.is_empty() {
                 page.clone()
             } else {
@@ -418,8 +431,14 @@ fn headings_that_the_pages_link_to_exist() {
             };
             let text = text_of(&target);
             let headings = text.lines().filter(|line| line.starts_with('#'));
-            let is_there = headings.map(|line| anchor(line.trim_start_matches('#').trim())).any(|found| found == wanted);
-            assert!(is_there, "{} refers to {link}, which has no such heading", page.display());
+            let is_there = headings
+                .map(|line| anchor(line.trim_start_matches('#').trim()))
+                .any(|found| found == wanted);
+            assert!(
+                is_there,
+                "{} refers to {link}, which has no such heading",
+                page.display()
+            );
         }
     }
 }
@@ -451,9 +470,39 @@ fn known_options(command: &Command, found: &mut BTreeSet<String>) {
 
 /// Options of commands that are not Glossmith's, as the pages name them.
 const OPTIONS_OF_OTHERS: [&str; 33] = [
-    "all-targets", "bench", "build", "check", "dry-run", "example", "features", "instructions", "lib", "locked", "no-default-features",
-    "no-run", "profile", "quick", "release", "run-dependencies", "step", "tasks", "test", "timings", "yes", "help", "version",
-    "minutes", "remove", "bin", "workspace", "package", "open", "root", "package-path", "manifest-path", "nocapture",
+    "all-targets",
+    "bench",
+    "build",
+    "check",
+    "dry-run",
+    "example",
+    "features",
+    "instructions",
+    "lib",
+    "locked",
+    "no-default-features",
+    "no-run",
+    "profile",
+    "quick",
+    "release",
+    "run-dependencies",
+    "step",
+    "tasks",
+    "test",
+    "timings",
+    "yes",
+    "help",
+    "version",
+    "minutes",
+    "remove",
+    "bin",
+    "workspace",
+    "package",
+    "open",
+    "root",
+    "package-path",
+    "manifest-path",
+    "nocapture",
 ];
 
 #[test]
@@ -465,7 +514,10 @@ fn options_that_the_pages_name_exist() {
         for (at, _) in text.match_indices("--") {
             let is_begin = at == 0 || matches!(text.as_bytes()[at - 1], b' ' | b'`' | b'\n' | b'(' | b'[');
             let rest = &text[at + 2..];
-            let name: &str = rest.split(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-').next().unwrap();
+            let name: &str = rest
+                .split(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-')
+                .next()
+                .unwrap();
             let is_whole = !name.is_empty() && !rest[name.len()..].starts_with('…') && !name.ends_with('-');
             let is_name = is_begin && is_whole && name.starts_with(|c: char| c.is_ascii_lowercase());
             assert!(
@@ -479,14 +531,29 @@ fn options_that_the_pages_name_exist() {
 
 #[test]
 fn keys_that_the_pages_name_exist() {
-    let groups = ["base.", "specular.", "coat.", "transmission.", "emission.", "geometry.", "lighting.", "scene.", "camera.", "view.", "render."];
+    let groups = [
+        "base.",
+        "specular.",
+        "coat.",
+        "transmission.",
+        "emission.",
+        "geometry.",
+        "lighting.",
+        "scene.",
+        "camera.",
+        "view.",
+        "render.",
+    ];
     let materials = PARAMETERS.iter().map(|parameter| parameter.key);
     let known: BTreeSet<&str> = materials.chain(SETTINGS.iter().map(|setting| setting.key)).collect();
     for page in pages() {
         for name in text_of(&page).split('`').skip(1).step_by(2) {
             let key = name.split('=').next().unwrap_or_default();
-            let is_key = groups.iter().any(|group| key.starts_with(group)) && key.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == '.');
-            let is_file = [".exr", ".json", ".md", ".rs", ".png", ".toml"].iter().any(|ending| key.ends_with(ending));
+            let is_key = groups.iter().any(|group| key.starts_with(group))
+                && key.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == '.');
+            let is_file = [".exr", ".json", ".md", ".rs", ".png", ".toml"]
+                .iter()
+                .any(|ending| key.ends_with(ending));
             let is_map = key.split('.').nth(1).is_some_and(|part| part.ends_with("_map"));
             assert!(
                 !is_key || is_file || is_map || known.contains(key),

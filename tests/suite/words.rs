@@ -17,7 +17,15 @@ fn private_words() -> Vec<String> {
     let style = text_of(Path::new("docs/STYLE.md"));
     let rows = style.lines().filter(|line| line.starts_with("| \""));
     let first = rows.filter_map(|row| row.split('|').nth(1));
-    first.flat_map(|cell| cell.split('"').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()).collect()
+    first
+        .flat_map(|cell| {
+            cell.split('"')
+                .skip(1)
+                .step_by(2)
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        })
+        .collect()
 }
 
 /// The paragraphs, list items, headings and cells of a page: without code, and without the tables that the program makes.
@@ -29,7 +37,9 @@ fn passages(page: &str) -> Vec<String> {
         is_made |= text.starts_with("<!-- made from the program");
         is_code ^= text.starts_with("```");
         let is_item = ["- ", "* ", "> ", "#"].iter().any(|mark| text.starts_with(mark))
-            || text.split_once(". ").is_some_and(|(number, _)| number.parse::<u8>().is_ok());
+            || text
+                .split_once(". ")
+                .is_some_and(|(number, _)| number.parse::<u8>().is_ok());
         if is_made || is_code || text.starts_with("```") || text.is_empty() {
             passages.push(String::new());
         } else if text.starts_with('|') {
@@ -72,8 +82,14 @@ fn replaced(text: &str, mark: char, word: &str) -> String {
 
 /// The sentences of a passage, in words.
 fn sentences(passage: &str) -> Vec<Vec<&str>> {
-    let ended = passage.split_inclusive(". ").flat_map(|text| text.split_inclusive("? "));
-    let words = ended.map(|text| text.split_whitespace().filter(|word| word.chars().any(char::is_alphanumeric)).collect());
+    let ended = passage
+        .split_inclusive(". ")
+        .flat_map(|text| text.split_inclusive("? "));
+    let words = ended.map(|text| {
+        text.split_whitespace()
+            .filter(|word| word.chars().any(char::is_alphanumeric))
+            .collect()
+    });
     words.filter(|words: &Vec<_>| words.len() >= LEAST_WORDS).collect()
 }
 
@@ -96,17 +112,36 @@ fn pages_keep_to_the_style() {
         }
         let passages: Vec<_> = passages(&text_of(&page)).iter().map(|passage| read(passage)).collect();
         let sentences: Vec<_> = passages.iter().flat_map(|passage| sentences(passage)).collect();
-        let long: Vec<_> = sentences.iter().filter(|words| words.len() > MOST_WORDS).map(|words| words.join(" ")).collect();
+        let long: Vec<_> = sentences
+            .iter()
+            .filter(|words| words.len() > MOST_WORDS)
+            .map(|words| words.join(" "))
+            .collect();
         let found: Vec<_> = passages
             .iter()
             .map(|passage| plain(passage))
-            .flat_map(|text| private.iter().flat_map(move |word| vec![word; text.matches(&format!(" {word} ")).count()]))
+            .flat_map(|text| {
+                private
+                    .iter()
+                    .flat_map(move |word| vec![word; text.matches(&format!(" {word} ")).count()])
+            })
             .collect();
         let allowed = EXEMPT.iter().find(|(exempt, ..)| *exempt == name);
         let (long_allowed, words_allowed) = allowed.map_or((0, 0), |(_, long, words)| (*long, *words));
-        assert_eq!(long.len(), long_allowed, "{name}, sentences of more than {MOST_WORDS} words: {long:#?}");
-        assert_eq!(found.len(), words_allowed, "{name}, words that docs/STYLE.md replaces: {found:?}");
+        assert_eq!(
+            long.len(),
+            long_allowed,
+            "{name}, sentences of more than {MOST_WORDS} words: {long:#?}"
+        );
+        assert_eq!(
+            found.len(),
+            words_allowed,
+            "{name}, words that docs/STYLE.md replaces: {found:?}"
+        );
         let mean = sentences.iter().map(Vec::len).sum::<usize>() as f64 / sentences.len().max(1) as f64;
-        assert!(allowed.is_some() || mean < MEAN_WORDS, "{name}: {mean:.1} words a sentence in the mean");
+        assert!(
+            allowed.is_some() || mean < MEAN_WORDS,
+            "{name}: {mean:.1} words a sentence in the mean"
+        );
     }
 }
