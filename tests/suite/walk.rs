@@ -225,7 +225,7 @@ fn a_turn_becomes_a_video() {
 fn the_cost_of_each_effect_is_measured() {
     let mut walk = Walk::new(|_| {});
     walk.click(Role::Button, "Render");
-    walk.click(Role::Button, "Measure cost of effects");
+    walk.click(Role::Button, "Profile features");
     see(&mut walk.harness, "the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")
