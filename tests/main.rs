@@ -51,6 +51,8 @@ mod desktop;
 mod device_loss;
 #[path = "suite/docs.rs"]
 mod docs;
+#[path = "suite/docs_commands.rs"]
+mod docs_commands;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]
