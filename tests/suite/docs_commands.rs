@@ -42,8 +42,12 @@ fn commands_that_the_pages_show_are_taken() {
     let mut count = 0;
     for page in pages() {
         for command in commands(&text_of(&page)) {
-            let parsed = Arguments::try_parse_from(arguments(&command));
-            assert!(parsed.is_ok(), "{}: {command}\n{}", page.display(), parsed.unwrap_err());
+            let error = Arguments::try_parse_from(arguments(&command))
+                .err()
+                .map(|error| error.to_string());
+            // Textures are looked for as the arguments are read.
+            let refusal = error.filter(|error| !error.contains("there is no such file"));
+            assert_eq!(refusal, None, "{}: {command}", page.display());
             count += 1;
         }
     }
