@@ -4,21 +4,21 @@
 .DEFAULT_GOAL := help
 # Tests of AVX-512 where the machine has it; elsewhere it could not run, and would take a compilation of the engine more.
 EVERY_LEVEL := $(if $(shell grep -sm1 avx512f /proc/cpuinfo),--features every-level)
-.PHONY: help run install uninstall check test test-thorough bench pictures mutants fuzz
+.PHONY: help run install uninstall check test test-thorough docs bench pictures mutants fuzz
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-run: ## Open the editor (without a display: render the default scene to a picture)
+run: ## Open the editor (without a display: render the default scene to an image)
 	@scripts/setup run
 	cargo run --release -- $(ARGS)
 
-install: ## Install it for you: program, icon, menu entry, kinds of files (PREFIX=~/.local)
+install: ## Install for the current user: program, icon, menu entry, file types (PREFIX=~/.local)
 	@scripts/setup run
 	cargo build --release
 	scripts/install
 
-uninstall: ## Take away what `make install` installed; your materials and settings stay
+uninstall: ## Remove what `make install` installed; your materials and settings stay
 	scripts/install --remove
 
 check: ## The quick loop: format, lints, the tests that concern what you changed
@@ -46,13 +46,17 @@ test-thorough: test ## The same, for an hour more: what is random or repeats oth
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
 	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install cargo-deny)"; fi
 
+docs: ## Build the book into target/book (mdBook, without a network)
+	@command -v mdbook >/dev/null 2>&1 || { echo "error: mdBook is not installed: run cargo install mdbook" >&2; exit 1; }
+	mdbook build docs
+
 bench: ## Measure what docs/PERFORMANCE.md quotes
 	cargo bench $(ARGS)
 
-pictures: ## Render the pictures of the documentation again
+pictures: ## Render the images of the documentation again
 	@scripts/setup run
 	scripts/pictures
 
-mutants: ## Change the program in small ways and see whether tests notice (MINUTES=60 SEED=1; docs/MUTANTS.md)
+mutants: ## Mutation testing (MINUTES=60 SEED=1; docs/MUTANTS.md)
 	@scripts/setup test
 	scripts/mutants $(or $(MINUTES),60) $(or $(SEED),1)

@@ -58,6 +58,8 @@ mod desktop;
 mod device_loss;
 #[path = "suite/docs.rs"]
 mod docs;
+#[path = "suite/docs_commands.rs"]
+mod docs_commands;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]
@@ -252,6 +254,8 @@ mod ui_textures;
 mod ui_workshop;
 #[path = "suite/walk.rs"]
 mod walk;
+#[path = "suite/words.rs"]
+mod words;
 #[path = "suite/worker.rs"]
 mod worker;
 #[path = "suite/xdotool_session.rs"]

@@ -160,7 +160,7 @@ const fn key(key: Key) -> Option<KeyboardShortcut> {
 }
 
 commands! {
-    New, File, "New", "Starts anew, with the default model, light and material.", keys(CTRL, Key::N), 0;
+    New, File, "New", "Starts again, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
     OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .obj, .ply, .stl, .zip).", None, 0;
     OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
@@ -174,14 +174,14 @@ commands! {
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
     WatchFolder, File, "Watch a folder…", "Shows the materials and environments of a folder among the presets, as they come and go.", None, 1;
     SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
-    Export, File, "Export…", "Writes the material, or a model with its materials, for another program, and tells first what is lost.", None, 1;
-    SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
-    SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
-    CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
-    SaveWindow, File, "Save picture of the window…", "Saves the window as it is shown, panels and all (.png).", None, 1;
+    Export, File, "Export…", "Exports with a preview of what the format cannot represent.", None, 1;
+    SavePicture, File, "Save image…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
+    SaveLayers, File, "Save image with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
+    CopyPicture, File, "Copy image", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
+    SaveWindow, File, "Save screenshot…", "Saves the window as it is shown, panels and all (.png).", None, 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
-    Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;
-    Redo, Edit, "Redo", "Makes the change again that was taken back.", keys(CTRL_SHIFT, Key::Z), 0;
+    Undo, Edit, "Undo", "Undoes the last change.", keys(CTRL, Key::Z), 0;
+    Redo, Edit, "Redo", "Redoes the change undone last.", keys(CTRL_SHIFT, Key::Z), 0;
     ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
     CopyMaterial, Edit, "Copy material", "Copies the selected material, to be pasted onto others.", None, 1;
@@ -191,28 +191,28 @@ commands! {
     ShowObjects, View, "Show all objects", "Shows the objects again that were hidden.", None, 0;
     Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
-    TakeCompared, View, "Replace A with B", "Gives the document B's materials and ends the comparison.", None, 2;
+    TakeCompared, View, "Replace A with B", "Applies B's materials and stops comparing.", None, 2;
     Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 3;
     ZoomIn, View, "Magnify the picture", "Shows the picture's own pixels larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 3;
     ZoomOut, View, "Less magnified", "Shows the picture's own pixels smaller, as far as the whole picture.", key(Key::Minus), 3;
     ZoomFit, View, "Whole picture", "Shows the whole picture again, as large as it fits.", key(Key::Num0), 3;
-    Denoise, View, "Denoise on or off", "Takes the noise out of the picture, by Open Image Denoise, or shows the samples as they are. How and when: Camera & picture.", key(Key::D), 2;
-    PreviewTurn, View, "Turntable preview", "Turns camera, model or light in the viewport, as a turntable would, until it is chosen again, the camera is moved, or escape.", key(Key::T), 2;
+    Denoise, View, "Denoise on or off", "Toggles denoising. How and when: Camera & image.", key(Key::D), 2;
+    PreviewTurn, View, "Turntable preview", "Previews a turntable. Esc stops.", key(Key::T), 2;
     Pin, View, "Pin a snapshot", "Keeps material, light and camera with the picture, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;
     Pause, Render, "Pause / resume", "Stops rendering, or goes on with it.", key(Key::Space), 0;
-    Restart, Render, "Restart render", "Renders the picture anew.", None, 0;
-    Region, Render, "Render region", "The next drag in the viewport says which part of the picture is rendered.", key(Key::B), 1;
+    Restart, Render, "Restart render", "Restarts the render.", None, 0;
+    Region, Render, "Render region", "Drag a rectangle to render only that part.", key(Key::B), 1;
     ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
-    Measure, Render, "Measure cost of effects", "Renders this scene with and without each effect and setting, and tells what each costs.", None, 2;
-    Race, Render, "Run the race", "Holds techniques against each other on this view: time to a given noise, and bias.", None, 2;
+    Measure, Render, "Profile features", "Renders with and without each feature and setting, and reports what each costs.", None, 2;
+    Race, Render, "Run the race", "Compares techniques on this view: time to a given noise, and bias.", None, 2;
     QueuePicture, Render, "Render to a file…", "Renders the document as it is, at its own picture size and with all its samples, into a file (.png, .exr, .hdr), while one goes on editing.", None, 3;
     Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered pictures, while one goes on editing.", None, 3;
     Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
-    Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
-    About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;
+    Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", key(Key::F1), 0;
+    About, Help, "About Glossmith", "Version, licence and the paper to cite.", None, 1;
 }
 
 /// The command whose keys were pressed, taken out of the input. Keys without modifiers belong to what has the focus,

@@ -27,7 +27,7 @@ macro_rules! list {
             /// Environment, background, ground.
             Lighting, "Light", LowerLeft, lighting::LightingPanel;
             /// Camera, view and render settings.
-            Camera, "Camera & picture", LowerLeft, camera::CameraPanel;
+            Camera, "Camera & image", LowerLeft, camera::CameraPanel;
             /// What is simulated, why, and what it costs.
             Effects, "Effects", LowerLeft, effects::EffectsPanel;
             /// Techniques against each other.

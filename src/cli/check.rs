@@ -35,7 +35,7 @@ pub struct CheckArguments {
     /// Only hard cases whose names contain this.
     #[arg(long, value_name = "NAME", default_value = "", requires = "hard")]
     only: String,
-    /// Write the hard cases as a table in Markdown, on this engine and on the processor.
+    /// Write the hard cases as a table in Markdown, on this engine and on the CPU.
     #[arg(long, value_name = "FILE.md", requires = "hard")]
     markdown: Option<PathBuf>,
 }

@@ -37,7 +37,7 @@ pub struct ConvertArguments {
     /// Read what a file shows, although it has the exact parameters too.
     #[arg(long)]
     without_exact: bool,
-    /// Write what was exact, approximated and dropped, as JSON; - is standard output. Beside a file go pictures of a ball with
+    /// Write what was exact, approximated and dropped, as JSON; - is standard output. Beside a file go images of a ball with
     /// each material, with what the file shows, and of their difference.
     #[arg(long, visible_alias = "json", value_name = "FILE|-")]
     report: Option<Destination>,
@@ -161,7 +161,7 @@ fn convert(input: &Path, output: &Path, arguments: &ConvertArguments) -> anyhow:
     Ok(prepared.report)
 }
 
-/// Renders a ball of each material and of what the file shows, into a picture beside the report.
+/// Renders a ball of each material and of what the file shows, into an image beside the report.
 fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let of_file = report.output.file_stem().unwrap_or_default().to_string_lossy();

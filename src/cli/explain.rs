@@ -25,7 +25,7 @@ pub struct ExplainArguments {
     scene: SceneArguments,
 }
 
-/// Traces the path on the processor and prints its account.
+/// Traces the path on the CPU and prints its account.
 ///
 /// # Errors
 /// One line that names the file, what is wrong and what to do.

@@ -17,16 +17,16 @@ use crate::say::say;
 /// Arguments of `glossmith merge`.
 #[derive(Debug, Args)]
 pub struct MergeArguments {
-    /// Films of the same picture: .exr files of `glossmith render --keep-sums`, of different samples.
+    /// Films of the same image: .exr files of `glossmith render --keep-sums`, of different samples.
     #[arg(required = true, value_name = "FILM.exr")]
     films: Vec<PathBuf>,
-    /// Picture to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
+    /// Image to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
     #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
-    /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
+    /// Write albedo, normal, depth, number of samples and variance as layers into .exr images.
     #[arg(long)]
     aovs: bool,
-    /// Take the noise out of the joined picture.
+    /// Denoise the merged image.
     #[arg(long, default_value = "off", value_name = "off|fast|high|auto", value_parser = names::choice::<Denoise>)]
     denoise: Denoise,
     #[command(flatten)]
@@ -92,7 +92,7 @@ fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
     Ok(whole)
 }
 
-/// The picture of a film without its noise, where its document asks for that.
+/// The image of a film without its noise, where its document asks for that.
 ///
 /// # Errors
 /// Where the denoiser is not there or fails, or the film lacks what it is led by.

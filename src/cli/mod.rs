@@ -39,7 +39,7 @@ use crate::store::file_kind::what_is_opened;
 fn long_about() -> String {
     format!(
         "Glossmith: a material editor around the geometric lobe.\n\nWithout a subcommand the editor opens, with the files \
-         given: {}. Pictures that were saved here have the document inside.",
+         given: {}. Saved images have the document inside.",
         what_is_opened()
     )
 }
@@ -53,13 +53,13 @@ pub struct Arguments {
     pub command: Option<Command>,
     /// Files to open in the editor.
     pub files: Vec<PathBuf>,
-    /// The engine that renders: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    /// The engine that renders: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub engine: EngineChoice,
-    /// The instructions that the processor's engine computes with. They change how fast it is, and nothing else.
+    /// The instructions that the CPU engine computes with. They change how fast it is, and nothing else.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|avx512|avx2|neon|portable", value_parser = parse::instructions)]
     pub instructions: Instructions,
-    /// Whether the GPU engine asks the adapter what rays meet: where that was measured to be faster; wherever it can; never.
+    /// Whether the GPU engine uses hardware ray tracing: if measured to be faster; if available; never.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
     pub ray_queries: RayQueries,
     /// Read what files name wherever it lies. Without it they may name what is in the folder above their own, and below.
@@ -95,13 +95,13 @@ macro_rules! subcommands {
 
 // In the order of the help text, which quotes the comments.
 subcommands! {
-    /// Render a picture.
+    /// Render an image.
     Render(Box<render::RenderArguments>) => render::run;
     /// Show which effects a scene calls for, and why.
     Plan(Box<plan::PlanArguments>) => plan::run;
     /// Show everything that made one sample of one pixel.
     Explain(Box<explain::ExplainArguments>) => explain::run;
-    /// Render a turn about the model as numbered pictures.
+    /// Render a turntable as a video or numbered images.
     Turntable(Box<turntable::TurntableArguments>) => turntable::run;
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments) => check::run;
@@ -113,7 +113,7 @@ subcommands! {
     Convert(convert::ConvertArguments) => convert::run;
     /// Render all combinations of models, materials, environments, cameras and settings.
     Batch(batch::BatchArguments) => batch::run;
-    /// Join films of the same picture, rendered apart.
+    /// Merge films of the same image, rendered apart.
     Merge(merge::MergeArguments) => merge::run;
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
     Lobe(lobe::LobeArguments) => lobe::run;
@@ -139,7 +139,7 @@ pub fn exit_code(error: &anyhow::Error) -> u8 {
     }
 }
 
-/// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the
+/// Renders the default scene, with these files in the place of its parts, to an image and says where it is: what the
 /// program does where no window can be opened.
 ///
 /// # Errors

@@ -49,7 +49,7 @@ pub(super) fn numbers_in<const N: usize>(
     }
 }
 
-/// The part of a picture: left, top, right, bottom as shares of it.
+/// The part of an image: left, top, right, bottom as shares of it.
 pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
     let sides = numbers_in([range::REGION, range::REGION, range::REGION, range::REGION])(text)?;
     if sides[0] >= sides[2] || sides[1] >= sides[3] {
@@ -86,7 +86,7 @@ pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
     place.ok_or_else(|| "give a column and a row from 0,0 at the top left, such as 40,22".to_owned())
 }
 
-/// What the camera sees where it meets nothing.
+/// What the camera sees where it hits nothing.
 pub(super) fn background(text: &str) -> Result<Background, String> {
     match text {
         "environment" => Ok(Background::Environment),
@@ -106,7 +106,7 @@ pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
     }
 }
 
-/// The name of a picture; its ending is one of those that are written.
+/// The name of an image; its ending is one of those that are written.
 pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };
     PathBufValueParser::new().try_map(checked)

@@ -42,10 +42,11 @@ fn print(plan: &Plan) {
         put!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
     }
     put!(
-        "{} of {} effects are simulated; the kernel leaves out {}",
+        "{} of {} features active; {} of {} compile-time switches off or fixed",
         plan.effects().len(),
         plan.table().count(),
-        plan.left_out()
+        plan.left_out(),
+        plan.constants().len()
     );
 }
 

@@ -20,7 +20,7 @@ use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
 use crate::say::say;
 
-/// Time limit of the picture that is rendered where no window can be opened, seconds.
+/// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 
 /// Arguments of `glossmith render`.
@@ -28,19 +28,19 @@ const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 pub struct RenderArguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Picture to write: .png (with exposure and tone curve, the document inside), .exr or .hdr (linear). May be repeated.
+    /// Image to write: .png (with exposure and tone curve, the document inside), .exr or .hdr (linear). May be repeated.
     #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
-    /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
+    /// Write albedo, normal, depth, number of samples and variance as layers into .exr images.
     #[arg(long)]
     aovs: bool,
-    /// Write the sums behind the picture into .exr pictures, so that `glossmith merge` can join it with others.
+    /// Write the sums behind the image into .exr images, so that `glossmith merge` can join it with others.
     #[arg(long)]
     keep_sums: bool,
-    /// The number of each pixel's first sample: parts of a picture's samples can be rendered apart and joined.
+    /// The number of each pixel's first sample: parts of an image's samples can be rendered apart and joined.
     #[arg(long, value_name = "N", default_value_t = 0)]
     samples_from: u32,
-    /// The number after the last; stands over --samples.
+    /// The number after the last; overrides --samples.
     #[arg(long, value_name = "N")]
     samples_to: Option<u32>,
     /// Write what was rendered, how and how fast, as JSON; - is standard output.
@@ -102,9 +102,9 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
 /// What is written.
 struct Targets<'a> {
     outputs: &'a [PathBuf],
-    /// .exr pictures have layers.
+    /// .exr images have layers.
     has_layers: bool,
-    /// .exr pictures have the film's sums.
+    /// .exr images have the film's sums.
     has_sums: bool,
     report: Option<&'a Destination>,
 }
@@ -182,19 +182,19 @@ fn render(
     ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
 
-/// Writes a picture in all formats that are asked for.
+/// Writes an image in all formats that are asked for.
 pub(super) fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, document: &Document) -> anyhow::Result<()> {
     outputs
         .iter()
         .try_for_each(|path| Ok(output::write(path, rendered, document)?))
 }
 
-/// Says where pictures are.
+/// Says where images are.
 pub(super) fn say_written(outputs: &[PathBuf]) {
     outputs.iter().for_each(|path| say!("wrote {}", path.display()));
 }
 
-/// Whether layers or sums have a place: in .exr pictures alone.
+/// Whether layers or sums have a place: in .exr images alone.
 ///
 /// # Errors
 /// Where none is written.
@@ -214,7 +214,7 @@ pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
     Ok(ProgressBar::new(steps).with_style(ProgressStyle::with_template(template)?))
 }
 
-/// What became of the denoised picture, for the report: which quality, null without; seconds; error with its band.
+/// What became of the denoised image, for the report: which quality, null without; seconds; error with its band.
 pub(super) fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
     let error = denoised.and_then(|denoised| denoised.error);
     report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
@@ -237,7 +237,7 @@ pub(super) fn render_to_end(
     step_to_end(session, engine, document, &|| true)
 }
 
-/// Steps until the session is done or `goes_on` says no, with a progress bar on a terminal, and denoises the picture where
+/// Steps until the session is done or `goes_on` says no, with a progress bar on a terminal, and denoises the image where
 /// that is asked for.
 fn step_to_end(
     session: &mut Session,

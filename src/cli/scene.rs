@@ -21,12 +21,12 @@ use crate::store::lut;
 use crate::store::opened::Opened;
 use crate::store::replace::save_atomically;
 
-/// Arguments that describe what is rendered, and how. Options stand over what files say.
+/// Arguments that describe what is rendered, and how. Options override what files say.
 #[derive(Debug, Default, Args)]
 #[command(next_line_help = true)]
 pub struct SceneArguments {
-    /// What to begin with: projects (.json), pictures saved here (.png, with the document inside), models (several are
-    /// shown together), environments, materials. Options stand over what they say.
+    /// What to begin with: projects (.json), images saved here (.png, with the document inside), models (several are
+    /// shown together), environments, materials. Options override what they say.
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
@@ -47,8 +47,9 @@ pub struct SceneArguments {
     /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
     #[arg(long, value_name = "FILE")]
     pub(super) import_report: Option<PathBuf>,
-    /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky, furnace), a picture of the whole sphere (.hdr, .exr, .ktx2, .dds, .png,
-    /// .jpg, .tif, .webp; lat-long or cube map), or a folder with the six faces of a cube [default: product].
+    /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky,
+    /// furnace), an image of the whole sphere (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp; lat-long or cube map), or a
+    /// folder with the six faces of a cube [default: product].
     #[arg(long, value_name = "FILE|NAME")]
     environment: Option<EnvironmentSource>,
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
@@ -67,14 +68,14 @@ pub struct SceneArguments {
     /// or power (lux, the same). May be repeated.
     #[arg(long = "sun", value_name = "WORD=VALUE,…", value_parser = lights::sun, allow_hyphen_values = true)]
     suns: Vec<LightArgument>,
-    /// What the camera sees where it meets nothing [default: environment].
+    /// What the camera sees where it hits nothing [default: environment].
     #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Option<Background>,
     /// The material of everything: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
     /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
-    /// Put a picture on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
+    /// Put an image on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
     /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
     /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
     #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::texture)]
@@ -89,14 +90,14 @@ pub struct SceneArguments {
     /// Where the camera is, in degrees around and above its target.
     #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera-position")]
     camera_orbit: Option<[f64; 2]>,
-    /// A table of colours (.cube) that the picture for screens goes through last, as codes of sRGB: a look.
+    /// A table of colours (.cube) that the image for screens goes through last, as codes of sRGB: a look.
     #[arg(long, value_name = "FILE")]
     lut: Option<PathBuf>,
-    /// Width and height in pixels [default: 512x512]. A picture takes some 100 bytes of memory a pixel, 160 more and
-    /// up to 1.6 GB for the library where it is denoised; one that does not fit the memory is refused before it is begun.
+    /// Width and height in pixels [default: 512x512]. An image takes about 100 bytes of memory per pixel. Denoising adds
+    /// 184, and up to 1.6 GB for the library. An image that does not fit the memory is refused before rendering.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<[u32; 2]>,
-    /// Render this part of the picture only, the rest staying transparent: shares of width and height.
+    /// Render this part of the image only, the rest staying transparent: shares of width and height.
     #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
     region: Option<[f64; 4]>,
     #[command(flatten)]
@@ -105,7 +106,7 @@ pub struct SceneArguments {
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for) [default: auto].
     #[arg(long, value_name = "auto|all|LIST", allow_hyphen_values = true)]
     effects: Option<EffectSwitches>,
-    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub(super) engine: EngineChoice,
 }

@@ -9,7 +9,7 @@ use crate::named::Named as _;
 use crate::scene::Model;
 use crate::scene::texture::{OwnTexture, TextureTarget, set};
 
-/// Pictures, and the material that they are put on.
+/// Images, and the material that they are put on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TextureArgument {
     /// Name or number of the slot; every material where none is given.
@@ -69,12 +69,12 @@ fn existing(path: &str) -> Result<PathBuf, String> {
 }
 
 impl TextureArgument {
-    /// The pictures.
+    /// The images.
     pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
         self.textures.iter().map(|(_, texture)| &texture.file)
     }
 
-    /// Puts the pictures on the materials of a document.
+    /// Puts the images on the materials of a document.
     ///
     /// # Errors
     /// Where the model has no such slot.

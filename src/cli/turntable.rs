@@ -26,7 +26,7 @@ pub struct TurntableArguments {
     /// What turns, anticlockwise seen from above.
     #[arg(long, default_value = "camera", value_name = "camera|model|light", value_parser = names::choice::<Turn>)]
     turn: Turn,
-    /// The folder for the pictures frame-0001.png, frame-0002.png and so on; made where it is not there. With --video they
+    /// The folder for the images frame-0001.png, frame-0002.png and so on; made where it is not there. With --video they
     /// are only written where this is given.
     #[arg(
         long,

@@ -248,7 +248,7 @@ named! {
         Off = 0, "off", "Off", "The samples as they are.";
         Fast = 1, "fast", "Fast", "Noise is taken out, in about half the time.";
         High = 2, "high", "High quality", "Noise is taken out as well as can be.";
-        Auto = 3, "auto", "Automatic", "Noise is taken out as well as can be, and less where the samples alone are nearer to the truth: tile by tile, so that the picture converges to it.";
+        Auto = 3, "auto", "Automatic", "Blends the denoised and the raw image per tile to minimise the estimated error; converges to the raw image.";
     }
 }
 

@@ -64,7 +64,7 @@ fn every_command_answers_in_json_on_standard_output() {
     assert_eq!(losses[0]["materials"][0]["material"], "Gold");
     // The same to a file, beside the words.
     let run = place.done(&format!("plan {scene} --json plan.json"));
-    assert!(run.stdout.contains("effects are simulated"));
+    assert!(run.stdout.contains("features active"));
     assert!(place.read("plan.json").contains("\"effects\""));
 }
 

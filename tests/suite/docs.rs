@@ -1,8 +1,9 @@
-//! The parts of the user's guide that are made from the registries: they are what the program knows, to the letter.
-//! `UPDATE_DOCS=1 cargo test docs` writes them anew.
+//! The tables of the book that are made from the registries hold what the program has, to the letter; `UPDATE_DOCS=1 cargo
+//! test docs` writes them again. Options, keys and files that the pages name exist.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
@@ -222,10 +223,22 @@ fn options(name: &str) -> String {
     };
     let (shared, own): (Vec<_>, Vec<_>) = option_rows(&of).into_iter().partition(|row| of_render.contains(row));
     let mut text = table(&["option", "default", "what it does"], own);
-    if !shared.is_empty() {
-        let names: Vec<_> = shared.iter().map(|row| format!("`{}`", option_name(&row[0]))).collect();
-        let _ = writeln!(text, "\nAs for [render](#all-options-of-render): {}.", names.join(", "));
-    }
+    let rest: Vec<_> = of_render.iter().filter(|row| !shared.contains(row)).cloned().collect();
+    let names = |rows: &[Vec<String>]| {
+        let names: Vec<_> = rows.iter().map(|row| format!("`{}`", option_name(&row[0]))).collect();
+        names.join(", ")
+    };
+    let _ = match (shared.len(), rest.len()) {
+        (0, _) => Ok(()),
+        (shared_count, rest_count) if shared_count <= rest_count => {
+            writeln!(text, "\nAs for [render](render.md#options): {}.", names(&shared))
+        }
+        _ => writeln!(
+            text,
+            "\nAnd all options of [render](render.md#options) but {}.",
+            names(&rest)
+        ),
+    };
     text
 }
 
@@ -306,53 +319,86 @@ fn block(name: &str) -> String {
     }
 }
 
-/// The guide with its made parts as they should be.
-fn made_anew(guide: &str) -> String {
-    let mut parts = guide.split(BEGIN);
+/// A page with its made parts as they should be. The table of hard cases is another test's (`hard`).
+fn made_again(page: &str) -> String {
+    let mut parts = page.split(BEGIN);
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (name, rest) = part.split_once(" -->").expect("a name ends with -->");
-        let (_, rest) = rest.split_once(END).expect("a made part ends with <!-- end -->");
-        let _ = write!(text, "{BEGIN}{name} -->\n\n{}\n{END}{rest}", block(name));
+        let (made, rest) = rest.split_once(END).expect("a made part ends with <!-- end -->");
+        let _ = match name {
+            "hard cases" => write!(text, "{BEGIN}{name} -->{made}{END}{rest}"),
+            _ => write!(text, "{BEGIN}{name} -->\n\n{}\n{END}{rest}", block(name)),
+        };
     }
     text
 }
 
-#[test]
-fn the_guide_tells_what_the_program_knows() {
-    tells_what_the_program_knows("docs/GUIDE.md");
+/// A page without its made parts.
+fn written(page: &str) -> String {
+    let mut parts = page.split(BEGIN);
+    let first = parts.next().unwrap_or_default();
+    let rest = parts.filter_map(|part| Some(part.split_once(END)?.1));
+    std::iter::once(first).chain(rest).collect()
 }
 
-#[test]
-fn the_formats_tell_what_becomes_of_each_parameter() {
-    tells_what_the_program_knows("docs/FORMATS.md");
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn tells_what_the_program_knows(name: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-    let guide = std::fs::read_to_string(&path).unwrap();
-    let expected = made_anew(&guide);
-    if std::env::var_os("UPDATE_DOCS").is_some() {
-        std::fs::write(&path, &expected).unwrap();
-        return;
+/// The pages: README, contributing, changelog, and the book in `docs`. Paths are relative to the root.
+pub fn pages() -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+        .map(PathBuf::from)
+        .into();
+    let mut folders = vec![PathBuf::from("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(root().join(&folder)).unwrap() {
+            let entry = entry.unwrap();
+            let path = folder.join(entry.file_name());
+            if entry.file_type().unwrap().is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                found.push(path);
+            }
+        }
     }
-    for (line, (found, expected)) in guide.lines().zip(expected.lines()).enumerate() {
-        assert_eq!(
-            found,
-            expected,
-            "{name}, line {}: run UPDATE_DOCS=1 cargo test docs",
-            line + 1
+    found.sort();
+    found
+}
+
+/// The text of a page.
+pub fn text_of(page: &Path) -> String {
+    std::fs::read_to_string(root().join(page)).unwrap()
+}
+
+#[test]
+fn the_book_has_what_the_program_has() {
+    for page in pages() {
+        let found = text_of(&page);
+        let expected = made_again(&found);
+        if std::env::var_os("UPDATE_DOCS").is_some() {
+            if found != expected {
+                std::fs::write(root().join(&page), &expected).unwrap();
+            }
+            continue;
+        }
+        let differs = found
+            .lines()
+            .zip(expected.lines())
+            .position(|(found, expected)| found != expected);
+        assert!(
+            found == expected,
+            "{}, line {}: run UPDATE_DOCS=1 cargo test docs",
+            page.display(),
+            1 + differs.unwrap_or_default()
         );
     }
-    assert!(
-        guide == expected,
-        "{name} ends elsewhere: run UPDATE_DOCS=1 cargo test docs"
-    );
 }
 
 #[test]
-fn the_guide_has_every_part() {
-    let guide = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/GUIDE.md")).unwrap();
+fn the_book_has_every_part() {
+    let book: String = pages().iter().map(|page| text_of(page)).collect();
     let mut wanted = Vec::new();
     for command in Arguments::command().get_subcommands() {
         let name = format!("options of glossmith {}", command.get_name());
@@ -367,6 +413,7 @@ fn the_guide_has_every_part() {
         [
             "parameters",
             "settings",
+            "texture parameters",
             "lobes",
             "curves",
             "fresnel",
@@ -374,29 +421,175 @@ fn the_guide_has_every_part() {
             "tone curves",
             "effects",
             "presets",
+            "formats",
+            "parameters of glTF",
         ]
         .map(String::from),
     );
     for name in wanted {
         assert!(
-            guide.contains(&format!("{BEGIN}{name} -->")),
-            "docs/GUIDE.md lacks the part '{name}'"
+            book.contains(&format!("{BEGIN}{name} -->")),
+            "no page of the book has the part '{name}'"
         );
     }
 }
 
 #[test]
-fn pictures_that_the_documents_show_exist() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for document in ["README.md", "docs/GUIDE.md", "docs/FIGURES.md"] {
-        let path = root.join(document);
-        let text = std::fs::read_to_string(&path).unwrap();
-        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+fn files_that_the_pages_link_to_exist() {
+    for page in pages() {
+        let folder = page.parent().unwrap();
+        for link in text_of(&page)
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+        {
             let is_local = !link.contains("://") && !link.starts_with('#');
-            let target = path.parent().unwrap().join(link.split('#').next().unwrap_or_default());
+            let target = root().join(folder).join(link.split('#').next().unwrap_or_default());
             assert!(
                 !is_local || target.exists(),
-                "{document} refers to {link}, which is not there"
+                "{} refers to {link}, which is not there",
+                page.display()
+            );
+        }
+    }
+}
+
+/// The heading's anchor as GitHub and mdBook make it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase().replace(' ', "-");
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+        .collect()
+}
+
+#[test]
+fn headings_that_the_pages_link_to_exist() {
+    for page in pages() {
+        let text = text_of(&page);
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let Some((file, wanted)) = link.split_once('#').filter(|_| !link.contains("://")) else {
+                continue;
+            };
+            let target = if file.is_empty() {
+                page.clone()
+            } else {
+                page.parent().unwrap().join(file)
+            };
+            let text = text_of(&target);
+            let headings = text.lines().filter(|line| line.starts_with('#'));
+            let is_there = headings
+                .map(|line| anchor(line.trim_start_matches('#').trim()))
+                .any(|found| found == wanted);
+            assert!(
+                is_there,
+                "{} refers to {link}, which has no such heading",
+                page.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn the_summary_lists_every_page_of_the_book() {
+    let summary = text_of(Path::new("docs/SUMMARY.md"));
+    for page in pages() {
+        let Ok(path) = page.strip_prefix("docs") else { continue };
+        let path = path.display().to_string().replace('\\', "/");
+        assert!(
+            path == "SUMMARY.md" || summary.contains(&format!("({path})")),
+            "docs/SUMMARY.md lacks {path}"
+        );
+    }
+}
+
+/// Every option that any command has.
+fn known_options(command: &Command, found: &mut BTreeSet<String>) {
+    for argument in command.get_arguments() {
+        let aliases = argument.get_all_aliases().unwrap_or_default();
+        let names = argument.get_long().into_iter().chain(aliases);
+        found.extend(names.map(str::to_owned));
+    }
+    for command in command.get_subcommands() {
+        known_options(command, found);
+    }
+}
+
+/// Options of commands that are not Glossmith's, as the pages name them.
+const OPTIONS_OF_OTHERS: [&str; 18] = [
+    "all-targets",
+    "bench",
+    "build",
+    "dry-run",
+    "features",
+    "help",
+    "locked",
+    "no-default-features",
+    "no-run",
+    "profile",
+    "release",
+    "run-dependencies",
+    "step",
+    "tasks",
+    "test",
+    "timings",
+    "version",
+    "yes",
+];
+
+#[test]
+fn options_that_the_pages_name_exist() {
+    let mut known = BTreeSet::new();
+    known_options(&Arguments::command(), &mut known);
+    for page in pages() {
+        let text = text_of(&page);
+        for (at, _) in text.match_indices("--") {
+            let is_begin = at == 0 || matches!(text.as_bytes()[at - 1], b' ' | b'`' | b'\n' | b'(' | b'[');
+            let rest = &text[at + 2..];
+            let name: &str = rest
+                .split(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-')
+                .next()
+                .unwrap();
+            let is_whole = !name.is_empty() && !rest[name.len()..].starts_with('…') && !name.ends_with('-');
+            let is_name = is_begin && is_whole && name.starts_with(|c: char| c.is_ascii_lowercase());
+            assert!(
+                !is_name || known.contains(name) || OPTIONS_OF_OTHERS.contains(&name),
+                "{} names --{name}, which no command has",
+                page.display()
+            );
+        }
+    }
+}
+
+#[test]
+fn keys_that_the_pages_name_exist() {
+    let groups = [
+        "base.",
+        "specular.",
+        "coat.",
+        "transmission.",
+        "emission.",
+        "geometry.",
+        "lighting.",
+        "scene.",
+        "camera.",
+        "view.",
+        "render.",
+    ];
+    let materials = PARAMETERS.iter().map(|parameter| parameter.key);
+    let known: BTreeSet<&str> = materials.chain(SETTINGS.iter().map(|setting| setting.key)).collect();
+    for page in pages() {
+        for name in written(&text_of(&page)).split('`').skip(1).step_by(2) {
+            let key = name.split('=').next().unwrap_or_default();
+            let is_key = groups.iter().any(|group| key.starts_with(group))
+                && key.chars().all(|c| c.is_ascii_lowercase() || c == '_' || c == '.');
+            let is_file = [".exr", ".json", ".md", ".rs", ".png", ".toml"]
+                .iter()
+                .any(|ending| key.ends_with(ending));
+            let is_map = key.split('.').nth(1).is_some_and(|part| part.ends_with("_map"));
+            assert!(
+                !is_key || is_file || is_map || known.contains(key),
+                "{} names the key {key}, which is not there",
+                page.display()
             );
         }
     }

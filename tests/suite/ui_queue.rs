@@ -111,7 +111,7 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     };
     assert!(!close(&mut harness), "it asks first");
     harness.check_accessibility();
-    press(&mut harness, "Go on rendering");
+    press(&mut harness, "Keep rendering");
     assert!(harness.query_by_label("Progress of long.gif").is_some());
     press(&mut harness, "Cancel long.gif");
     wait(&mut harness, "its end", |app| {

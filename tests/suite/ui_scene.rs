@@ -254,13 +254,13 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     click_at(&mut harness, center);
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     harness.run_steps(2);
-    assert!(harness.query_by_label("One path").is_some());
+    assert!(harness.query_by_label("Path trace of this pixel").is_some());
     let told = |text: &str| harness.query_by_label_contains(text).is_some();
     assert!(told("camera") && told("bounce 0") && told("contribution"));
     assert_eq!(harness.state().document(), &before, "nothing is edited");
     harness.get_by_label("Close").click_accesskit();
     harness.run_steps(2);
-    assert!(harness.query_by_label("One path").is_none());
+    assert!(harness.query_by_label("Path trace of this pixel").is_none());
 }
 
 /// *Denoise* beside the exposure: the picture changes without being rendered again, and the status bar tells what error is

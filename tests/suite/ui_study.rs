@@ -41,7 +41,7 @@ fn a_race_is_run_and_its_winner_taken() {
     });
     settle(&mut harness);
     race_strategies(&mut harness, 0.05);
-    see_label(&mut harness, "Use Light by: light");
+    see_label(&mut harness, "Use Light sampling only");
     assert!(
         harness.query_by_label("Time against bias").is_some(),
         "the chart is shown"
@@ -49,7 +49,7 @@ fn a_race_is_run_and_its_winner_taken() {
     assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
     harness.get_by_label("Equal error").click_accesskit();
     harness.run_steps(2);
-    harness.get_by_label("Use Light by: light").click_accesskit();
+    harness.get_by_label("Use Light sampling only").click_accesskit();
     settle(&mut harness);
     assert_eq!(harness.state().document().render.strategy, Strategy::Light);
     undo(&mut harness);

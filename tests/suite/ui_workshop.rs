@@ -337,7 +337,7 @@ fn a_race_of_another_model_says_so_and_offers_nothing() {
     });
     settle(&mut harness);
     race_strategies(&mut harness, 0.02);
-    let (by_light, by_lobe) = ("Use Light by: light", "Use Light by: lobe");
+    let (by_light, by_lobe) = ("Use Light sampling only", "Use BSDF sampling only");
     see_label(&mut harness, by_light);
     let is_live = |harness: &Editor, use_it: &str| !harness.get_by_label(use_it).accesskit_node().is_disabled();
     let old = "Measured before the last changes.";

@@ -158,7 +158,7 @@ fn two_metals_are_compared() {
         rival.is_some_and(|picture| picture.document.materials[0].name == "Copper")
     });
     assert_eq!(walk.app().document().materials[0].name, "Gold");
-    walk.ends("Compare two metals in one picture");
+    walk.ends("Compare two metals in one image");
 }
 
 #[test]
@@ -225,7 +225,7 @@ fn a_turn_becomes_a_video() {
 fn the_cost_of_each_effect_is_measured() {
     let mut walk = Walk::new(|_| {});
     walk.click(Role::Button, "Render");
-    walk.click(Role::Button, "Measure cost of effects");
+    walk.click(Role::Button, "Profile features");
     see(&mut walk.harness, "the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")

@@ -41,11 +41,11 @@ impl App {
         }
         let modal = egui::Modal::new(egui::Id::unique("queue question")).show(ctx, |ui| {
             ui.set_width(380.0);
-            ui.heading("Renders in the queue are not done");
-            widgets::note(ui, "They would be given up by closing. Escape goes on rendering.");
+            ui.heading("Renders are still queued");
+            widgets::note(ui, "Closing cancels them. Esc keeps rendering.");
             ui.add_space(theme::GAP);
             ui.horizontal(|ui| {
-                if ui.button("Go on rendering").clicked() {
+                if ui.button("Keep rendering").clicked() {
                     ui.close();
                 }
                 if ui.button("Close anyway").clicked() {

@@ -60,10 +60,10 @@ fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
     if noise.relative > 0.0 {
         let share = noise.from_spread / noise.relative;
         ui.weak(format!(
-            "As if the samples were independent: {} ({share:.2} ×)",
+            "Assuming independent samples: {} ({share:.2} ×)",
             percent(noise.from_spread)
         ))
-        .on_hover_text("The cross-check: equal for independent numbers, more for Sobol's, which do better than that");
+        .on_hover_text("Equal for uniform random numbers; Sobol's error should be lower than this.");
     }
 }
 

@@ -182,7 +182,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32
         if curve.has_table() {
             widgets::note(
                 ui,
-                "Drag points (ctrl: in steps). Double-click: a new point, or one away.",
+                "Drag points (ctrl: in steps). Double-click adds or removes a point.",
             );
         }
     });

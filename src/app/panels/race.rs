@@ -63,7 +63,7 @@ impl Panel for RacePanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let state = self;
         choices(ui, state);
-        let help = "Renders this view with each of them by turns, and measures what is left of noise and bias.";
+        let help = "Renders each technique in turn; measures noise and bias.";
         let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, desk.shared.references.clone());
         state.worker.controls(ui, desk, "Run the race", help, |desk| {
             let document = small_document(desk, SIDE_MAX);
@@ -241,7 +241,7 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
             ui.label(if runner.is_on_front { text.strong() } else { text });
             let time = ui.label(duration(runner.time_to_noise));
             time.on_hover_text(format!(
-                "After {}: error {} ({} to {}), told {}; {:.1} samples a pixel",
+                "After {}: error {} ({} – {}), estimated {}; {:.1} samples per pixel",
                 duration(runner.seconds),
                 percent(runner.error.value),
                 percent(runner.error.low),

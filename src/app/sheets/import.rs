@@ -89,7 +89,7 @@ fn choices(ui: &mut Ui, model: &Model, options: &mut ModelOptions) {
 /// What became of the parts of the file, what is amiss first.
 fn entries(ui: &mut Ui, report: &ImportReport) {
     if report.entries.is_empty() {
-        widgets::note(ui, "A model that comes with the program: nothing to tell.");
+        widgets::note(ui, "Built-in model: no import report.");
         return;
     }
     egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {

@@ -272,6 +272,11 @@ fn shortcuts(ui: &mut Ui) {
     }
 }
 
+/// The paper to cite, and where it is.
+const PAPER: &str = "The geometric lobe: \"Fast Geometric Sampling for Phong-Like Reflection\", Advances in Computer Graphics \
+                     (Computer Graphics International 2023), LNCS 14496, Springer.";
+const PAPER_ADDRESS: &str = "https://doi.org/10.1007/978-3-031-50072-5_17";
+
 fn about(ui: &mut Ui) {
     ui.set_width(420.0);
     ui.heading(concat!("Glossmith ", env!("CARGO_PKG_VERSION")));
@@ -279,6 +284,8 @@ fn about(ui: &mut Ui) {
     ui.label(env!("CARGO_PKG_DESCRIPTION"));
     ui.add_space(theme::GAP);
     widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
+    widgets::note(ui, PAPER);
+    ui.hyperlink(PAPER_ADDRESS);
     ui.add_space(theme::GAP);
     if ui.button("Close").clicked() {
         ui.close();
@@ -288,7 +295,7 @@ fn about(ui: &mut Ui) {
 /// Everything that made one sample of one pixel.
 fn path(ui: &mut Ui, text: &str) {
     ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
-    ui.heading("One path");
+    ui.heading("Path trace of this pixel");
     ui.add_space(theme::GAP);
     let height = SHEET_SHARE * ui.ctx().content_rect().height();
     egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {

@@ -21,11 +21,10 @@ pub(in crate::app) fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usiz
         ui.heading("Unsaved work was found");
         widgets::note(
             ui,
-            "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and \
-             is saved when you save it.",
+            "Glossmith crashed. Your unsaved work was recovered: restore it, or discard it.",
         );
     } else {
-        ui.heading("Glossmith ended by an internal error");
+        ui.heading("Glossmith crashed");
         widgets::note(ui, "Everything had been saved.");
     }
     egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
@@ -53,7 +52,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
             let name = name(recovered);
             ui.label(RichText::new(&name).strong());
             let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
-            widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
+            widgets::note(ui, format!("{}, saved {}", contents(recovered), ago(age)));
             name
         }
         Some(Err(why)) => {
@@ -90,10 +89,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
 fn told(ui: &mut Ui, report: &Report) {
     let text = format!("It met an internal error: {}", report.message);
     ui.add(egui::Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
-    let where_to = format!(
-        "Please report it with the file {}, which says what was done last, and stays when this is discarded.",
-        report.path.display()
-    );
+    let where_to = format!("Please report this crash and attach {}.", report.path.display());
     ui.add(egui::Label::new(RichText::new(where_to).weak()).wrap());
 }
 

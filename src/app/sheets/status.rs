@@ -263,29 +263,29 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
     let mut parts = Vec::new();
     if progress.samples_wanted > 0 {
         parts.push(Part::text(ui, Rank::Samples, samples(progress), |ui| {
-            ui.label("Samples a pixel: rendered (in the mean, where some rest), and to be rendered");
+            ui.label("Samples per pixel: average so far / target");
         }));
         if let Some(noise) = progress.noise {
             let text = format!("error {}", error(noise.relative));
             parts.push(Part::text(ui, Rank::Error, text, move |ui| {
-                ui.label("Standard error of a pixel, root mean square, relative to the mean luminance");
+                ui.label("Estimated noise: RMS pixel error / mean luminance");
                 band(ui, noise.low, noise.high);
             }));
         }
         if let Some(told) = snapshot.denoised {
             let text = format!("denoised {}", error(told.value));
             parts.push(Part::text(ui, Rank::Denoised, text, move |ui| {
-                ui.label("Error of the denoised picture, its bias included: root mean square over the mean luminance");
+                ui.label("Estimated error of the denoised image, bias included: RMS / mean luminance");
                 band(ui, told.low, told.high);
             }));
         }
         let time = format!("{:.1} s", progress.render_seconds);
         parts.push(Part::text(ui, Rank::Time, time, |ui| {
-            ui.label("Render time of this picture");
+            ui.label("Render time of this image");
         }));
         let rate = format!("{} samples/s", short_number(snapshot.samples_per_second));
         parts.push(Part::text(ui, Rank::Rate, rate, |ui| {
-            ui.label("Pixel samples a second, over the whole of this picture");
+            ui.label("Pixel samples per second, over this whole image");
         }));
     }
     if let Some(picture) = &snapshot.picture {
@@ -293,7 +293,7 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
         let reduced = format!("{size} (1/{})", picture.reduction);
         let text = if picture.reduction > 1 { reduced } else { size };
         parts.push(Part::text(ui, Rank::Size, text, |ui| {
-            ui.label("Size of the picture shown");
+            ui.label("Size of the image shown");
         }));
     }
     parts
@@ -301,11 +301,11 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
 
 fn band(ui: &mut Ui, low: f64, high: f64) {
     if high >= 1.0 {
-        ui.label("Too few samples have been taken to know it well.");
+        ui.label("Too few samples for an interval.");
         return;
     }
     let (low, high) = (percent(low), percent(high));
-    ui.label(format!("The true one lies between {low} and {high} (95 %)."));
+    ui.label(format!("95 % interval: {low} – {high}"));
 }
 
 fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Part<'a> {

@@ -181,7 +181,7 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             show_seen(desk, seen);
             response
                 .accessible_name("Viewport shows")
-                .on_hover_text("The picture, a part of its light, or what is known of its pixels");
+                .on_hover_text("Display: image, light passes, or AOVs");
         }
         Item::Pause => {
             let (icon, help) = if desk.shared.is_paused {
@@ -235,7 +235,7 @@ fn more(ui: &mut Ui, desk: &mut Desk<'_>, inside: &[Item]) {
     });
     menu.response
         .accessible_name("More of the viewport's controls")
-        .on_hover_text("What the bar has no room for");
+        .on_hover_text("More");
 }
 
 /// An item as an entry of a menu, where controls that open menus of their own can't be.

@@ -7,10 +7,10 @@ use crate::app::desk::Desk;
 
 /// The hints, in order.
 const HINTS: [&str; 4] = [
-    "Drag to turn the camera, the wheel to come closer; shift and drag turns the light.",
-    "A click on a preset gives it to the model; dragged onto a part of it, to that part.",
-    "Ctrl+K finds every command, panel and parameter by a few letters.",
-    "Help › Examples has scenes to begin with. F1 tells what keys and mouse do.",
+    "Drag to orbit, scroll to zoom, Shift+drag to rotate the light.",
+    "Click a preset to apply it; drag it onto a part to change only that part.",
+    "Ctrl+K: search commands, panels and parameters.",
+    "Help › Examples has scenes to begin with. F1 lists shortcuts. Ctrl+E saves the image.",
 ];
 /// Width of the hint, points.
 const WIDTH: f32 = 380.0;

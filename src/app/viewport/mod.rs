@@ -553,8 +553,7 @@ fn drop_hint(ui: &Ui, area: Rect) {
         egui::StrokeKind::Inside,
     );
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text =
-        "Drop a model with its files, an environment, a material, a project, or a picture for what it is dropped on";
+    let text = "Drop to open: model, environment, material, project or texture";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

@@ -13,7 +13,7 @@ use crate::document::turntable::Turn;
 use crate::named::Named as _;
 use crate::render::output::format_of;
 
-/// The lists, in the order in which pictures count through them, each with the option that a plain text stands for.
+/// The lists, in the order in which images count through them, each with the option that a plain text stands for.
 const LISTS: [(&str, Option<&str>); 5] = [
     ("models", Some("model")),
     ("materials", Some("material")),
@@ -50,7 +50,7 @@ impl Scene {
 /// An entry of a list.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Entry {
-    /// Its part of the pictures' names.
+    /// Its part of the images' names.
     pub(super) name: String,
     /// What it sets, as arguments of `glossmith render`.
     pub(super) arguments: Vec<String>,
@@ -61,11 +61,11 @@ pub(super) struct Entry {
 pub(super) struct BatchFile {
     /// Where it is.
     pub(super) path: PathBuf,
-    /// Where the pictures go.
+    /// Where the images go.
     pub(super) folder: PathBuf,
-    /// Endings of the files of each picture.
+    /// Endings of the files of each image.
     pub(super) formats: Vec<String>,
-    /// What all pictures have in common, as arguments.
+    /// What all images have in common, as arguments.
     pub(super) common: Vec<String>,
     /// The lists that are there.
     pub(super) lists: Vec<Vec<Entry>>,
@@ -335,7 +335,7 @@ impl BatchFile {
         Ok(file)
     }
 
-    /// The folder of the pictures, and the names and arguments of all, in order. Frames of a turn follow one another.
+    /// The folder of the images, and the names and arguments of all, in order. Frames of a turn follow one another.
     pub(super) fn pictures(&self) -> Vec<Picture> {
         let mut pictures = vec![Picture::default()];
         pictures[0].arguments = self.common.clone();
@@ -371,7 +371,7 @@ fn joined(first: &str, second: &str) -> String {
     }
 }
 
-/// A picture of a batch.
+/// An image of a batch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Picture {
     /// The names of its entries.

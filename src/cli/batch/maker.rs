@@ -19,14 +19,14 @@ use crate::render::sums::{self, KeptFilm};
 use crate::render::{EngineChoice, Progress, Session};
 use crate::store::replace::{remove_leftovers, save_atomically};
 
-/// What makes the pictures of a batch.
+/// What makes the images of a batch.
 pub(super) struct Maker<'a> {
     file: &'a BatchFile,
     engine: EngineChoice,
     session: Session,
 }
 
-/// A picture that is to be made.
+/// An image that is to be made.
 struct Wanted<'a> {
     number: usize,
     picture: &'a Picture,
@@ -36,7 +36,7 @@ struct Wanted<'a> {
 }
 
 impl<'a> Maker<'a> {
-    /// A session for pictures, or for a part of the samples of each; removes what a batch that was killed has left half
+    /// A session for images, or for a part of the samples of each; removes what a batch that was killed has left half
     /// written.
     pub(super) fn open(file: &'a BatchFile, engine: EngineChoice, part: Part) -> anyhow::Result<Self> {
         let mut session = Session::open(engine)?;
@@ -48,7 +48,7 @@ impl<'a> Maker<'a> {
         Ok(Self { file, engine, session })
     }
 
-    /// The document of a picture, and the hash of what it is made of.
+    /// The document of an image, and the hash of what it is made of.
     fn wanted<'p>(&mut self, number: usize, picture: &'p Picture, part: Part) -> anyhow::Result<Wanted<'p>> {
         let scene = Scene::parse(&picture.arguments)?.arguments;
         let mut document = scene.document(&mut self.session)?;
@@ -76,12 +76,12 @@ impl<'a> Maker<'a> {
         Ok(inputs.hash())
     }
 
-    /// A picture, or a part of its samples: rendered, unless it is there.
+    /// An image, or a part of its samples: rendered, unless it is there.
     pub(super) fn make(&mut self, number: usize, picture: &Picture, part: Part) -> Row {
         self.made_by(number, picture, part, Self::rendered)
     }
 
-    /// A picture of the parts in the folder that were made of the same inputs, unless it is there.
+    /// An image of the parts in the folder that were made of the same inputs, unless it is there.
     pub(super) fn join(&mut self, number: usize, picture: &Picture) -> Row {
         self.made_by(number, picture, Part::Whole, Self::joined)
     }
@@ -101,7 +101,7 @@ impl<'a> Maker<'a> {
         made.unwrap_or_else(|error| Row::failed(number, picture, &error))
     }
 
-    /// The record of a picture that is there already.
+    /// The record of an image that is there already.
     fn kept(&self, wanted: &Wanted<'_>) -> Option<Row> {
         let row = Row::read(&self.record(wanted))?;
         let is_same = row.hash.as_ref() == Some(&wanted.hash);
@@ -118,7 +118,7 @@ impl<'a> Maker<'a> {
         })
     }
 
-    /// The file of a picture or a part of it.
+    /// The file of an image or a part of it.
     fn path(&self, picture: &Picture, part: Option<[u32; 2]>, ending: &str) -> PathBuf {
         let part = part.map_or_else(String::new, |[from, to]| format!(".{from}-{to}"));
         self.file.folder.join(format!("{}{part}.{ending}", picture.name))
@@ -179,7 +179,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// The files of a whole picture, each replaced at once.
+    /// The files of a whole image, each replaced at once.
     fn write(
         &self,
         files: &[PathBuf],
@@ -248,7 +248,7 @@ impl<'a> Maker<'a> {
         self.finish(&wanted, row)
     }
 
-    /// The parts of a picture in the folder, in order; of those that begin alike the longest first.
+    /// The parts of an image in the folder, in order; of those that begin alike the longest first.
     fn parts(&mut self, wanted: &Wanted<'_>) -> anyhow::Result<Vec<([u32; 2], Row)>> {
         let mut parts = Vec::new();
         let prefix = format!("{}.", wanted.picture.name);

@@ -25,19 +25,19 @@ use crate::store::replace::save_atomically;
 /// Arguments of `glossmith batch`.
 #[derive(Debug, Args)]
 pub struct BatchArguments {
-    /// The lists, in TOML: models, materials, environments, cameras, settings; docs/GUIDE.md shows one.
+    /// The lists, in TOML: models, materials, environments, cameras, settings; docs/tutorials/automate.md shows one.
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
-    /// The folder for the pictures, in place of the file's.
+    /// The folder for the images, in place of the file's.
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
-    /// Only these pictures, by their numbers from 1.
+    /// Only these images, by their numbers from 1.
     #[arg(long, value_name = "N|FROM-TO", value_parser = numbers)]
     pictures: Option<RangeInclusive<usize>>,
     /// Only these frames of each turn, by their numbers from 1.
     #[arg(long, value_name = "N|FROM-TO", value_parser = numbers)]
     frame_range: Option<RangeInclusive<usize>>,
-    /// Render a part of each picture's samples only, to be joined by --merge: the number of the first.
+    /// Render a part of each image's samples only, to be joined by --merge: the number of the first.
     #[arg(long, value_name = "N", requires = "samples_to")]
     samples_from: Option<u32>,
     /// The number after the part's last sample. Other numbers draw other random numbers.
@@ -46,19 +46,19 @@ pub struct BatchArguments {
     /// The same by parts of equal size: part K of N.
     #[arg(long, value_name = "K/N", value_parser = slice, conflicts_with_all = ["samples_from", "samples_to"])]
     slice: Option<[u32; 2]>,
-    /// Join the parts that are in the folder to pictures, and render nothing; write the contact sheets.
+    /// Join the parts that are in the folder to images, and render nothing; write the contact sheets.
     #[arg(long, conflicts_with_all = ["samples_from", "samples_to", "slice"])]
     merge: bool,
     /// Render nothing: write an Open Job Description template (jobtemplate-2023-09), by which render farms run the batch.
     #[arg(long, value_name = "OUT.yaml")]
     job_template: Option<PathBuf>,
-    /// Tasks of the template for each picture, each with an equal part of its samples.
+    /// Tasks of the template for each image, each with an equal part of its samples.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "job_template", value_parser = clap::value_parser!(u32).range(1..=9999))]
     slices: u32,
-    /// Where a line of JSON goes for each picture; - is standard output.
+    /// Where a line of JSON goes for each image; - is standard output.
     #[arg(long, value_name = "FILE|-", default_value = "-")]
     json: Destination,
-    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
 }
@@ -83,14 +83,14 @@ fn slice(text: &str) -> Result<[u32; 2], String> {
         .ok_or_else(|| "give the number of the part and how many there are, such as 2/5".to_owned())
 }
 
-/// Which samples of a picture are rendered.
+/// Which samples of an image are rendered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Part {
     /// All.
     Whole,
     /// From a number up to another.
     Numbers([u32; 2]),
-    /// A part of each picture's samples: its number, and how many parts there are.
+    /// A part of each image's samples: its number, and how many parts there are.
     Slice([u32; 2]),
 }
 
@@ -106,7 +106,7 @@ impl Part {
         })
     }
 
-    /// The first sample of a part and the one after its last, of a picture with this many samples.
+    /// The first sample of a part and the one after its last, of an image with this many samples.
     fn range(self, samples: u32) -> Option<[u32; 2]> {
         match self {
             Self::Whole => None,
@@ -122,7 +122,7 @@ impl Part {
 /// Renders, joins, or writes the template.
 ///
 /// # Errors
-/// One line that names the file, what is wrong and what to do; [`PartialFailure`] where some pictures are there and others
+/// One line that names the file, what is wrong and what to do; [`PartialFailure`] where some images are there and others
 /// are not.
 pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
     let mut file = BatchFile::read(&arguments.file)?;
@@ -178,7 +178,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
     }
 }
 
-/// The pictures that are asked for, with their numbers.
+/// The images that are asked for, with their numbers.
 fn chosen<'a>(
     file: &BatchFile,
     all: &'a [Picture],

@@ -17,19 +17,19 @@ use crate::say::say;
 use crate::store::picture::png_bytes;
 use crate::store::replace::{save_atomically, save_by};
 
-/// Longest side of a small picture, pixels.
+/// Longest side of a thumbnail, pixels.
 const SIDE: u32 = 192;
-/// The folder of the small pictures, and the names of the sheets.
+/// The folder of the thumbnails, and the names of the sheets.
 pub(super) const THUMBNAILS: &str = "thumbnails";
 const SHEET: &str = "contact-sheet";
-/// Codes of the paper where a picture is missing or lets light through.
+/// Codes of the paper where an image is missing or lets light through.
 const PAPER: u8 = 230;
 
 fn thumbnail_path(folder: &Path, name: &str) -> PathBuf {
     folder.join(THUMBNAILS).join(format!("{name}.png"))
 }
 
-/// Writes the small picture of one that was made.
+/// Writes the thumbnail of one that was made.
 pub(super) fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &ViewSettings) -> anyhow::Result<()> {
     let path = thumbnail_path(folder, name);
     std::fs::create_dir_all(folder.join(THUMBNAILS))
@@ -47,7 +47,7 @@ pub(super) fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &V
     Ok(save_atomically(&path, &bytes)?)
 }
 
-/// A small picture on paper, in the middle of a square; paper alone where there is none.
+/// A thumbnail on paper, in the middle of a square; paper alone where there is none.
 fn cell(path: &Path) -> RgbImage {
     let mut cell = image::RgbaImage::from_pixel(SIDE, SIDE, image::Rgba([PAPER, PAPER, PAPER, 255]));
     if let Ok(picture) = image::open(path) {
@@ -58,7 +58,7 @@ fn cell(path: &Path) -> RgbImage {
     image::DynamicImage::ImageRgba8(cell).to_rgb8()
 }
 
-/// Writes both sheets of all pictures, those that are missing among them.
+/// Writes both sheets of all images, those that are missing among them.
 pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()> {
     let folder = &file.folder;
     let title = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -78,7 +78,7 @@ pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()
     Ok(())
 }
 
-/// The page: pictures with their names and what is known of them, each a link to its file.
+/// The page: images with their names and what is known of them, each a link to its file.
 fn html(folder: &Path, title: &str, pictures: &[Picture]) -> String {
     let mut text = format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n\

@@ -26,7 +26,7 @@ const NOISE: f64 = 0.02;
 const QUICK_SECONDS: f64 = 0.05;
 /// Longest time for a reference, as a multiple of each one's time.
 const REFERENCE_TIMES: f64 = 6.0;
-/// Pictures of a sheet are no wider than this.
+/// Images of a sheet are no wider than this.
 const SHEET_SIDE: u32 = 256;
 
 /// Arguments of `glossmith study accuracy`.
@@ -186,7 +186,7 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
     })
 }
 
-/// A picture as a screen shows it, no larger than fits a sheet.
+/// An image as a screen shows it, no larger than fits a sheet.
 fn shown(image: &Image, view: &ViewSettings) -> Option<RgbImage> {
     let rgba = image::RgbaImage::from_raw(image.width, image.height, display(image, view))?;
     let picture = image::DynamicImage::from(rgba).to_rgb8();

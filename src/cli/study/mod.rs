@@ -20,7 +20,7 @@ use crate::render::study::StudyProgress;
 use crate::render::study::references::ReferenceCache;
 use crate::render::{EngineChoice, Session};
 
-/// Largest side of a picture of `--quick`.
+/// Largest side of an image of `--quick`.
 const QUICK_SIDE: u32 = 48;
 
 /// Arguments of `glossmith study`.
@@ -34,15 +34,15 @@ pub struct StudyArguments {
 /// The studies.
 #[derive(Debug, Subcommand)]
 enum Study {
-    /// Race techniques against each other: time to a noise against bias, pictures of equal time and of equal error.
+    /// Race techniques against each other: time to a given noise against bias, images of equal time and of equal error.
     Accuracy(Box<accuracy::AccuracyArguments>),
     /// Measure what drawing directions costs, for all lobes: the paper's Fig. 8 on this machine.
     Sampling(sampling::SamplingArguments),
-    /// Show the error of one picture against time.
+    /// Show the error of one image against time.
     Convergence(Box<convergence::ConvergenceArguments>),
     /// Show how time grows with triangles, pixels, bounces and the size of the environment.
     Scaling(Box<scaling::ScalingArguments>),
-    /// Tell what each effect and setting costs in time and does to noise and picture.
+    /// Report what each effect and setting costs in time and does to noise and image.
     Ledger(Box<ledger::LedgerArguments>),
 }
 
@@ -93,14 +93,14 @@ impl CommonArguments {
     }
 }
 
-/// Where converged pictures are kept.
+/// Where converged images are kept.
 #[derive(Debug, Args)]
 struct CacheArguments {
-    /// The folder that keeps converged pictures from one study to the next [default: the user's cache, or below the
+    /// The folder that keeps converged images from one study to the next [default: the user's cache, or below the
     /// folder in the variable GLOSSMITH_CACHE].
     #[arg(long, value_name = "FOLDER")]
     cache: Option<PathBuf>,
-    /// Longest time for one converged picture.
+    /// Longest time for one converged image.
     #[arg(long, value_name = "SECONDS", value_parser = super::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
     reference_time: Option<f64>,
 }

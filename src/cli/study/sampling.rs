@@ -13,7 +13,7 @@ use crate::render::EngineChoice;
 use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
 use crate::say::put;
 
-/// The picture of `--quick`.
+/// The image of `--quick`.
 const QUICK_SIZE: [u32; 2] = [48, 32];
 
 /// Arguments of `glossmith study sampling`.
@@ -25,13 +25,13 @@ pub(super) struct SamplingArguments {
     /// Measure little and small, 48 x 32 pixels: to see that it works.
     #[arg(long)]
     quick: bool,
-    /// Width and height of the picture in pixels.
+    /// Width and height of the image in pixels.
     #[arg(long, default_value = "1880x1812", value_name = "WxH", value_parser = super::super::parse::size)]
     size: [u32; 2],
     /// Roughness of all lobes.
     #[arg(long, default_value = "0.3", value_name = "R", value_parser = super::super::parse::number_in(0.01..=1.0), allow_negative_numbers = true)]
     roughness: f64,
-    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
     #[command(flatten)]

@@ -96,7 +96,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::Background,
         label: "Background",
-        help: "The environment, seen by the camera where it meets nothing.",
+        help: "The environment, seen by the camera directly.",
         decide: |facts| match facts.document.lighting.background {
             Background::Environment => Decision::on("the environment is visible"),
             Background::Transparent => Decision::off("the background is transparent"),
@@ -134,11 +134,11 @@ pub static EFFECTS: &[Effect] = &[
     },
     Effect {
         id: EffectId::Interreflection,
-        label: "Shadows and interreflection",
+        label: "Shadows and indirect light",
         help: "Rays that leave a surface and may meet another one.",
         decide: |facts| {
             if facts.geometry.is_convex() {
-                Decision::off("the scene is one convex body: what leaves its outside meets nothing")
+                Decision::off("the scene is one convex body: rays that leave it hit nothing")
             } else if facts.settings.bounces <= 1 {
                 Decision::on("paths end at the first surface, but shadows are cast")
             } else {
@@ -185,14 +185,14 @@ pub static EFFECTS: &[Effect] = &[
     },
     Effect {
         id: EffectId::Lobe,
-        label: "Choice of lobe",
+        label: "Multiple lobes",
         help: "Code for every lobe, chosen from at each hit; with one lobe in the scene, only that one's.",
         decide: |facts| facts.shared(|material| material.lobe, |number| Lobe::ALL[number as usize].label()),
         remove: None,
     },
     Effect {
         id: EffectId::Curve,
-        label: "Choice of curve",
+        label: "Multiple curves",
         help: "Code for every D(ξ) curve, the interception of the long tail's among it; with one curve, only that one's.",
         decide: |facts| {
             let geometric = facts
@@ -283,7 +283,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::ColorTexture,
         label: "Colour textures",
-        help: "Base colours looked up in pictures, or given at the model's vertices.",
+        help: "Base colours from textures or vertex colours.",
         decide: |facts| {
             let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_flag(VERTEX_BASE);
             facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
@@ -293,7 +293,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::RoughnessTexture,
         label: "Roughness textures",
-        help: "Roughness and metalness looked up in pictures.",
+        help: "Roughness and metalness from textures.",
         decide: |facts| {
             let is_looked_up = |m: &Material<f32>| [m.textures[1], m.metalness_texture] != [NO_TEXTURE; 2];
             facts.needed_by(is_looked_up, "takes its roughness from a texture")
@@ -302,7 +302,7 @@ pub static EFFECTS: &[Effect] = &[
     },
     Effect {
         id: EffectId::RoughTables,
-        label: "Albedos over roughness",
+        label: "Energy-compensation tables",
         help: "What the base is left with where a texture changes the roughness, or the surface is metal in part.",
         decide: |facts| {
             facts.needed_by(
@@ -315,14 +315,14 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::NormalMap,
         label: "Normal maps",
-        help: "Shading normals bent by pictures.",
+        help: "Shading normals from normal maps.",
         decide: |facts| facts.needed_by(|m| m.textures[2] != NO_TEXTURE, "has a normal map"),
         remove: Some(|document| each_material(document, |material| material.textures.normal = false)),
     },
     Effect {
         id: EffectId::EmissionTexture,
         label: "Emission textures",
-        help: "Emission looked up in pictures.",
+        help: "Emission from textures.",
         decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
         remove: Some(|document| each_material(document, |material| material.textures.emission = false)),
     },
@@ -346,7 +346,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::CoatTexture,
         label: "Coat textures",
-        help: "Weights of coats looked up in pictures.",
+        help: "Coat weights from textures.",
         decide: |facts| {
             facts.needed_by(
                 |m| m.coat_texture != NO_TEXTURE,
@@ -358,7 +358,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::BoxProjection,
         label: "Box projection",
-        help: "Pictures that lie on a surface as on a box, without texture coordinates.",
+        help: "Images that lie on a surface as on a box, without texture coordinates.",
         decide: |facts| {
             facts.needed_by(
                 |m| m.has_box_projection == 1,
@@ -388,7 +388,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::DepthOfField,
         label: "Depth of field",
-        help: "Rays from all over the lens: sharp only at the distance of focus.",
+        help: "Thin-lens blur away from the focus distance.",
         decide: |facts| {
             if facts.settings.camera.lens_radius > 0.0 {
                 Decision::on("the lens is open")
@@ -401,7 +401,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::FireflyClamp,
         label: "Firefly clamp",
-        help: "Light that was reflected twice or more is limited: less noise, and less energy than there is.",
+        help: "Clamps indirect light: less noise, slightly darker.",
         decide: |facts| match facts.document.render.firefly_clamp {
             Some(limit) => Decision::on(format!("limited to a radiance of {limit}")),
             None => Decision::off("no limit is set"),
@@ -435,7 +435,7 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::PictureLayers,
         label: "Picture layers (AOVs)",
         help: "Albedo, normal and distance of what is seen, beside the light.",
-        decide: |_| Decision::off("written only when a picture with layers is saved"),
+        decide: |_| Decision::off("written only when an image with layers is saved"),
         remove: None,
     },
     Effect {
@@ -444,20 +444,20 @@ pub static EFFECTS: &[Effect] = &[
         help: "Albedo, normal and distance of what each pixel sees first, from its first 32 samples: for the denoiser and for \
                layers.",
         decide: |facts| match facts.document.view.denoise {
-            Denoise::Off => Decision::off("neither layers nor a denoised picture are made"),
-            _ => Decision::on("the denoiser is led by them"),
+            Denoise::Off => Decision::off("neither layers nor denoising are requested"),
+            _ => Decision::on("they guide the denoiser"),
         },
         remove: None,
     },
     Effect {
         id: EffectId::Denoising,
         label: "Denoising",
-        help: "The picture's noise is taken out, led by the albedo and the normal of what is seen.",
+        help: "Denoising with Open Image Denoise, guided by albedo and normal.",
         decide: |facts| match facts.document.view.denoise {
             Denoise::Off => Decision::off("the samples are shown as they are"),
-            Denoise::Fast => Decision::on("noise is taken out, quickly"),
-            Denoise::High => Decision::on("noise is taken out as well as can be"),
-            Denoise::Auto => Decision::on("noise is taken out until the samples alone are nearer to the truth"),
+            Denoise::Fast => Decision::on("denoised, fast"),
+            Denoise::High => Decision::on("denoised, high quality"),
+            Denoise::Auto => Decision::on("denoised until the raw image is more accurate"),
         },
         remove: Some(|document| document.view.denoise = Denoise::Off),
     },

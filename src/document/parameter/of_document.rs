@@ -34,7 +34,7 @@ fn lighting() -> Vec<Parameter<Document>> {
             .named("Environment strength").flag("environment-strength").bar(0.0, 4.0),
         of("lighting.background_blur", Lighting, "Blur", "Blurs the environment where the camera sees it, over this angle; light and reflections stay sharp.", single(range::BACKGROUND_BLUR_DEG, "°"), field!(Number lighting.background_blur_deg))
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment),
-        of("scene.unit", Stage::Display, "Scene unit", "Metres of a unit of the model's coordinates; the power of lights is reckoned with it. No picture depends on it.", real(range::UNIT_M, "m"), field!(Real unit_m))
+        of("scene.unit", Stage::Display, "Scene unit", "Metres per scene unit. Used only to convert the power of lights.", real(range::UNIT_M, "m"), field!(Real unit_m))
             .named("Scene unit").group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty()),
         of("scene.ground", Geometry, "Ground", "A surface under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
             .named("Ground").group("Ground").flag("ground"),
@@ -63,13 +63,13 @@ fn is_cyclorama(document: &Document) -> bool {
 fn camera() -> Vec<Parameter<Document>> {
     use Stage::Camera;
     vec![
-        of("camera.fov", Camera, "Field of view", "Vertical angle of the picture; small is a telephoto lens.", real(range::FOV_DEG, "°"), field!(Real camera.fov_deg))
+        of("camera.fov", Camera, "Field of view", "Vertical field of view; small is a telephoto lens.", real(range::FOV_DEG, "°"), field!(Real camera.fov_deg))
             .named("Field of view").flag("fov").bar(5.0, 120.0).decimals(1),
         of("camera.yaw", Camera, "Yaw", "Turns the camera about the vertical axis. In the viewport: drag.", real(range::YAW_DEG, "°"), field!(Real camera.yaw_deg))
             .named("Yaw").bar(-180.0, 180.0).decimals(1),
         of("camera.pitch", Camera, "Pitch", "Height of the camera above the target's horizon. In the viewport: drag.", real(range::PITCH_DEG, "°"), field!(Real camera.pitch_deg))
             .named("Pitch").bar(-90.0, 90.0).decimals(1),
-        of("camera.distance", Camera, "Distance", "Distance from the target in scene units; auto: the model fills the picture.", auto(real(range::DISTANCE, "")), optional!(Real camera.distance))
+        of("camera.distance", Camera, "Distance", "Distance from the target in scene units; auto: the model fills the image.", auto(real(range::DISTANCE, "")), optional!(Real camera.distance))
             .named("Distance").flag("camera-distance"),
         of("camera.target", Camera, "Target", "What the camera looks at; auto: the centre of the model.", auto(place()), optional!(Place camera.target))
             .named("Target").flag("camera-target"),
@@ -92,17 +92,17 @@ fn view() -> Vec<Parameter<Document>> {
             .named("Tone map").flag("tone-map"),
         of("view.exposure", Display, "Exposure", "Brightness in stops: +1 doubles it.", single(range::EXPOSURE_EV, "EV"), field!(Number view.exposure_ev))
             .named("Exposure").flag("exposure").bar(-6.0, 6.0).decimals(2),
-        of("view.auto_exposure", Display, "Automatic", "Brings the picture's mean brightness to middle grey; the exposure is added to that.", Kind::Toggle, field!(Toggle view.auto_exposure))
+        of("view.auto_exposure", Display, "Automatic", "Brings the image's mean brightness to middle grey; the exposure is added to that.", Kind::Toggle, field!(Toggle view.auto_exposure))
             .named("Automatic exposure").flag("auto-exposure"),
-        of("view.white_balance", Display, "White balance", "Temperature of the light that appears white: lower takes warmth out, higher adds it.", single(range::WHITE_K, "K"), field!(Number view.white_k))
+        of("view.white_balance", Display, "White balance", "Temperature of the light that appears white: lower is cooler, higher is warmer.", single(range::WHITE_K, "K"), field!(Number view.white_k))
             .named("White balance").flag("white-balance").bar(2500.0, 12_000.0).decimals(0),
-        of("view.contrast", Display, "Contrast", "Steepens the picture around middle grey, before the tone map.", single(range::CONTRAST, ""), field!(Number view.contrast))
+        of("view.contrast", Display, "Contrast", "Contrast around middle grey, applied before the tone map.", single(range::CONTRAST, ""), field!(Number view.contrast))
             .named("Contrast").flag("contrast").bar(0.5, 2.0).decimals(2),
-        of("view.saturation", Display, "Saturation", "Distance of colours from grey, before the tone map; at 0 all is grey.", single(range::SATURATION, ""), field!(Number view.saturation))
+        of("view.saturation", Display, "Saturation", "Distance of colours from grey, applied before the tone map. At 0 everything is grey.", single(range::SATURATION, ""), field!(Number view.saturation))
             .named("Saturation").flag("saturation").bar(0.0, 2.0).decimals(2),
-        of("view.denoise", Stage::Goal, "Denoise", "Takes the picture's noise out with Open Image Denoise, led by what is seen, and tells how far it then is from the truth. With auto a noise to reach is that of the denoised picture.", choices::<Denoise>(), choice!(view.denoise))
+        of("view.denoise", Stage::Goal, "Denoise", "Denoises with Open Image Denoise and estimates the remaining error. Auto blends with the raw render and applies the noise limit to the result.", choices::<Denoise>(), choice!(view.denoise))
             .named("Denoise").flag("denoise"),
-        of("view.denoise_when", Display, "Denoise when", "When the window takes the noise out: from the first sample on, or once all has been rendered.", choices::<DenoiseWhen>(), choice!(view.denoise_when))
+        of("view.denoise_when", Display, "Denoise when", "When the window denoises: from the first sample on, or at the end.", choices::<DenoiseWhen>(), choice!(view.denoise_when))
             .named("Denoise when").applies(|document| document.view.denoise != Denoise::Off),
     ]
 }
@@ -117,17 +117,17 @@ fn sampling() -> Vec<Parameter<Document>> {
             .named("Height").group("Picture size"),
         of("render.bounces", Sampling, "Bounces", "Reflections that a path may have.", count(range::BOUNCES), field!(Count render.bounces))
             .named("Bounces").group("Sampling").flag("bounces").bar(1.0, 64.0),
-        of("render.strategy", Sampling, "Light sampling", "How light is found: by sampling the lobe, the light, or both weighed against each other. All converge to the same picture.", choices::<Strategy>(), choice!(render.strategy))
+        of("render.strategy", Sampling, "Light sampling", "BSDF sampling, light sampling, or both (MIS). All converge to the same image.", choices::<Strategy>(), choice!(render.strategy))
             .named("Light sampling").group("Sampling").flag("strategy"),
-        of("render.light_paths", Sampling, "Light shown", "All light, or only what was reflected once, or more often: in the viewport, too, under what it shows.", choices::<LightPaths>(), choice!(render.light_paths))
+        of("render.light_paths", Sampling, "Light shown", "Renders all light, direct light only, or indirect light only.", choices::<LightPaths>(), choice!(render.light_paths))
             .named("Light shown").group("Sampling").flag("light-paths"),
         of("render.sequence", Sampling, "Sequence", "The random numbers that are drawn.", choices::<Sequence>(), choice!(render.sequence))
             .named("Sequence").group("Sampling").flag("sequence"),
         of("render.filter", Sampling, "Pixel filter", "How samples are spread over a pixel and its neighbours.", choices::<PixelFilter>(), choice!(render.filter))
             .named("Pixel filter").group("Sampling").flag("filter"),
-        of("render.firefly_clamp", Sampling, "Firefly clamp", "Limits the radiance of light that was reflected twice or more; the energy that this takes is told (clamped_energy in the report).", off(single(range::FIREFLY_CLAMP, ""), Value::Number(10.0)), optional!(Number render.firefly_clamp))
+        of("render.firefly_clamp", Sampling, "Firefly clamp", "Clamps the radiance of indirect light. The report gives the energy removed (clamped_energy).", off(single(range::FIREFLY_CLAMP, ""), Value::Number(10.0)), optional!(Number render.firefly_clamp))
             .named("Firefly clamp").group("Sampling").flag("firefly-clamp"),
-        of("render.seed", Sampling, "Seed", "Which of the possible pictures' noise: changes all random numbers.", Kind::Count { range: [0, u32::MAX] }, field!(Count render.seed))
+        of("render.seed", Sampling, "Seed", "Random seed.", Kind::Count { range: [0, u32::MAX] }, field!(Count render.seed))
             .named("Seed").group("Sampling").flag("seed"),
     ]
 }
@@ -140,11 +140,11 @@ fn stopping() -> Vec<Parameter<Document>> {
             .named("Samples").group("Picture").flag("samples"),
         of("render.time", Goal, "Time limit", "Stops rendering after this time.", off(real(range::TIME_S, "s"), Value::Real(60.0)), optional!(Real render.time_s))
             .named("Time limit").group("Picture").flag("time"),
-        of("render.noise", Goal, "Noise limit", "Stops rendering at this relative error of the picture (standard error of a pixel, root mean square over the picture, over its mean luminance); 0.01 is 1 %.", off(real(range::NOISE, ""), Value::Real(0.01)), optional!(Real render.noise))
+        of("render.noise", Goal, "Noise limit", "Stops at this estimated relative error (RMS pixel error over mean luminance); 0.01 is 1 %.", off(real(range::NOISE, ""), Value::Real(0.01)), optional!(Real render.noise))
             .named("Noise limit").group("Accuracy").flag("noise").percent(),
         of("render.min_samples", Goal, "Least samples", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples))
             .named("Minimum samples").group("Accuracy").flag("min-samples"),
-        of("render.adaptive", Goal, "Adaptive", "Whether samples go where the error is, or evenly over the picture; auto: where a noise is to be reached.", auto(Kind::Toggle), optional!(Toggle render.adaptive))
+        of("render.adaptive", Goal, "Adaptive", "Adaptive or uniform sampling; auto: adaptive if there is a noise limit.", auto(Kind::Toggle), optional!(Toggle render.adaptive))
             .named("Adaptive sampling").group("Accuracy").flag("adaptive"),
     ]
 }

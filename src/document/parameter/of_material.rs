@@ -79,7 +79,7 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Roughness",
             symbol: "R",
-            help: "How far the reflection is spread: from a mirror at 0 to, for the geometric lobe, perfectly diffuse at 1.",
+            help: "0 is a mirror; 1 is fully diffuse for the geometric lobe.",
             applies: |material| has_specular(material) && material.lobe.has_roughness(),
             ..of("specular.roughness", unit_number(), field!(Number roughness))
         },
@@ -102,7 +102,7 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Custom curve",
             symbol: "D(ξ)",
-            help: "Your own profile: the share ξ of the samples stays within the distance D of the mirror direction.",
+            help: "Custom quantile function D(ξ).",
             applies: |material| has_curves(material) && material.curve.has_table(),
             ..of("specular.custom_curve", Kind::Curve, custom_curve())
         },
@@ -133,7 +133,7 @@ fn specular_shape() -> Vec<Parameter> {
             )
         },
         Parameter {
-            label: "Below the surface",
+            label: "Below horizon",
             help: "What happens to samples that point into the surface.",
             applies: |material| has_specular(material) && !material.lobe.is_hemispherical(),
             ..of("specular.horizon", choices::<Horizon>(), choice!(horizon))
@@ -253,7 +253,7 @@ fn transmission() -> Vec<Parameter> {
         },
         Parameter {
             label: "Depth",
-            help: "The way inside after which white light has the colour, in bounding radii of the model; at 0 the surface itself is tinted.",
+            help: "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead.",
             row: bar(0.0, 2.0),
             ..of(
                 "transmission.depth",
@@ -262,7 +262,7 @@ fn transmission() -> Vec<Parameter> {
             )
         },
         Parameter {
-            label: "Extra roughness",
+            label: "Transmission roughness offset",
             symbol: "R",
             help: "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.",
             row: bar(-1.0, 1.0),
@@ -285,7 +285,7 @@ fn emission() -> Vec<Parameter> {
         },
         Parameter {
             label: "Colour texture",
-            help: "Multiplies the emission by the model's texture.",
+            help: "Multiplies the emission by a texture, the model's or one of your own.",
             ..of("emission.color_texture", Kind::Toggle, field!(Toggle textures.emission))
         },
         Parameter {
@@ -311,7 +311,7 @@ fn geometry() -> Vec<Parameter> {
         },
         Parameter {
             label: "Opacity texture",
-            help: "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, cut off where the model says so.",
+            help: "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.",
             ..of(
                 "geometry.opacity_texture",
                 Kind::Toggle,

@@ -15,15 +15,15 @@ type Accessors = super::Accessors<OwnTexture>;
 #[rustfmt::skip]
 fn all() -> Vec<Parameter<OwnTexture>> {
     vec![
-        of("strength", "Strength", "How far the picture counts: at 0 what it is put on stays as it is. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).row([0.0, 1.0], 3),
-        of("scale", "Scale", "How many times the picture repeats across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).row([0.1, 10.0], 3),
-        of("stretch", "Stretch", "How many times oftener it repeats upwards than sidewards.", range([1e-2, 1e2], ""), field!(Number stretch)).row([0.1, 10.0], 3),
-        of("rotation", "Rotation", "Turns the picture counterclockwise about its middle.", range([-360.0, 360.0], "°"), field!(Number rotation_deg)).row([-180.0, 180.0], 1),
-        of("offset_u", "Offset right", "By how much of its width the picture lies further to the right.", range([-100.0, 100.0], ""), field!(Number offset[0])).row([-1.0, 1.0], 3),
-        of("offset_v", "Offset up", "By how much of its height the picture lies further up.", range([-100.0, 100.0], ""), field!(Number offset[1])).row([-1.0, 1.0], 3),
-        of("projection", "Projection", "Where the picture lies on the surface.", choices::<TextureProjection>(), choice!(projection)),
-        of("channel", "Channel", "Which of the picture's channels counts, where a number is meant.", choices::<TextureChannel>(), choice!(channel)),
-        of("color_space", "Colour space", "What the picture's numbers stand for.", choices::<TextureSpace>(), choice!(space)),
+        of("strength", "Strength", "Blend amount. 0 leaves the parameter unchanged. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).row([0.0, 1.0], 3),
+        of("scale", "Scale", "Repetitions across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).row([0.1, 10.0], 3),
+        of("stretch", "Stretch", "Vertical tiling relative to horizontal.", range([1e-2, 1e2], ""), field!(Number stretch)).row([0.1, 10.0], 3),
+        of("rotation", "Rotation", "Turns the image anticlockwise about its centre.", range([-360.0, 360.0], "°"), field!(Number rotation_deg)).row([-180.0, 180.0], 1),
+        of("offset_u", "Offset right", "Offset to the right, in image widths.", range([-100.0, 100.0], ""), field!(Number offset[0])).row([-1.0, 1.0], 3),
+        of("offset_v", "Offset up", "Offset upwards, in image heights.", range([-100.0, 100.0], ""), field!(Number offset[1])).row([-1.0, 1.0], 3),
+        of("projection", "Projection", "Projection onto the surface.", choices::<TextureProjection>(), choice!(projection)),
+        of("channel", "Channel", "Channel to use for a single number.", choices::<TextureChannel>(), choice!(channel)),
+        of("color_space", "Colour space", "Colour space of the image.", choices::<TextureSpace>(), choice!(space)),
         of("inverted", "Inverted", "Dark counts as bright: gloss for roughness. Of a normal map, green points downwards, as DirectX has it.", Kind::Toggle, field!(Toggle inverted)),
     ]
 }

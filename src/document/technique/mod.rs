@@ -175,7 +175,9 @@ impl Setting {
         match self {
             Setting::Lobe(lobe) => lobe.label().to_owned(),
             Setting::Curve(curve) => format!("Curve: {}", curve.label().to_lowercase()),
-            Setting::Strategy(strategy) => format!("Light by: {}", strategy.label().to_lowercase()),
+            Setting::Strategy(Strategy::Lobe) => "BSDF sampling only".to_owned(),
+            Setting::Strategy(Strategy::Light) => "Light sampling only".to_owned(),
+            Setting::Strategy(Strategy::Mis) => "BSDF and light sampling".to_owned(),
             Setting::Sequence(sequence) => format!("Numbers: {}", sequence.name()),
             Setting::ExactFresnel(true) => "Exact Fresnel".to_owned(),
             Setting::ExactFresnel(false) => "Schlick's Fresnel".to_owned(),
@@ -242,7 +244,7 @@ impl Technique {
     /// What it is called.
     pub fn label(&self) -> String {
         if self.0.is_empty() {
-            return "As it is".to_owned();
+            return "Current settings".to_owned();
         }
         let labels: Vec<String> = self.0.iter().map(|setting| setting.label()).collect();
         labels.join(", ")

@@ -20,10 +20,10 @@ named! {
     ToneCurve {
         #[default]
         AgxPunchy = 5, "agx-punchy", "AgX Punchy", "AgX with more contrast and saturation: metals and paints keep their colour.";
-        Agx = 0, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
+        Agx = 0, "agx", "AgX", "Bright colours fade to white as on film: for any image with strong light.";
         Aces = 1, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
         Aces2 = 2, "aces2", "ACES 2", "The Academy's transform of 2024 for screens: softer than the first, colours keep their hue up to white.";
-        PbrNeutral = 3, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
+        PbrNeutral = 3, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product images.";
         None = 4, "none", "None", "Cut off at white: for comparing numbers.";
     }
 }

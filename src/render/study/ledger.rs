@@ -104,7 +104,7 @@ impl Entry {
     pub fn time_words(&self) -> String {
         let share = self.ms / self.ms_without;
         if share.abs() < TIME_WORTH_TELLING || !self.is_time_resolved() {
-            return "no time that could be measured".to_owned();
+            return "no measurable cost".to_owned();
         }
         let sign = if share > 0.0 { "+" } else { "−" };
         format!("{sign}{} % time", digits(100.0 * share.abs()))
@@ -552,7 +552,7 @@ mod tests {
         };
         assert_eq!(
             words(&entry),
-            "Exact Fresnel (instead of Schlick's): no time that could be measured, 5.1 × the noise, changes the \
+            "Exact Fresnel (instead of Schlick's): no measurable cost, 5.1 × the noise, changes the \
              picture by less than 0.21 %"
         );
     }

@@ -113,7 +113,7 @@ macro_rules! registered {
 /// Every format, in the order of the menus: name, label, endings, whether it is read and written, where it is, what it is.
 pub static FORMATS: &[Registered] = registered! {
     "glossmith", "Glossmith", ["json", "png"], true, true, native::Native,
-        "Glossmith's own materials and projects; pictures with a document inside are read.";
+        "Glossmith's own materials and projects; images with a document inside are read.";
     "materialx", "MaterialX, OpenPBR", ["mtlx"], true, true, materialx::MaterialX { is_standard: false },
         "MaterialX 1.39 with an OpenPBR surface.";
     "standard-surface", "MaterialX, Standard Surface", ["mtlx"], true, true, materialx::MaterialX { is_standard: true },

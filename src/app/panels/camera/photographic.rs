@@ -45,7 +45,7 @@ impl Photographic {
         let name = Name::new(
             "Sensor",
             "Sensor",
-            "What focal lengths are told for; it changes no picture.",
+            "Sensor size for focal length only; doesn't change the image.",
         );
         let chosen = widgets::row(ui, name, |ui| {
             widgets::choice(ui, "sensor", &mut self.sensor_height_mm, &SENSORS)
@@ -106,9 +106,11 @@ impl Photographic {
             decimals: 4,
         };
         let help = "Focal length over the lens's diameter, where a unit of the scene is a metre: the smaller, the less is sharp. \
-                    Off (0) is a pinhole, with which everything is.";
+                    0 is a pinhole, with which everything is sharp.";
         let name = Name::new("f-number", "f-number", help);
-        let response = widgets::row(ui, name, |ui| widgets::number_or(ui, &mut number, &style, Some("off")));
+        let response = widgets::row(ui, name, |ui| {
+            widgets::number_or(ui, &mut number, &style, Some("pinhole"))
+        });
         if response.changed {
             desk.document.camera.aperture = exchanged(number).min(*range::APERTURE.end());
         }

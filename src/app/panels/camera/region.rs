@@ -12,7 +12,7 @@ const LEAST: f64 = 0.01;
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut is_on = desk.document.render.region.is_some();
-    let help = "Renders a part of the picture only. In the viewport: B, then drag a rectangle; escape takes it away.";
+    let help = "Renders a part of the image only. In the viewport: B, then drag a rectangle; Esc clears it.";
     let name = Name::new("Render region", "Region", help);
     let response = widgets::row(ui, name, |ui| ui.checkbox(&mut is_on, ""));
     if response.changed {

@@ -43,7 +43,7 @@ pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState
     let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, slice } = state;
-    worker.controls(ui, desk, "Measure cost of effects", help, |desk| {
+    worker.controls(ui, desk, "Profile features", help, |desk| {
         let document = small_document(desk, SIDE_MAX);
         let mut options = LedgerOptions::new(engine(desk));
         options.slice = slice.unwrap_or(options.slice);

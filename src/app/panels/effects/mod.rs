@@ -35,19 +35,19 @@ impl Panel for EffectsPanel {
         let count = plan.table().count();
         let found = self.ledger.found();
         let gain = found.as_ref().and_then(|ledger| ledger.kernel_gain());
-        let gain = gain.map_or_else(String::new, |gain| format!(", {gain:.1} × as fast as the general one"));
-        let mut help =
-            "An effect that the scene does not call for costs nothing: the kernel is compiled without it.".to_owned();
+        let gain = gain.map_or_else(String::new, |gain| format!(" Specialised kernel: {gain:.1} × as fast."));
+        let mut help = "Unused features are compiled out and cost nothing.".to_owned();
         if let Some(seconds) = desk.snapshot.progress.kernel_seconds {
             help += &format!(
-                "\nThe last one took {} to compile, while the processor drew.",
+                "\nThe last kernel took {} to compile, while the CPU engine rendered.",
                 duration(seconds)
             );
         }
         ui.label(format!(
-            "{} of {count} effects are simulated; the kernel leaves out {}{gain}.",
+            "{} of {count} features active; {} of {} compile-time switches off or fixed.{gain}",
             plan.effects().len(),
-            plan.left_out()
+            plan.left_out(),
+            plan.constants().len()
         ))
         .on_hover_text(help);
         ledger::controls(ui, desk, &mut self.ledger);
@@ -110,7 +110,7 @@ fn mark(ui: &mut Ui, is_on: bool) {
     };
     let stroke = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
     ui.painter().circle(place.center(), MARK_RADIUS, color, stroke);
-    response.on_hover_text(if is_on { "Simulated" } else { "Left out" });
+    response.on_hover_text(if is_on { "Active" } else { "Compiled out" });
 }
 
 fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
@@ -122,8 +122,8 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
     let shown = menu.show_ui(ui, |ui| {
         for &switch in Switch::ALL {
             let why_not = match switch {
-                Switch::On => "It has no code that could run where it is not called for.",
-                _ => "Nothing can be rendered without it.",
+                Switch::On => "Cannot be forced on for this scene.",
+                _ => "Required for any render.",
             };
             ui.add_enabled_ui(effect.can_be(switch), |ui| {
                 let item = ui.selectable_value(&mut chosen, switch, switch.label());

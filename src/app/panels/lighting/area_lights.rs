@@ -49,7 +49,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         let wish = header(ui, desk, index, &title, light, soloed == Some(index));
         wished = wish.map(|wish| (wish, index)).or(wished);
         rows(ui, desk, &title, light);
-        let help = "The next click on the model turns the light so that it is seen mirrored there.";
+        let help = "Click the model to put the highlight there.";
         let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
         pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
     }
@@ -138,7 +138,7 @@ fn header(
             ) {
                 wish = Some(Wish::Solo);
             }
-            let help = "It does not shine, and is not there, until this is pressed again.";
+            let help = "Mute: light off and hidden.";
             if button(ui, "Mute", light.is_muted, help) {
                 light.is_muted = !light.is_muted;
                 desk.edits.note("Mute area light", "");

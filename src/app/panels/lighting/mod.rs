@@ -125,7 +125,7 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
         Background::Transparent => Kind::Transparent,
         Background::Color(_) => Kind::Color,
     };
-    let name = Name::new("Background", "Shows", "What is seen beside the model.");
+    let name = Name::new("Background", "Background", "What is seen beside the model.");
     let response = widgets::row(ui, name, |ui| widgets::choice(ui, "background", &mut kind, &choices));
     if response.changed {
         desk.document.lighting.background = match kind {

@@ -1,0 +1,147 @@
+//! What a program can check of docs/STYLE.md: the words of its table, the length of sentences, their mean on each page.
+
+use std::path::Path;
+
+use super::docs::{pages, text_of};
+
+/// Words that a sentence may have, and that those of a page may have in the mean.
+const MOST_WORDS: usize = 30;
+const MEAN_WORDS: f64 = 20.0;
+/// Shorter pieces are labels and cells, which say nothing about how long sentences are.
+const LEAST_WORDS: usize = 4;
+/// Pages that are not done yet, with how many long sentences and private words they have. These may only become fewer.
+const EXEMPT: [(&str, usize, usize); 0] = [];
+
+/// The words not to use: in quotes in the first column of the table of docs/STYLE.md.
+fn private_words() -> Vec<String> {
+    let style = text_of(Path::new("docs/STYLE.md"));
+    let rows = style.lines().filter(|line| line.starts_with("| \""));
+    let first = rows.filter_map(|row| row.split('|').nth(1));
+    first
+        .flat_map(|cell| {
+            cell.split('"')
+                .skip(1)
+                .step_by(2)
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// The paragraphs, list items, headings and cells of a page: without code, and without the tables that the program makes.
+fn passages(page: &str) -> Vec<String> {
+    let mut passages = vec![String::new()];
+    let (mut is_code, mut is_made) = (false, false);
+    for line in page.lines() {
+        let text = line.trim();
+        is_made |= text.starts_with("<!-- made from the program");
+        is_code ^= text.starts_with("```");
+        let is_item = ["- ", "* ", "> ", "#"].iter().any(|mark| text.starts_with(mark))
+            || text
+                .split_once(". ")
+                .is_some_and(|(number, _)| number.parse::<u8>().is_ok());
+        if is_made || is_code || text.starts_with("```") || text.is_empty() {
+            passages.push(String::new());
+        } else if text.starts_with('|') {
+            passages.extend(text.replace("\\|", " ").split('|').map(str::to_owned));
+            passages.push(String::new());
+        } else {
+            if is_item {
+                passages.push(String::new());
+            }
+            let passage = passages.last_mut().unwrap();
+            *passage += " ";
+            *passage += text.trim_start_matches(['#', '>']);
+            if text.starts_with('#') {
+                passages.push(String::new());
+            }
+        }
+        is_made &= !text.starts_with("<!-- end");
+    }
+    passages
+}
+
+/// A passage as it is read: links by their text, code and names of the window's labels as one word each.
+fn read(passage: &str) -> String {
+    let mut text = String::new();
+    let mut rest = passage;
+    while let Some((before, after)) = rest.split_once("](") {
+        text += before;
+        rest = after.split_once(')').map_or("", |(_, after)| after);
+    }
+    text += rest;
+    let without_code = replaced(&text, '`', "code");
+    replaced(&without_code.replace("**", ""), '*', "label").replace(['[', ']', '!'], "")
+}
+
+/// The text with each piece between two marks replaced by a word.
+fn replaced(text: &str, mark: char, word: &str) -> String {
+    let pieces = text.split(mark).enumerate();
+    pieces.map(|(i, piece)| if i % 2 == 0 { piece } else { word }).collect()
+}
+
+/// The sentences of a passage, in words.
+fn sentences(passage: &str) -> Vec<Vec<&str>> {
+    let ended = passage
+        .split_inclusive(". ")
+        .flat_map(|text| text.split_inclusive("? "));
+    let words = ended.map(|text| {
+        text.split_whitespace()
+            .filter(|word| word.chars().any(char::is_alphanumeric))
+            .collect()
+    });
+    words.filter(|words: &Vec<_>| words.len() >= LEAST_WORDS).collect()
+}
+
+/// The passage in lower case with single spaces, to look for words in.
+fn plain(passage: &str) -> String {
+    let is_word = |c: char| c.is_alphanumeric() || matches!(c, '\'' | '-');
+    let lower = passage.to_lowercase();
+    let words: Vec<_> = lower.split(|c| !is_word(c)).filter(|word| !word.is_empty()).collect();
+    format!(" {} ", words.join(" "))
+}
+
+#[test]
+fn pages_keep_to_the_style() {
+    let private = private_words();
+    assert!(private.len() > 20, "docs/STYLE.md has its table of terms");
+    for page in pages() {
+        let name = page.display().to_string().replace('\\', "/");
+        if name == "docs/STYLE.md" {
+            continue;
+        }
+        let passages: Vec<_> = passages(&text_of(&page)).iter().map(|passage| read(passage)).collect();
+        let sentences: Vec<_> = passages.iter().flat_map(|passage| sentences(passage)).collect();
+        let long: Vec<_> = sentences
+            .iter()
+            .filter(|words| words.len() > MOST_WORDS)
+            .map(|words| words.join(" "))
+            .collect();
+        let found: Vec<_> = passages
+            .iter()
+            .map(|passage| plain(passage))
+            .flat_map(|text| {
+                private
+                    .iter()
+                    .flat_map(move |word| vec![word; text.matches(&format!(" {word} ")).count()])
+            })
+            .collect();
+        let allowed = EXEMPT.iter().find(|(exempt, ..)| *exempt == name);
+        let (long_allowed, words_allowed) = allowed.map_or((0, 0), |(_, long, words)| (*long, *words));
+        assert_eq!(
+            long.len(),
+            long_allowed,
+            "{name}, sentences of more than {MOST_WORDS} words: {long:#?}"
+        );
+        assert_eq!(
+            found.len(),
+            words_allowed,
+            "{name}, words that docs/STYLE.md replaces: {found:?}"
+        );
+        let mean = sentences.iter().map(Vec::len).sum::<usize>() as f64 / sentences.len().max(1) as f64;
+        assert!(
+            allowed.is_some() || mean < MEAN_WORDS,
+            "{name}: {mean:.1} words a sentence in the mean"
+        );
+    }
+}
