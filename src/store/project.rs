@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json, json};
 
-use super::replace::save_atomically;
 use super::error::SIZE_MAX;
+use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
 use super::{own, preset};
 use crate::document::{Document, MaterialSettings};
