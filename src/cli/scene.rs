@@ -83,7 +83,7 @@ pub struct SceneArguments {
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
     #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
     import_lobe: ImportLobe,
-    /// Set a parameter of every material, such as specular.roughness=0.2, or a setting, such as camera.fov=40. Stands over
+    /// Set a parameter of every material, such as specular.roughness=0.2, or a setting, such as camera.fov=40. Overrides
     /// all other options. May be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,

@@ -203,9 +203,9 @@ mod tests {
         let (loading, other) = (Loading::default(), Loading::default());
         assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
         assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
-        assert_eq!(other.take_refused(), [PathBuf::new(); 0]);
+        assert!(other.take_refused().is_empty());
         assert_eq!(loading.take_refused(), [own.join("../../x.png")]);
-        assert_eq!(loading.take_refused(), [PathBuf::new(); 0]);
+        assert!(loading.take_refused().is_empty());
         allow(std::slice::from_ref(&named));
         assert!(reach.check(&own.join("../../x.png"), &loading).is_ok());
         #[cfg(unix)]

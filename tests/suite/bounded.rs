@@ -39,6 +39,7 @@ fn run(place: &Workplace, arguments: &str, memory_mib: Option<u64>) -> Taken {
     if let Some(mib) = memory_mib {
         command.env("GLOSSMITH_MEMORY", mib.to_string());
     }
+    #[expect(clippy::zombie_processes, reason = "wait4 waits for it, and gives what it used")]
     let child = command.spawn().unwrap();
     let mut status = 0;
     // SAFETY: all zeros are a usage.

@@ -13,7 +13,6 @@ const STANDING: &[&str] = &[
     "src/render: calibration engine",
     "src/cpu/integrator: catcher group light paths",
     "src/document: area_light effect ground import material own_textures parameter settings",
-    "src/document/effect: switches table",
     "src/optics: elementary real",
     "src/optics: fresnel lobe microfacet refraction",
     "src/render/denoise: filter library",

@@ -45,12 +45,13 @@ fn surface(angle_deg: f64) -> Surface<f64> {
 /// The density of whatever layer is drawn.
 fn density(material: &Material<f64>, tables: &[f32], surface: &Surface<f64>, wi: Vec3<f64>) -> f64 {
     let probabilities = material_layers(material, tables, surface).probabilities();
-    let of = |layer: Layer, of_lobe: fn(&Material<f64>, &[f32], &Surface<f64>, Vec3<f64>) -> [f64; 2]| {
-        probabilities[layer as usize] * of_lobe(material, tables, surface, wi)[1]
-    };
-    of(Layer::Coat, layer_evaluate::<f64, Coat>)
-        + of(Layer::Specular, layer_evaluate::<f64, Specular>)
-        + of(Layer::Base, layer_evaluate::<f64, Base>)
+    let of = |layer: Layer, [_, density]: [f64; 2]| probabilities[layer as usize] * density;
+    of(Layer::Coat, layer_evaluate::<f64, Coat>(material, tables, surface, wi))
+        + of(
+            Layer::Specular,
+            layer_evaluate::<f64, Specular>(material, tables, surface, wi),
+        )
+        + of(Layer::Base, layer_evaluate::<f64, Base>(material, tables, surface, wi))
 }
 
 /// The p-value of samples under the mixture's density, the coat's roughness in it times `factor`.

@@ -82,7 +82,7 @@ impl<T: Real> LayerVisitor<T> for Evaluation<'_, T> {
         } else {
             &mut self.below
         };
-        *sum = *sum + Vec3::select(gives, part, Vec3::zero());
+        *sum += Vec3::select(gives, part, Vec3::zero());
     }
 }
 

@@ -183,9 +183,9 @@ impl<T: Real> LayerVisitor<T> for SeenAlbedo<'_, T> {
         let share = &self.layers[L::LAYER];
         let albedo = L::seen_albedo(self.material, self.surface, share);
         if L::TRAITS.is_cover {
-            self.covers = self.covers + share.transmittance * albedo;
+            self.covers += share.transmittance * albedo;
         } else {
-            self.below = self.below + albedo;
+            self.below += albedo;
             self.transmittance = share.transmittance;
         }
     }

@@ -218,7 +218,7 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
     )
     .told("stretched at most 19 : 1"),
     row("anisotropy_rotation", "0", "0.5", TURN)
-        .within(-6.2832, 6.2832)
+        .within(-6.3, 6.3)
         .of("anisotropy_strength"),
     row("dispersion", "0", "0.5", DISPERSION).of("transmission"),
 ];
