@@ -148,7 +148,16 @@ pub fn assert_same_but_for_rounding(a: &Film, b: &Film, what: &str) {
 /// chance, always the same.
 fn random_jobs(count: usize) -> impl Iterator<Item = (Document, Job)> {
     let mut random = Random::new(7);
-    jobs((0..count).map(move |_| random_document(&mut random)))
+    let matt = PRESETS.iter().find(|preset| preset.name == "Lambert white");
+    let matt = matt.expect("a material without a specular lobe");
+    jobs((0..count).map(move |i| {
+        let mut document = random_document(&mut random);
+        // Few of the materials that are drawn from have no specular lobe.
+        if i % 20 == 19 {
+            document.materials = vec![matt.clone()];
+        }
+        document
+    }))
 }
 
 /// The jobs that documents are compiled to.
