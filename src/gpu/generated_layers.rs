@@ -37,10 +37,14 @@ fn all(_: LayerTraits) -> bool {
     true
 }
 
-/// A function that finds a layer's by its number.
-fn dispatch(signature: &str, is_for: fn(LayerTraits) -> bool, value: &str, otherwise: &str) -> String {
-    let case = format!("    if @ && layer == # {{ return {value}; }}\n");
-    let cases = each(is_for, &case);
+/// A function that finds a layer's by its number: of the layers that `is_for` picks, or of all. Of all, the last planned
+/// layer's stands for every other number: drivers compute all branches, and with one kind of lobe planned no second one.
+fn dispatch(signature: &str, is_for: Option<fn(LayerTraits) -> bool>, value: &str, otherwise: &str) -> String {
+    let (is_for, is_asked) = match is_for {
+        Some(is_for) => (is_for, "layer == #"),
+        None => (all as fn(_) -> _, "(layer == # || last_layer() == #)"),
+    };
+    let cases = each(is_for, &format!("    if @ && {is_asked} {{ return {value}; }}\n"));
     format!("fn {signature} {{\n{cases}    return {otherwise};\n}}\n")
 }
 
@@ -80,7 +84,8 @@ fn planned() -> String {
     );
     format!(
         "fn planned_layers() -> u32 {{\n    var count = 0u;\n{counts}    return count;\n}}\n\
-         fn planned_layer(place: u32) -> u32 {{\n    var before = 0u;\n{found}    return LAYERS;\n}}\n"
+         fn planned_layer(place: u32) -> u32 {{\n    var before = 0u;\n{found}    return LAYERS;\n}}\n\
+         fn last_layer() -> u32 {{\n    return planned_layer(planned_layers() - 1u);\n}}\n"
     )
 }
 
@@ -91,13 +96,13 @@ fn dispatches() -> String {
     [
         by_number(
             format!("layer_is_there(layer: u32, {at}) -> bool"),
-            all,
+            None,
             "$_is_there(material, surface)",
             "false",
         ),
         by_number(
             format!("layer_lobe(layer: u32, {at}) -> LayerLobe"),
-            all,
+            None,
             "$_lobe(material, surface)",
             "no_lobe(surface)",
         ),
@@ -105,31 +110,31 @@ fn dispatches() -> String {
             "layer_toward(layer: u32, material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) \
              -> LayerToward"
                 .to_owned(),
-            all,
+            None,
             "$_toward(material, layers, surface, shape, wi)",
             "LayerToward()",
         ),
         by_number(
             "layer_share(layer: u32, layers: Layers) -> LayerShare".to_owned(),
-            all,
+            None,
             "layers.$",
             "LayerShare()",
         ),
         by_number(
             format!("layer_refined_sample(layer: u32, {at}, xi: vec3f, drawn: LobeSample) -> LobeSample"),
-            |traits| traits.refines,
+            Some(|traits| traits.refines),
             "$_refined_sample(material, surface, xi, drawn)",
             "drawn",
         ),
         by_number(
             format!("layer_refined(layer: u32, {at}, wi: vec3f, evaluated: vec2f) -> vec2f"),
-            |traits| traits.refines,
+            Some(|traits| traits.refines),
             "$_refined(material, surface, wi, evaluated)",
             "evaluated",
         ),
         by_number(
             "layer_decides_by_facet(layer: u32, material: Material) -> bool".to_owned(),
-            |traits| traits.decides,
+            Some(|traits| traits.decides),
             "$_decides_by_facet(material)",
             "false",
         ),
@@ -137,7 +142,7 @@ fn dispatches() -> String {
             "layer_pass_on(layer: u32, material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) \
              -> bool"
                 .to_owned(),
-            |traits| traits.decides,
+            Some(|traits| traits.decides),
             "$_pass_on(material, layers, weight, probability)",
             "false",
         ),

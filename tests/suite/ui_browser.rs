@@ -38,7 +38,7 @@ fn place(harness: &Editor, label: &str) -> egui::Rect {
 fn pictures_have_any_size_and_the_smallest_make_a_list() {
     let mut harness = editor_of(options());
     harness.run_steps(3);
-    let [a, b] = ["Gold", "Copper"].map(|name| place(&harness, name));
+    let [a, b] = ["Plastic blue", "Plastic red"].map(|name| place(&harness, name));
     assert!((a.width() - 72.0).abs() < 1.0 && a.height() > a.width(), "{a:?}");
     assert!((a.top() - b.top()).abs() < 1.0, "side by side");
     let panel = harness.get_by_role_and_label(Role::TextInput, "Search presets").rect();

@@ -279,7 +279,7 @@ fn a_pinhole_has_no_f_number() {
         let number = harness.get_by_role_and_label(Role::SpinButton, "f-number");
         number.value().unwrap_or_default()
     };
-    assert!(shown(&harness).contains("off"), "{}", shown(&harness));
+    assert!(shown(&harness).contains("pinhole"), "{}", shown(&harness));
 }
 
 /// The curve's help lies beside the plot, not over it.

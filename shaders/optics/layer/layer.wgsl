@@ -43,7 +43,7 @@ fn cover_probability(reflected: f32, rest: f32) -> f32 {
     return select(0.0, select(1.0, probability, rest > 0.0), reflected > 0.0);
 }
 
-// The lobe of no layer: the cheapest one, as drivers compute with it in lanes whose layer is another.
+// The lobe where no layer is planned.
 fn no_lobe(surface: Surface) -> LayerLobe {
     return LayerLobe(LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0), surface.frame);
 }
