@@ -27,6 +27,8 @@ pub fn try_file(format: &str, bytes: &[u8]) {
         std::fs::write(&path, textured(bytes)).expect("a temporary folder that can be written to");
         try_path("glb", &path);
     }
+    // Left where it panicked: that is the file to look at.
+    std::fs::remove_file(&path).expect("a file that was just written");
 }
 
 /// A triangle in a GLB whose normals and roughness are in a picture.
