@@ -113,6 +113,7 @@ fn main() -> Result<(), Failure> {
 fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
     let of = |assignments: &[&str]| -> Result<Document, Failure> {
         let mut document = Document::default();
+        document.lighting.environment = EnvironmentSource::Studio;
         // Guides are kept where a denoised picture is wanted.
         document.view.denoise = Denoise::High;
         for assignment in assignments {
@@ -178,6 +179,7 @@ fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> 
             model,
             ..Document::default()
         };
+        document.lighting.environment = EnvironmentSource::Studio;
         document.view.denoise = Denoise::High;
         document.camera.pitch_deg = 60.0;
         for assignment in assignments {

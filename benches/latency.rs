@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use glossmith::document::{AreaLight, Document};
 use glossmith::render::EngineChoice;
 use glossmith::render::worker::{Activity, Pace, Worker};
+use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::shapes::bumpy_sphere;
 use glossmith::scene::{Model, ModelSource, Slot};
 
@@ -89,9 +90,10 @@ fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The default scene in the viewport of a window of 1440 × 900.
+/// The default scene under the studio in the viewport of a window of 1440 × 900.
 fn viewport() -> Document {
     let mut document = Document::default();
+    document.lighting.environment = EnvironmentSource::Studio;
     (document.render.width, document.render.height) = (806, 780);
     document.render.samples = 1 << 20;
     document

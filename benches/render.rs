@@ -13,6 +13,7 @@ use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::lobe::{Horizon, Lobe, raw_density, raw_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::environment::EnvironmentSource;
 
 /// How long each case is measured.
 const DURATION: Duration = Duration::from_secs(3);
@@ -44,6 +45,7 @@ fn main() {
 /// (engine, rays a second, samples a second).
 fn measure(choice: EngineChoice, strategy: Strategy) -> Result<(String, f64, f64), Box<dyn std::error::Error>> {
     let mut document = Document::default();
+    document.lighting.environment = EnvironmentSource::Studio;
     (document.render.width, document.render.height) = (512, 512);
     document.render.samples = u32::MAX;
     document.render.bounces = 6;
