@@ -35,7 +35,8 @@ pub struct Measurement {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pacing {
     /// The engine's own time until now, seconds; `None` where rounds end by the number of samples alone. On the CPU they
-    /// do, so that the same render twice is the same picture: tiles rest, and rendering stops, where a round ends.
+    /// do where tiles rest or a noise is to be reached, so that the same render twice is the same picture: tiles rest, and
+    /// rendering stops, where a round ends.
     pub(super) engine_seconds: Option<f64>,
     /// The picture is denoised at the end of each round, and rendering stops where that is exact enough.
     pub(super) is_denoised: bool,

@@ -349,8 +349,11 @@ impl Session {
             return Ok(());
         }
         let begun = Instant::now();
+        // Where rounds decide nothing about the picture, their length may go by the clock.
+        let is_watched = document.render.noise.is_none() && !document.render.is_adaptive();
+        let by_clock = is_watched || matches!(self.engine, Engine::Gpu(_));
         let pacing = Pacing {
-            engine_seconds: matches!(self.engine, Engine::Gpu(_)).then(|| self.engine_seconds()),
+            engine_seconds: by_clock.then(|| self.engine_seconds()),
             is_denoised: self.shows_nearer(),
         };
         let schedule = self.engine.schedule().clone();
