@@ -83,8 +83,9 @@ pub enum Source {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// It left the scene.
-    Left,
+    /// The ray left the scene.
+    #[serde(rename = "left")]
+    Escaped,
     /// It has as many bounces as it may have.
     Bounces,
     /// Nothing was reflected into the direction drawn, or what was is not a number.
@@ -154,7 +155,8 @@ pub enum Event {
         is_inside: bool,
     },
     /// A shadow catcher shows the background, as far as light reaches it or what it mirrors does not hide it.
-    Caught {
+    #[serde(rename = "caught")]
+    CatcherHit {
         /// Whether it mirrors the ray.
         is_mirrored: bool,
         /// What is seen of the background; 1 where it is transparent, and the path's light is taken from that.
@@ -172,7 +174,8 @@ pub enum Event {
         kept: [f32; 3],
     },
     /// The path itself met light.
-    Found {
+    #[serde(rename = "found")]
+    LightHit {
         /// What shines.
         source: Source,
         /// Its radiance.

@@ -14,7 +14,7 @@ use super::hierarchy::{Doors, Found, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
-use super::memory::fetch;
+use super::memory::prefetch;
 use super::mesh::Mesh;
 use super::model::{Model, Slot};
 use super::part::{Part, Vertex, has_area};
@@ -318,11 +318,11 @@ impl Geometry {
 
     /// Has the processor fetch what shading a triangle looks up.
     #[inline(always)]
-    pub fn fetch(&self, triangle: u32) {
+    pub fn prefetch(&self, triangle: u32) {
         let (part, triangle) = self.part_of(triangle as usize);
-        fetch(&part.slots, triangle);
+        prefetch(&part.slots, triangle);
         for vertex in part.triangles[triangle] {
-            fetch(&part.vertices, vertex as usize);
+            prefetch(&part.vertices, vertex as usize);
         }
     }
 

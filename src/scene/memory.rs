@@ -47,7 +47,7 @@ const LINE: usize = 64;
 
 /// Has the processor fetch an element, where it knows how to; what is computed does not depend on it.
 #[inline(always)]
-pub(super) fn fetch<E>(elements: &[E], index: usize) {
+pub(super) fn prefetch<E>(elements: &[E], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(element) = elements.get(index) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};

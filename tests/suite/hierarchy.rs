@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use glam::{DVec3, Vec3, Vec4};
 use glossmith::instructions::Instructions;
 use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, load, ray_way, shapes, teapot};
+use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, load, ray_octant, shapes, teapot};
 use rayon::prelude::*;
 
 use super::cli_support::Workplace;
@@ -270,7 +270,7 @@ fn random_packet(random: &mut Random, geometry: &Geometry) -> (Packet, usize) {
         let moved = |from: [f32; 3], by: glam::Vec3| (Vec3::from_array(from) + by * spread).to_array();
         for _ in 0..20 {
             ray.direction = moved(first.direction, random.in_ball());
-            if has_stray || ray_way(ray.direction) == ray_way(first.direction) {
+            if has_stray || ray_octant(ray.direction) == ray_octant(first.direction) {
                 break;
             }
             ray.direction = first.direction;

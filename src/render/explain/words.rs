@@ -91,7 +91,7 @@ impl PathAccount {
                 ),
             ],
             Event::Hit { .. } => self.hit(event),
-            Event::Caught {
+            Event::CatcherHit {
                 is_mirrored,
                 background,
                 light,
@@ -116,7 +116,7 @@ impl PathAccount {
                     vector(kept)
                 ),
             ],
-            Event::Found { .. } => found(event),
+            Event::LightHit { .. } => found(event),
             Event::Light { .. } => light(event),
             Event::Scattered { .. } => scattered(event),
             Event::Roulette { survival, number } => [
@@ -221,7 +221,7 @@ fn of(source: Source) -> &'static str {
 
 fn end(why: End) -> &'static str {
     match why {
-        End::Left => "met nothing more",
+        End::Escaped => "met nothing more",
         End::Bounces => "has all the bounces that it may have",
         End::Absorbed => "nothing is reflected into the direction drawn",
         End::Roulette => "Russian roulette",
@@ -229,7 +229,7 @@ fn end(why: End) -> &'static str {
 }
 
 fn found(event: &Event) -> [String; 2] {
-    let Event::Found {
+    let Event::LightHit {
         source,
         radiance,
         lobe_density,

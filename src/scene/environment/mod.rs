@@ -36,7 +36,7 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::loading::Loading;
-use crate::scene::memory::{fetch, in_large_pages};
+use crate::scene::memory::{in_large_pages, prefetch};
 
 pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
@@ -452,20 +452,20 @@ fn whole<T: Real>(numbers: T) -> T::Each<i32> {
 
 /// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
 #[inline(always)]
-pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2]) {
+pub fn prefetch_texels<T: Real>(environment: &Environment, uv: [T; 2]) {
     for texels in &bilinear(environment, uv).texels {
         for &texel in texels.as_ref() {
-            fetch(&environment.texels, texel as usize);
+            prefetch(&environment.texels, texel as usize);
         }
     }
 }
 
 /// The same for the cell at a place.
 #[inline(always)]
-pub fn fetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
+pub fn prefetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
     let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
     for &cell in cells.as_ref() {
-        fetch(&distribution.cells, cell as usize);
+        prefetch(&distribution.cells, cell as usize);
     }
 }
 
@@ -550,18 +550,18 @@ fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) ->
 
 /// Has the processor fetch what [`sample_in_rows`] looks up first, the guide to a row's cells.
 #[inline(always)]
-pub fn fetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+pub fn prefetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
-        fetch(&distribution.cells, guide as usize);
+        prefetch(&distribution.cells, guide as usize);
     }
 }
 
 /// Has the processor fetch the cell that [`sample_in_rows`] draws, once the guide is there.
 #[inline(always)]
-pub fn fetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+pub fn prefetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
         let cell = first + distribution.cells[guide as usize].share.guide;
-        fetch(&distribution.cells, cell as usize);
+        prefetch(&distribution.cells, cell as usize);
     }
 }
 

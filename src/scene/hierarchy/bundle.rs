@@ -214,7 +214,7 @@ impl<S: Simd> Bundle<S> {
         while met != 0 {
             let child = (met.trailing_zeros() % WIDTH as u32) as usize;
             met &= met - 1;
-            wide.fetch(node.children[child]);
+            wide.prefetch(node.children[child]);
             stack.insert(Entry::new(distances[child], Place::new(index, child).0), base);
         }
     }

@@ -19,7 +19,7 @@ use obvhs::cwbvh::node::CwBvhNode;
 
 pub(in crate::scene) use bundle::Doors;
 pub(in crate::scene) use packet::Found;
-pub use packet::{PACKET, Packet, WAYS, ray_way};
+pub use packet::{OCTANTS, PACKET, Packet, ray_octant};
 use tree::{BoxedTree, Tree};
 pub(in crate::scene) use wide::Wide;
 

@@ -165,7 +165,7 @@ impl<const ANY: bool> Met for OfLane<'_, ANY> {
 
 /// Which way a ray goes: the signs of its direction, and its longest axis. Rays of a packet go the same way.
 #[inline(always)]
-pub fn ray_way(direction: [f32; 3]) -> usize {
+pub fn ray_octant(direction: [f32; 3]) -> usize {
     let [x, y, z] = direction.map(f32::abs);
     let longest = if z >= x && z >= y {
         2
@@ -179,7 +179,7 @@ pub fn ray_way(direction: [f32; 3]) -> usize {
 }
 
 /// How many ways there are.
-pub const WAYS: usize = 24;
+pub const OCTANTS: usize = 24;
 
 impl Wide {
     /// Puts the nearest triangle with 0 < t on each ray in that is nearer than what was found, of what is behind these doors;
@@ -257,7 +257,7 @@ fn largest<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32 {
 /// The way of all rays; `None` where they differ.
 #[inline(always)]
 fn way_of<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
-    let way = ray_way(packet.direction(0));
+    let way = ray_octant(packet.direction(0));
     let zero = f32x16::splat(simd, 0.0);
     let directions = load_three(simd, &packet.directions);
     let mut axis = 0;

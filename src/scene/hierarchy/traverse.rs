@@ -251,7 +251,7 @@ impl Children {
     fn take(&mut self, wide: &Wide, node: &Node) -> Entry {
         let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
         self.children &= self.children - 1;
-        wide.fetch(node.children[child]);
+        wide.prefetch(node.children[child]);
         Entry::new(self.near[child], node.children[child])
     }
 }

@@ -7,7 +7,7 @@ use obvhs::aabb::Aabb;
 use super::tree::{BoxedTree, Subtree, Tree};
 use crate::optics::vector::Vec3;
 use crate::scene::intersect::triangle_normal;
-use crate::scene::memory::{fetch, in_large_pages, room_in_large_pages};
+use crate::scene::memory::{in_large_pages, prefetch, room_in_large_pages};
 
 /// Children of a node, and triangles of a leaf at most.
 pub(super) const WIDTH: usize = 8;
@@ -111,11 +111,11 @@ impl Wide {
 
     /// Has the processor fetch a child, given as a node has it.
     #[inline(always)]
-    pub fn fetch(&self, child: u32) {
+    pub fn prefetch(&self, child: u32) {
         if child & BLOCK == 0 {
-            fetch(&self.nodes, child as usize);
+            prefetch(&self.nodes, child as usize);
         } else {
-            fetch(&self.blocks, (child & !BLOCK) as usize);
+            prefetch(&self.blocks, (child & !BLOCK) as usize);
         }
     }
 
