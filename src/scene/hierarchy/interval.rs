@@ -1,39 +1,40 @@
-//! Many rays that go much the same way as one interval: what that does not meet, none of them meets.
+//! Interval traversal: the interval of many coherent rays is tested against boxes. A box that it misses is missed by every
+//! ray.
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
 
-use super::packet::{PACKET, Packet, Rays, load};
-use super::traverse::{Entry, INVERSE_MAX, PLACE_ERROR, Stack};
+use super::packet::{PACKET, Packet, PacketRays, load};
+use super::traverse::{Entry, INVERSE_MAX, RELATIVE_ERROR, Stack};
 use super::wide::{BLOCK, WIDTH, Wide};
 
-/// Doors at most: each ray's packet tries all of them.
-const DOORS_MAX: usize = 6;
+/// Entry points at most. Every packet visits all of them, so that more would not pay.
+const ENTRY_POINTS_MAX: usize = 6;
 
-/// Where rays of some packets may enter the hierarchy: boxes without which none of them meets anything.
+/// Nodes from which packets may start their traversal, instead of the root. Rays that miss all of them miss the scene.
 #[derive(Clone, Copy)]
-pub(in crate::scene) struct Doors {
-    /// The nearest last.
-    entries: [Entry; DOORS_MAX],
+pub(in crate::scene) struct EntryPoints {
+    /// Sorted by distance, the nearest last.
+    entries: [Entry; ENTRY_POINTS_MAX],
     count: usize,
 }
 
-impl Doors {
-    /// True where no ray meets anything.
-    pub fn are_none(&self) -> bool {
+impl EntryPoints {
+    /// True if no ray hits anything.
+    pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Puts them on the stack.
+    /// Pushes the entry points onto a traversal stack.
     #[inline(always)]
-    pub(super) fn enter(&self, stack: &mut Stack) {
+    pub(super) fn push_to(&self, stack: &mut Stack) {
         for entry in &self.entries[..self.count] {
             stack.push(*entry);
         }
     }
 
-    /// Takes what was found, of which there is no more than there is room for.
+    /// Moves all entries of a stack here. Invariant: they fit.
     #[inline(always)]
-    fn take(&mut self, found: &mut Stack) {
+    fn append(&mut self, found: &mut Stack) {
         while let Some(entry) = found.pop() {
             self.entries[self.count] = entry;
             self.count += 1;
@@ -42,50 +43,50 @@ impl Doors {
 }
 
 impl Wide {
-    /// Where rays of these packets may enter, as far down as there are not many doors; `None` where they do not go much the
-    /// same way, and may enter anywhere.
-    pub fn doors(&self, level: Level, packets: &[Packet]) -> Option<Doors> {
-        dispatch!(level, simd => doors(simd, self, packets))
+    /// Entry points for some packets, as deep as [`ENTRY_POINTS_MAX`] allows. `None` if the rays' directions differ in sign:
+    /// then the root is the only one.
+    pub fn entry_points(&self, level: Level, packets: &[Packet]) -> Option<EntryPoints> {
+        dispatch!(level, simd => entry_points(simd, self, packets))
     }
 }
 
 #[inline(always)]
-fn doors<S: Simd>(simd: S, wide: &Wide, packets: &[Packet]) -> Option<Doors> {
-    let mut doors = Doors {
-        entries: [Entry::ROOT; DOORS_MAX],
+fn entry_points<S: Simd>(simd: S, wide: &Wide, packets: &[Packet]) -> Option<EntryPoints> {
+    let mut entry_points = EntryPoints {
+        entries: [Entry::ROOT; ENTRY_POINTS_MAX],
         count: 0,
     };
     if wide.nodes.is_empty() {
-        return Some(doors);
+        return Some(entry_points);
     }
-    let bundle = Bundle::around(simd, packets, wide)?;
+    let interval = RayInterval::of_packets(simd, packets, wide)?;
     let mut found = Stack::new();
-    bundle.enter(wide, 0, f32::MAX, &mut found);
-    if found.height > DOORS_MAX {
+    interval.push_children(wide, 0, f32::MAX, &mut found);
+    if found.height > ENTRY_POINTS_MAX {
         return None;
     }
-    doors.take(&mut found);
-    let mut closed = 0;
-    while closed < doors.count {
-        let (parent, child) = Place(doors.entries[closed].place()).parts();
-        let place = wide.nodes[parent].children[child];
-        if place & BLOCK == 0 {
-            bundle.enter(wide, place, f32::MAX, &mut found);
+    entry_points.append(&mut found);
+    let mut expanded = 0;
+    while expanded < entry_points.count {
+        let (parent, child) = ChildId(entry_points.entries[expanded].child()).parts();
+        let target = wide.nodes[parent].children[child];
+        if target & BLOCK == 0 {
+            interval.push_children(wide, target, f32::MAX, &mut found);
         }
-        if place & BLOCK != 0 || doors.count - 1 + found.height > DOORS_MAX {
+        if target & BLOCK != 0 || entry_points.count - 1 + found.height > ENTRY_POINTS_MAX {
             found.height = 0;
-            closed += 1;
+            expanded += 1;
         } else {
-            doors.count -= 1;
-            doors.entries[closed] = doors.entries[doors.count];
-            doors.take(&mut found);
+            entry_points.count -= 1;
+            entry_points.entries[expanded] = entry_points.entries[entry_points.count];
+            entry_points.append(&mut found);
         }
     }
-    doors.entries[..doors.count].sort_unstable_by(|a, b| b.cmp(a));
-    Some(doors)
+    entry_points.entries[..entry_points.count].sort_unstable_by(|a, b| b.cmp(a));
+    Some(entry_points)
 }
 
-/// The least and the largest of numbers; `None` where one is not a number.
+/// Minimum and maximum; `None` with a NaN.
 #[inline(always)]
 fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACKET]>) -> Option<[f32; 2]> {
     let first = load(simd, numbers.next()?);
@@ -100,33 +101,34 @@ fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACK
     are_numbers.all_true().then_some(extent)
 }
 
-/// A child of a node by its number among all that nodes have.
-pub(super) struct Place(pub u32);
+/// A child's index among the children of all nodes.
+pub(super) struct ChildId(pub u32);
 
-impl Place {
+impl ChildId {
     #[inline(always)]
     fn new(node: u32, child: usize) -> Self {
         Self(node * WIDTH as u32 + child as u32)
     }
 
-    /// The node and which of its children.
+    /// The node and the child's slot in it.
     #[inline(always)]
     pub fn parts(self) -> (usize, usize) {
         (self.0 as usize / WIDTH, self.0 as usize % WIDTH)
     }
 }
 
-/// The interval of all rays: what it does not meet, none of them meets.
-pub(super) struct Bundle<S: Simd> {
-    /// The least and the largest inverse direction on each axis.
+/// Interval bounds of a set of rays, for tests against eight boxes at a time.
+pub(super) struct RayInterval<S: Simd> {
+    /// Minimum and maximum inverse direction on each axis.
     inverse: [[f32x8<S>; 2]; 3],
-    /// The origin that a box's near side is nearest to, and that its far side is farthest from, with a margin for rounding.
+    /// Origins on each axis: the one nearest to a box's near side, and the one farthest from its far side; with a margin for
+    /// rounding.
     origin: [[f32x8<S>; 2]; 3],
-    /// Which of the two sides of a box is near on each axis.
+    /// Which side of a box is near on each axis: 0 is the low one.
     near: [usize; 3],
 }
 
-impl<S: Simd> Bundle<S> {
+impl<S: Simd> RayInterval<S> {
     #[inline(always)]
     fn nothing(simd: S, near: [usize; 3]) -> Self {
         let zero = [f32x8::splat(simd, 0.0); 2];
@@ -137,25 +139,25 @@ impl<S: Simd> Bundle<S> {
         }
     }
 
-    /// The interval of a packet's rays.
+    /// The interval of one packet's rays.
     #[inline(always)]
-    pub fn of(simd: S, rays: &Rays<S>, wide: &Wide) -> Self {
-        let mut bundle = Self::nothing(simd, rays.near);
+    pub fn of(simd: S, rays: &PacketRays<S>, wide: &Wide) -> Self {
+        let mut interval = Self::nothing(simd, rays.near);
         let mut axis = 0;
         while axis < 3 {
             let (inverse, origin) = (rays.inverse[axis], rays.origin[axis]);
             let inverse = [simd.reduce_min_f32x16(inverse), simd.reduce_max_f32x16(inverse)];
             let origin = [simd.reduce_min_f32x16(origin), simd.reduce_max_f32x16(origin)];
-            bundle.set(axis, inverse, origin, wide);
+            interval.set(axis, inverse, origin, wide);
             axis += 1;
         }
-        bundle
+        interval
     }
 
-    /// The interval of the rays of packets; `None` where their directions have other signs, or one is no number.
+    /// The interval of several packets' rays; `None` if their directions differ in sign, or one is NaN.
     #[inline(always)]
-    fn around(simd: S, packets: &[Packet], wide: &Wide) -> Option<Self> {
-        let mut bundle = Self::nothing(simd, [0; 3]);
+    fn of_packets(simd: S, packets: &[Packet], wide: &Wide) -> Option<Self> {
+        let mut interval = Self::nothing(simd, [0; 3]);
         let mut axis = 0;
         while axis < 3 {
             let origin = extent(simd, packets.iter().map(|packet| &packet.origins[axis]))?;
@@ -164,25 +166,25 @@ impl<S: Simd> Bundle<S> {
             if low < 0.0 && !is_backward {
                 return None;
             }
-            bundle.near[axis] = usize::from(is_backward);
-            // Rounded as each ray's own, between which they are in any case.
+            interval.near[axis] = usize::from(is_backward);
+            // Rounding is monotonic: each ray's own inverse lies between these bounds.
             let inverse = [low, high].map(|direction| (1.0 / direction.abs()).min(INVERSE_MAX));
             let inverse = if is_backward {
                 [-inverse[1], -inverse[0]]
             } else {
                 [inverse[1], inverse[0]]
             };
-            bundle.set(axis, inverse, origin, wide);
+            interval.set(axis, inverse, origin, wide);
             axis += 1;
         }
-        Some(bundle)
+        Some(interval)
     }
 
     #[inline(always)]
     fn set(&mut self, axis: usize, [least, most]: [f32; 2], [low, high]: [f32; 2], wide: &Wide) {
         let simd = self.inverse[0][0].token();
         self.inverse[axis] = [f32x8::splat(simd, least), f32x8::splat(simd, most)];
-        let margin = 2.0 * PLACE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
+        let margin = 2.0 * RELATIVE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
         let outer = [low - margin, high + margin];
         let near = self.near[axis];
         self.origin[axis] = [
@@ -191,9 +193,9 @@ impl<S: Simd> Bundle<S> {
         ];
     }
 
-    /// Puts the children of a node on the stack that some ray may meet, the nearest last.
+    /// Pushes the children of a node that the interval hits, the nearest last.
     #[inline(always)]
-    pub fn enter(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
+    pub fn push_children(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
         let node = &wide.nodes[index as usize];
         let simd = self.origin[0][0].token();
         let mut near = f32x8::splat(simd, 0.0);
@@ -208,14 +210,14 @@ impl<S: Simd> Bundle<S> {
             far = far.min((to_far * least).max(to_far * most));
             axis += 1;
         }
-        let mut met = near.simd_le(far).to_bitmask() as u32;
+        let mut hit_bits = near.simd_le(far).to_bitmask() as u32;
         let distances = near.to_array();
         let base = stack.height;
-        while met != 0 {
-            let child = (met.trailing_zeros() % WIDTH as u32) as usize;
-            met &= met - 1;
+        while hit_bits != 0 {
+            let child = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
+            hit_bits &= hit_bits - 1;
             wide.prefetch(node.children[child]);
-            stack.insert(Entry::new(distances[child], Place::new(index, child).0), base);
+            stack.insert(Entry::new(distances[child], ChildId::new(index, child).0), base);
         }
     }
 }
