@@ -24,7 +24,7 @@ use crate::job::tiles::{TILE_SIDE, TileGrid};
 /// Tiles to each side over which a tile's errors are averaged before it is decided what it shows.
 const RADIUS: usize = 2;
 /// Standard errors by which the denoised picture's error must be beyond doubt before samples are preferred.
-const DOUBT: f64 = 1.0;
+const DOUBT_SIGMAS: f64 = 1.0;
 
 /// Fewest tiles that a standard error is taken to rest on: with fewer, the expansion of Student's quantile fails.
 const TILES_MIN: f64 = 3.0;
@@ -99,7 +99,7 @@ impl Moments {
 
     /// How many standard errors make the band: Student's quantile, as the standard error is itself an estimate, from the few
     /// tiles that make up most of it. Their number follows from the kurtosis; Cornish and Fisher's expansion.
-    fn deviations_within(&self) -> f64 {
+    fn band_factor(&self) -> f64 {
         let tiles = (3.0 * self.by_squares * self.by_squares / self.fourth_powers).max(TILES_MIN);
         let square = BAND * BAND;
         let terms = [
@@ -111,7 +111,7 @@ impl Moments {
 
     /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
     fn share(&self) -> f64 {
-        let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
+        let denoised = (self.denoised - DOUBT_SIGMAS * self.deviation()).max(self.known);
         let share = (denoised - self.product) / self.difference;
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
     }
@@ -281,7 +281,7 @@ impl Errors {
             let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
             (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
         };
-        let band = sum.deviations_within() * sum.deviation();
+        let band = sum.band_factor() * sum.deviation();
         Distance {
             value: relative(sum.denoised()),
             low: relative((sum.denoised - band).max(sum.known)),

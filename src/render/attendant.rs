@@ -75,7 +75,7 @@ impl Attendant {
             Ok(denoised) => {
                 self.seconds += denoised.seconds;
                 if let Some(error) = denoised.error {
-                    session.note_denoised(error);
+                    session.set_denoised_error(error);
                 }
                 Ok(Some(denoised))
             }

@@ -36,7 +36,7 @@ pub struct Progress {
     pub noise: Option<Noise>,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
-    /// The error of the denoised picture, as told to [`Session::note_denoised`](super::Session::note_denoised).
+    /// The error of the denoised picture, as told to [`Session::set_denoised_error`](super::Session::set_denoised_error).
     pub denoised: Option<Distance>,
     /// The error to reach is that of the denoised picture, where it is the lesser.
     pub aims_at_denoised: bool,

@@ -518,8 +518,8 @@ fn denoising_can_be_given_up() {
     let noisy = Noisy::of(&film, None);
     let mut denoiser = denoiser();
     let before = denoiser.denoise(&noisy, Denoise::High).unwrap();
-    let stopped = denoiser.denoise_unless(&noisy, Denoise::High, &AtomicBool::new(true));
-    assert_eq!(stopped.unwrap_err(), LibraryError::Stopped);
+    let stopped = denoiser.denoise_cancellable(&noisy, Denoise::High, &AtomicBool::new(true));
+    assert_eq!(stopped.unwrap_err(), LibraryError::Cancelled);
     assert_eq!(denoiser.denoise(&noisy, Denoise::High).unwrap().image, before.image);
 }
 

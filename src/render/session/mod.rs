@@ -433,7 +433,7 @@ impl Session {
     }
 
     /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
-    pub fn note_denoised(&mut self, error: Distance) {
+    pub fn set_denoised_error(&mut self, error: Distance) {
         self.denoised = Some(error);
     }
 

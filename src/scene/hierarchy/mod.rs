@@ -121,7 +121,7 @@ impl Hierarchy {
             return Some(built);
         }
         // Triangles each a fraction of the last make a chain. The balanced tree is slower to traverse, but fits the stack.
-        log::debug!("a hierarchy of {} levels is built anew in halves", depth(&built));
+        log::debug!("a hierarchy of {} levels is rebuilt as a balanced tree", depth(&built));
         drop(built);
         Some(make(&tree.of_halves()))
     }
