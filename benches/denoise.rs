@@ -86,7 +86,7 @@ fn main() -> Result<(), Failure> {
         scenes.retain(|(name, _)| name.starts_with(only));
         hard.retain(|(name, _)| name.starts_with(only));
     }
-    let is_wanted = |part: &str| has(part) || !["told", "edit", "steps", "cost"].iter().any(|other| has(other));
+    let is_wanted = |part: &str| has(part) || !["estimate", "edit", "steps", "cost"].iter().any(|other| has(other));
     if is_wanted("cost") {
         guides_cost(&mut session, &scenes, has("quick"))?;
         denoising_cost(&scenes)?;
@@ -97,7 +97,7 @@ fn main() -> Result<(), Failure> {
     if is_wanted("edit") {
         edits(&mut session, &scenes, has("quick"))?;
     }
-    if is_wanted("told") {
+    if is_wanted("estimate") {
         let read: Reader = if has("shared") {
             led_by_all
         } else {
@@ -275,18 +275,18 @@ fn undivided(film: &Film) -> Noisy {
 #[derive(Default)]
 struct Told {
     true_squared: f64,
-    told_squared: f64,
+    estimated_squared: f64,
     inside: u32,
     count: u32,
 }
 
 impl Told {
-    fn add(&mut self, true_squared: f64, told: Option<Distance>) {
+    fn add(&mut self, true_squared: f64, estimate: Option<Distance>) {
         self.true_squared += true_squared;
         self.count += 1;
-        let Some(told) = told else { return };
-        self.told_squared += told.value.powi(2);
-        self.inside += u32::from((told.low..=told.high).contains(&true_squared.max(0.0).sqrt()));
+        let Some(estimate) = estimate else { return };
+        self.estimated_squared += estimate.value.powi(2);
+        self.inside += u32::from((estimate.low..=estimate.high).contains(&true_squared.max(0.0).sqrt()));
     }
 
     /// The true error in percent; told over true; percent inside the band.
@@ -294,7 +294,7 @@ impl Told {
         format!(
             "{:.3} | {:.2} | {:.0}",
             100.0 * (self.true_squared / f64::from(self.count)).sqrt(),
-            (self.told_squared / self.true_squared).sqrt(),
+            (self.estimated_squared / self.true_squared).sqrt(),
             100.0 * f64::from(self.inside) / f64::from(self.count)
         )
     }
@@ -308,11 +308,11 @@ fn truth(
     (most, read): (u32, Reader),
 ) -> Result<(), Failure> {
     println!(
-        "## Errors told and true, {0} x {0}, {1} renders",
+        "## Errors estimate and true, {0} x {0}, {1} renders",
         extent.side, extent.renders
     );
     println!(
-        "| scene | samples | samples' error, % | at once, % | denoised, % | told/true | inside, % | auto, % | told/true | inside, % | auto/samples | relMSE |"
+        "| scene | samples | samples' error, % | at once, % | denoised, % | estimate/true | inside, % | auto, % | estimate/true | inside, % | auto/samples | relMSE |"
     );
     for (name, document) in scenes {
         let mut document = document.clone();

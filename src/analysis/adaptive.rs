@@ -73,8 +73,8 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         let luminance = sum(&|pixel| film.luminance_of(pixel)) / pixels;
         // The tiles' variances, averaged as they are, need not add up to what decides about the end.
         let seen = sum(&|pixel| half_difference_variance(&film.halves(pixel)));
-        let told = all(&|tile| tile.variance / tile.samples);
-        let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { told / seen } else { 1.0 };
+        let estimate = all(&|tile| tile.variance / tile.samples);
+        let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { estimate / seen } else { 1.0 };
         let enough = bisect(bracket, |factor| {
             all(&|tile| tile.variance / tile.goal(factor)) <= allowed
         });
@@ -195,12 +195,12 @@ mod tests {
         );
         assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
         assert!(far.iter().sum::<u32>() > 36 * 16 * 3 / 2, "{far:?}");
-        let told = crate::analysis::noise::noise(&film).unwrap().relative;
+        let estimate = crate::analysis::noise::noise(&film).unwrap().relative;
         let near = goals(
             &film,
             Round {
                 growth: [1.02, 1e3],
-                noise: Some(0.98 * told),
+                noise: Some(0.98 * estimate),
                 ..ROUND
             },
         );

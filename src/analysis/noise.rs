@@ -449,9 +449,9 @@ mod tests {
         let (film, _) = film(64, 5, 0.3);
         let errors = relative_errors(&film);
         let squares: f64 = errors.iter().map(|error| f64::from(*error).powi(2)).sum();
-        let told = noise(&film).unwrap().relative;
+        let estimate = noise(&film).unwrap().relative;
         let of_map = (squares / f64::from(SIDE * SIDE)).sqrt();
-        assert!((of_map / told - 1.0).abs() < 0.1, "{of_map} {told}");
+        assert!((of_map / estimate - 1.0).abs() < 0.1, "{of_map} {estimate}");
         assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
         let tiles = tile_errors(&film);
         // The tiles in the middle column are half noisy.

@@ -234,8 +234,8 @@ impl SceneArguments {
             .lighting
             .area_lights
             .extend(given.map(|light| light.in_scene(radius_m)));
-        if takes_materials && let Some(told) = lights_left_out(document.add_lights_and_cameras(&model)) {
-            log::warn!("{told}");
+        if takes_materials && let Some(message) = lights_left_out(document.add_lights_and_cameras(&model)) {
+            log::warn!("{message}");
         }
         Ok(())
     }

@@ -189,14 +189,14 @@ mod tests {
             max_texture_dimension_2d: 2048,
             ..wgpu::Limits::default()
         };
-        let told = lacking(&poor).expect("it lacks two");
+        let message = lacking(&poor).expect("it lacks two");
         assert!(
-            told.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
-            "{told}"
+            message.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
+            "{message}"
         );
         assert!(
-            told.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
-            "{told}"
+            message.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
+            "{message}"
         );
     }
 }

@@ -347,7 +347,7 @@ fn render(
             let outcome = turntable::render(session, engine, table, &mut |progress| {
                 go_on((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
             })?;
-            Ok(told(table, outcome.frames))
+            Ok(summary(table, outcome.frames))
         }
     }
 }
@@ -384,7 +384,7 @@ fn picture(
 }
 
 /// The outcome of a turntable, by the number of frames rendered.
-fn told(table: &Turntable, frames: u32) -> String {
+fn summary(table: &Turntable, frames: u32) -> String {
     let is_whole = frames >= table.frames;
     let all = match is_whole {
         true => format!("turntable: {frames} frames"),

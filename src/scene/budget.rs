@@ -92,9 +92,9 @@ mod tests {
         let same = budget.clone();
         budget.take(7 << 20).expect("it fits");
         assert_eq!(same.left(), 3 << 20);
-        let told = same.take(4 << 20).expect_err("it does not fit").to_string();
+        let message = same.take(4 << 20).expect_err("it does not fit").to_string();
         for words in ["takes 4 MiB", "3 are left of the 10 MiB", "GLOSSMITH_MEMORY"] {
-            assert!(told.contains(words), "{told}");
+            assert!(message.contains(words), "{message}");
         }
         same.take(3 << 20).expect("it fits exactly");
         assert_eq!(budget.left(), 0);

@@ -16,7 +16,7 @@ pub struct FileParameter {
     /// Where it goes.
     pub goes: Goes,
     /// What is approximated; empty where it is shown as it is.
-    pub told: &'static str,
+    pub note: &'static str,
 }
 
 /// Where a parameter of a file goes.
@@ -40,7 +40,7 @@ impl FileParameter {
             range: None,
             layer: "",
             goes,
-            told: "",
+            note: "",
         }
     }
 
@@ -60,8 +60,8 @@ impl FileParameter {
 
     /// The same with what is approximated.
     #[must_use]
-    pub const fn told(mut self, told: &'static str) -> Self {
-        self.told = told;
+    pub const fn with_note(mut self, note: &'static str) -> Self {
+        self.note = note;
         self
     }
 }

@@ -81,14 +81,14 @@ fn the_error_told_under_a_texture_is_the_true_one() {
             document.render.seed = seed;
             let film = finish(&mut session, &document);
             let done = denoiser.denoise(&Noisy::of(&film, None), Denoise::High).unwrap();
-            let (truth, told) = (reference.error_of(&done.image.luminance()).value, done.error.unwrap());
-            inside += u32::from((told.low..=told.high).contains(&truth));
-            std::iter::zip(&mut squares, [truth, told.value]).for_each(|(sum, x)| *sum += x * x);
+            let (truth, estimate) = (reference.error_of(&done.image.luminance()).value, done.error.unwrap());
+            inside += u32::from((estimate.low..=estimate.high).contains(&truth));
+            std::iter::zip(&mut squares, [truth, estimate.value]).for_each(|(sum, x)| *sum += x * x);
         }
-        let [truth, told] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
-        println!("{samples} samples: true {truth:.4}, told {told:.4}, inside {inside}");
+        let [truth, estimate] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
+        println!("{samples} samples: true {truth:.4}, estimate {estimate:.4}, inside {inside}");
         // A band is some 20 % wide, the mean of 20 squares some 5 %.
-        assert!((told / truth - 1.0).abs() < 0.2, "{samples}: {told} {truth}");
+        assert!((estimate / truth - 1.0).abs() < 0.2, "{samples}: {estimate} {truth}");
         // 19 of 20 on average; fewer than 15 in one of 10 000.
         assert!(inside >= inside_min, "{samples}: {inside} of {RENDERS}");
     }

@@ -118,7 +118,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "light",
         danger: "NaN, infinity or a negative number in a file spreads over everything that it lights",
         made: "an .exr with 3 values that are NaN, 2 infinite and 4 negative; a sphere under it",
-        must: "each is replaced and told of, the picture is clean: what is not told of or dropped is counted",
+        must: "each is replaced and expected of, the picture is clean: what is not expected of or dropped is counted",
         naive: || format!("a mean of {}", (f32::NAN + 1.0).to_string().to_lowercase()),
         measure: "count",
         limit: 0.0,
@@ -131,13 +131,13 @@ pub(super) const CASES: &[HardCase] = &[
             };
             let light = stage.environment("odd.exr", [16, 8], odd)?;
             let warnings = stage.load_environment(&light)?.warnings;
-            let told = ["3 not-a-number", "2 infinite", "4 negative"];
-            let untold = told
+            let expected = ["3 not-a-number", "2 infinite", "4 negative"];
+            let missing = expected
                 .iter()
                 .filter(|words| !warnings.iter().any(|line| line.contains(*words)));
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 8))?;
             let unsound = film.colors().flatten().filter(|x| !(x.is_finite() && *x >= 0.0));
-            Ok((untold.count() + unsound.count()) as f64 + film.dropped() as f64)
+            Ok((missing.count() + unsound.count()) as f64 + film.dropped() as f64)
         },
     },
     HardCase {

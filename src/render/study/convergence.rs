@@ -96,7 +96,7 @@ pub fn convergence(
             denoised.extend(denoised_point(&mut attendant, &mut session)?);
         }
         let progress = session.progress();
-        steps.tell("Rendering", progress.share_done(document.render.time_s))?;
+        steps.report("Rendering", progress.share_done(document.render.time_s))?;
         if progress.is_done {
             break progress;
         }
@@ -118,7 +118,7 @@ pub fn convergence(
         seconds: reference_seconds,
     };
     let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
-    let mut go_on = |share: f64| steps.tell("Reference", share);
+    let mut go_on = |share: f64| steps.report("Reference", share);
     let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut go_on)?;
     Ok(ConvergenceReport {
         machine: Machine::of(session.engine()),
@@ -137,12 +137,12 @@ fn denoised_point(attendant: &mut Attendant, session: &mut Session) -> Result<Op
     let Some(denoised) = attendant.finish(session)? else {
         return Ok(None);
     };
-    Ok(denoised.error.map(|told| DenoisedPoint {
+    Ok(denoised.error.map(|estimate| DenoisedPoint {
         seconds: progress.engine_seconds + denoised.seconds,
         samples_per_pixel: progress.mean_samples,
-        error: told.value,
-        error_low: told.low,
-        error_high: told.high,
+        error: estimate.value,
+        error_low: estimate.low,
+        error_high: estimate.high,
     }))
 }
 

@@ -169,7 +169,7 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
     let mut steps = Steps::new(watch, rivals.len() as f64);
     let mut entries = Vec::new();
     for rival in rivals {
-        steps.tell(rival.label.clone(), 0.0)?;
+        steps.report(rival.label.clone(), 0.0)?;
         entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
         steps.finish(1.0);
     }
@@ -316,7 +316,7 @@ fn entry(
             let session = if side == 0 { &mut *with } else { &mut *without };
             times[side].push(1e3 * seconds_per_sample(session, options.slice)?);
         }
-        steps.tell(rival.label.clone(), turn as f64 / options.turns as f64)?;
+        steps.report(rival.label.clone(), turn as f64 / options.turns as f64)?;
     }
     let differences: Vec<f64> = std::iter::zip(&times[0], &times[1]).map(|(a, b)| a - b).collect();
     let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
@@ -368,8 +368,8 @@ fn denoising(
         times.extend(last.as_ref().map(|denoised| 1e3 * denoised.seconds));
         noise = crate::analysis::noise::noise(session.film()?).map_or(0.0, |noise| noise.relative);
     }
-    let told = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
-    let share = (told.value / noise).powi(2) - 1.0;
+    let estimate = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
+    let share = (estimate.value / noise).powi(2) - 1.0;
     let mut entry = Entry {
         name: rival.name,
         label: rival.label,

@@ -75,7 +75,7 @@ impl<'a, 'b> Steps<'a, 'b> {
     }
 
     /// Says what is being done, `within` of a piece of work having been done of it.
-    fn tell(&mut self, what: impl Into<String>, within: f64) -> Result<(), StudyError> {
+    fn report(&mut self, what: impl Into<String>, within: f64) -> Result<(), StudyError> {
         let share = ((self.done + within) / self.total.max(1e-9)).clamp(0.0, 1.0);
         let progress = StudyProgress {
             share,

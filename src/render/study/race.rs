@@ -91,7 +91,8 @@ pub struct Runner {
     /// Samples a pixel after it, in the mean.
     pub samples_per_pixel: f64,
     /// Its own estimate of the relative error, made without a reference.
-    pub told_noise: f64,
+    #[serde(rename = "told_noise")]
+    pub estimated_noise: f64,
     /// Its relative error against its own reference.
     pub error: Distance,
     /// Engine time to the race's noise, seconds: the error falls with the root of the time. (That of a denoised picture
@@ -190,7 +191,7 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
         let what = format!("Equal error: {}", runner.label);
         let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
         let samples = (runner.samples_per_pixel * share).max(SAMPLES_MIN);
-        rerun(lane, samples, &mut |done| steps.tell(what.clone(), done))?;
+        rerun(lane, samples, &mut |done| steps.report(what.clone(), done))?;
         let (image, denoised) = lane.picture()?;
         let denoise_seconds = denoised.map_or(0.0, |denoised| denoised.seconds);
         runner.equal_error = Image::clone(&image);
@@ -280,7 +281,7 @@ fn references_of(
             return Ok::<_, StudyError>(known.clone());
         }
         let what = format!("Reference: {what}");
-        let mut go_on = |share: f64| steps.tell(what.clone(), 2.0 * share);
+        let mut go_on = |share: f64| steps.report(what.clone(), 2.0 * share);
         go_on(0.0)?;
         let reference = options
             .cache
@@ -321,7 +322,7 @@ fn references_of(
 /// Lets all of them take turns rendering until each has used its time.
 fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
     for lane in lanes.iter_mut() {
-        steps.tell(format!("Preparing: {}", lane.technique.label()), 0.0)?;
+        steps.report(format!("Preparing: {}", lane.technique.label()), 0.0)?;
         lane.session.set_precision(precision(&lane.technique));
         warmed(&mut lane.session, &lane.document)?;
     }
@@ -339,7 +340,7 @@ fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> 
             let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
             lane.session.step(slice)?;
             // After each turn, not after each round: who stops it does not wait for the others' turns.
-            steps.tell(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
+            steps.report(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
         }
         if is_done {
             break;
@@ -364,7 +365,7 @@ fn runner(
     options: &RaceOptions,
 ) -> Result<Runner, StudyError> {
     let progress = lane.session.progress();
-    let told = crate::analysis::noise::noise(lane.session.film()?);
+    let estimate = crate::analysis::noise::noise(lane.session.film()?);
     let (equal_time, denoised) = lane.picture()?;
     let error = own.reference.halves.error_of(&equal_time.luminance());
     let denoised_bias = denoised.as_ref().and_then(|denoised| denoised.bias);
@@ -381,7 +382,7 @@ fn runner(
         technique: lane.technique.clone(),
         seconds,
         samples_per_pixel: progress.mean_samples,
-        told_noise: denoised_error.map_or(told.map_or(0.0, |noise| noise.relative), |error| error.value),
+        estimated_noise: denoised_error.map_or(estimate.map_or(0.0, |noise| noise.relative), |error| error.value),
         error,
         time_to_noise: seconds * (error.value / options.noise).powi(2),
         is_extrapolated: error.value > options.noise,
@@ -396,7 +397,11 @@ fn runner(
 }
 
 /// Renders anew up to so many samples a pixel in the mean; `tell` is told the share that has been done.
-fn rerun(lane: &mut Lane, samples: f64, tell: &mut dyn FnMut(f64) -> Result<(), StudyError>) -> Result<(), StudyError> {
+fn rerun(
+    lane: &mut Lane,
+    samples: f64,
+    report: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
     let mut document = lane.document.clone();
     if !document.render.is_adaptive() {
         document.render.samples = samples.round() as u32;
@@ -406,7 +411,7 @@ fn rerun(lane: &mut Lane, samples: f64, tell: &mut dyn FnMut(f64) -> Result<(), 
     let mut step = Duration::from_millis(1);
     loop {
         let progress = lane.session.step(step)?;
-        tell((progress.mean_samples / samples).min(1.0))?;
+        report((progress.mean_samples / samples).min(1.0))?;
         if progress.is_done || progress.mean_samples >= samples {
             return Ok(());
         }

@@ -228,7 +228,7 @@ fn kernels(
     for turn in 0..=options.turns {
         for (place, (lobe, curve, name)) in shapes.iter().enumerate() {
             let within = (turn as f64 + place as f64 / shapes.len() as f64) / (options.turns + 1) as f64;
-            steps.tell(format!("{name}, {samples} a pixel"), within)?;
+            steps.report(format!("{name}, {samples} a pixel"), within)?;
             for stage in SamplingStage::ALL {
                 let run = meter.run(&request(*lobe, *curve, stage, rows, turn as u32))?;
                 // Turn 0 warms: caches, clocks, kernels.
@@ -295,7 +295,7 @@ fn frames(
     for turn in 0..=options.turns {
         for (place, (lobe, curve, name)) in shapes.iter().enumerate() {
             let within = (turn as f64 + place as f64 / shapes.len() as f64) / (options.turns + 1) as f64;
-            steps.tell(format!("{name}, frame of {samples} a pixel"), within)?;
+            steps.report(format!("{name}, frame of {samples} a pixel"), within)?;
             let mut document = quad(*lobe, *curve, samples, options);
             document.render.seed = turn as u32;
             session.submit(&document)?;
@@ -328,8 +328,8 @@ fn verdict(rows: &[SamplingRow]) -> Vec<String> {
         } else {
             "takes the geometric lobe's time".to_owned()
         };
-        let told = paper(row.lobe).map_or(String::new(), |ms| format!(" (the paper: {:.2} ×)", ms / ours));
-        format!("{} {found}{told}", row.lobe.label())
+        let paper_ratio = paper(row.lobe).map_or(String::new(), |ms| format!(" (the paper: {:.2} ×)", ms / ours));
+        format!("{} {found}{paper_ratio}", row.lobe.label())
     };
     others.map(sentence).collect()
 }

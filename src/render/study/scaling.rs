@@ -114,7 +114,7 @@ pub fn scaling(
     let mut steps = Steps::new(watch, cases.len() as f64);
     let mut points = Vec::new();
     for (growing, size) in cases {
-        steps.tell(format!("{}: {size}", growing.label()), 0.0)?;
+        steps.report(format!("{}: {size}", growing.label()), 0.0)?;
         let (grown, size) = grow(&document, growing, size, &session)?;
         points.push(measure(&mut session, &grown, growing, size, options)?);
         steps.finish(1.0);

@@ -72,14 +72,14 @@ fn mend(picture: &mut Picture) {
         }
     }
     let warnings = &mut picture.warnings;
-    let mut tell = |count: u64, what: &str, instead: &str| {
+    let mut report = |count: u64, what: &str, instead: &str| {
         if count > 0 {
             warnings.push(format!("{count} {what} values were replaced by {instead}."));
         }
     };
-    tell(not_a_number, "not-a-number", "0");
-    tell(negative, "negative", "0");
-    tell(infinite, "infinite", &format!("the largest finite one, {largest}"));
+    report(not_a_number, "not-a-number", "0");
+    report(negative, "negative", "0");
+    report(infinite, "infinite", &format!("the largest finite one, {largest}"));
     if picture.width != 2 * picture.height {
         warnings.push(format!(
             "The picture is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",

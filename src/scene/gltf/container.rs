@@ -181,7 +181,7 @@ impl Document {
             report.note(Fate::Ignored, what, "");
             return;
         }
-        let mut tell = |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
+        let mut on_error = |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
             let path = path().to_string();
             // A texture may leave its picture to an extension.
             let is_sourceless = path.ends_with("].source") && error == json::validation::Error::Missing;
@@ -189,7 +189,7 @@ impl Document {
                 report.note(Fate::Ignored, format!("a breach of the format's rules, {error}"), &path);
             }
         };
-        self.root.validate(&self.root, json::Path::new, &mut tell);
+        self.root.validate(&self.root, json::Path::new, &mut on_error);
     }
 
     fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {

@@ -264,7 +264,7 @@ impl<'a> Slots<'a> {
             Picture::Missing => slot.emission = [0.0; 3],
             Picture::Unnamed => {}
         }
-        table::tell(material, report);
+        table::report_unread(material, report);
         report.note(
             Fate::Approximated,
             "a .mtl material, as metalness and roughness",

@@ -164,9 +164,8 @@ pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
 mod tests {
     use super::*;
 
-    fn told(name: &str) -> Vec<(&'static str, bool)> {
-        let targets = targets_of(Path::new(name));
-        targets
+    fn targets(name: &str) -> Vec<(&'static str, bool)> {
+        targets_of(Path::new(name))
             .iter()
             .map(|(target, texture)| (target.name(), texture.inverted))
             .collect()
@@ -174,22 +173,22 @@ mod tests {
 
     #[test]
     fn pictures_are_known_by_their_names() {
-        assert_eq!(told("wood_BaseColor.png"), [("base-color", false)]);
-        assert_eq!(told("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
-        assert_eq!(told("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
-        assert_eq!(told("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
-        assert_eq!(told("brick_nor_dx_1k.exr"), [("normal", true)]);
-        assert_eq!(told("brick_nor_gl_1k.exr"), [("normal", false)]);
-        assert_eq!(told("paint-Glossiness.tif"), [("roughness", true)]);
+        assert_eq!(targets("wood_BaseColor.png"), [("base-color", false)]);
+        assert_eq!(targets("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
+        assert_eq!(targets("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
+        assert_eq!(targets("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
+        assert_eq!(targets("brick_nor_dx_1k.exr"), [("normal", true)]);
+        assert_eq!(targets("brick_nor_gl_1k.exr"), [("normal", false)]);
+        assert_eq!(targets("paint-Glossiness.tif"), [("roughness", true)]);
         assert_eq!(
-            told("helmet_OcclusionRoughnessMetallic.png"),
+            targets("helmet_OcclusionRoughnessMetallic.png"),
             [("roughness", false), ("metalness", false)]
         );
-        assert_eq!(told("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
-        assert_eq!(told("base_color.png"), [("base-color", false)]);
-        assert_eq!(told("metal_plate_rough.png"), [("roughness", false)]);
-        assert_eq!(told("rock_ao.png"), []);
-        assert_eq!(told("holiday.jpg"), []);
+        assert_eq!(targets("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
+        assert_eq!(targets("base_color.png"), [("base-color", false)]);
+        assert_eq!(targets("metal_plate_rough.png"), [("roughness", false)]);
+        assert_eq!(targets("rock_ao.png"), []);
+        assert_eq!(targets("holiday.jpg"), []);
     }
 
     #[test]

@@ -158,8 +158,8 @@ fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHan
             ui.weak(case.group);
         }
     }
-    let told = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
-    ui.label(in_words(case.name)).on_hover_text(told);
+    let tooltip = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
+    ui.label(in_words(case.name)).on_hover_text(tooltip);
     let verdict = format!("{} {}", check.measure, short(check.measure, check.value));
     let most = short(check.measure, check.limit);
     let hover = format!("at most {most}; naive: {}", (case.naive)());

@@ -284,7 +284,7 @@ impl<'a> Materials<'a> {
             self.report
                 .note(Fate::Approximated, "an unlit material, which shines", &read.name);
         }
-        table::tell(raw, &root.extensions_used, &read.name, &mut self.report);
+        table::report_unread(raw, &root.extensions_used, &read.name, &mut self.report);
         for extension in unreadable(raw) {
             let what = format!("{extension}, whose values are not of the kinds that it has");
             self.report.note(Fate::Ignored, what, &read.name);

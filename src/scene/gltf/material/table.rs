@@ -10,8 +10,8 @@ use crate::scene::report::{Fate, ImportReport};
 const TEXTURE: &str = r#"{"index": 0}"#;
 
 macro_rules! table {
-    ($($prefix:literal { $($key:literal $example:expr => $goes:ident $to:literal $told:literal;)* })*) => {
-        &[$($(FileParameter::new(concat!($prefix, $key), "", $example, Goes::$goes($to)).told($told),)*)*]
+    ($($prefix:literal { $($key:literal $example:expr => $goes:ident $to:literal $note:literal;)* })*) => {
+        &[$($(FileParameter::new(concat!($prefix, $key), "", $example, Goes::$goes($to)).with_note($note),)*)*]
     };
 }
 
@@ -105,7 +105,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
 
 /// Tells what of a material goes nowhere by the table, and what the table does not have. Extensions that the file
 /// `declares` are told with the file.
-pub(super) fn tell(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
+pub(super) fn report_unread(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
     let members = |value: &Json| value.as_object().cloned().unwrap_or_default();
     let mut left = vec![(String::new(), members(material))];
     while let Some((place, all)) = left.pop() {
