@@ -464,7 +464,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         if may_sample_light() && samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
             let part = choose_environment(xi.x);
-            xi.x = part.stretched;
+            xi.x = part.remapped;
             shadow_ray.is_environment = part.is_below;
             sampled_light = sample_light(point, part.is_below, xi);
             is_lit = sampled_light.density > 0.0 && (dot(point.surface.normal, sampled_light.direction) > 0.0 || transmits);

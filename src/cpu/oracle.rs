@@ -1,5 +1,5 @@
-//! Paths one by one and tiles by any instruction set, for records and tests. Nothing here is generic, so that the engine
-//! stands once in the machine code: a generic function would be compiled again in each crate that calls it.
+//! Single paths and tiles by any instruction set, for records and tests. Nothing here is generic, so that the engine is
+//! compiled once: a generic function would be compiled again in each crate that calls it.
 
 use fearless_simd::Level;
 

@@ -1,5 +1,5 @@
-//! The sums of a tile's pixels while samples come in: those of pixels near each other field by field, as their samples are
-//! added side by side.
+//! Sums of a tile's pixels while samples arrive, as structure of arrays per pixel block: a block's samples are added in
+//! SIMD.
 
 use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
 use crate::job::film::{Film, HalfSums};
@@ -7,16 +7,16 @@ use crate::job::guides::GUIDE_SAMPLES;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::vec3;
 
-/// A tile's sums, and the part of a film that they are of.
+/// A tile's sums and its part of the film.
 pub(super) struct TileSums<'a> {
     tile: &'a Tile,
     film: &'a mut Film,
-    /// The even samples and the odd ones of pixels near each other.
+    /// Even and odd samples of each block.
     halves: Vec<[BlockSums; 2]>,
 }
 
 impl<'a> TileSums<'a> {
-    /// What the film has of the tile, which is all of it.
+    /// The sums so far; `film` is the tile alone.
     pub fn of(film: &'a mut Film, tile: &'a Tile) -> Self {
         let mut sums = Self {
             tile,
@@ -36,12 +36,12 @@ impl<'a> TileSums<'a> {
         sums
     }
 
-    /// Which pixel of the film lies at a place in the tile.
+    /// Film index of a pixel.
     fn pixel(&self, [x, y]: &[u32; 2]) -> usize {
         (y * self.film.width + x) as usize
     }
 
-    /// Adds as many samples of each pixel, from sample `first` on.
+    /// Adds `count` samples of each pixel, from sample `first` on.
     pub fn add<T: Real>(&mut self, [first, count]: [u32; 2], results: &Results<T::Scalar>) {
         let (tile, halves) = (self.tile, &mut self.halves);
         let costs = &mut self.film.costs[0];
@@ -67,7 +67,7 @@ impl<'a> TileSums<'a> {
         self.add_more([first, count], results);
     }
 
-    /// The same for what only some films keep, and what limiting fireflies took.
+    /// Adds the optional sums: coverage, guides and clamped luminance.
     fn add_more<S: Scalar>(&mut self, [first, count]: [u32; 2], results: &Results<S>) {
         if !self.film.extras().coverage && !results.has_extras() {
             return;
@@ -92,7 +92,7 @@ impl<'a> TileSums<'a> {
         }
     }
 
-    /// Puts the sums back.
+    /// Writes the sums back to the film.
     pub fn finish(self) {
         for (block, halves) in self.tile.blocks().zip(&self.halves) {
             for (i, place) in block.places.iter().enumerate() {
@@ -103,13 +103,13 @@ impl<'a> TileSums<'a> {
     }
 }
 
-/// The sums of pixels near each other, see [`HalfSums`].
+/// Sums of a pixel block, see [`HalfSums`].
 #[derive(Clone, Copy, Debug, Default)]
 struct BlockSums {
     color: [[f64; BLOCK_PIXELS]; 3],
     squared_deviations: [f64; BLOCK_PIXELS],
     samples: [f64; BLOCK_PIXELS],
-    /// Their mean luminance, which is needed for the next sample.
+    /// Mean luminance, needed for the next sample.
     mean_luminance: [f64; BLOCK_PIXELS],
 }
 
@@ -123,7 +123,7 @@ impl BlockSums {
         }
     }
 
-    /// Sets those of a pixel and their mean luminance, if they are to be set. Written so that compilers turn it into lanes.
+    /// Sets a pixel's sums if `is_set`. Branchless, so that compilers vectorise it.
     #[inline(always)]
     fn set(&mut self, i: usize, sums: &HalfSums, mean_luminance: f64, is_set: bool) {
         let [red, green, blue] = sums.color;
@@ -136,7 +136,7 @@ impl BlockSums {
         put(&mut self.mean_luminance[i], mean_luminance);
     }
 
-    /// Adds a sample of each pixel where it is sound.
+    /// Adds the sound samples, one per pixel.
     #[inline(always)]
     fn add(&mut self, colors: &[[f64; BLOCK_PIXELS]; 3], is_sound: &[bool; BLOCK_PIXELS]) {
         for i in 0..BLOCK_PIXELS {

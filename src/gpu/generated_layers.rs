@@ -159,7 +159,7 @@ fn chosen() -> String {
         let by_facet = if decides { by_facet } else { "" };
         let template = format!(
             "    if @ && first <= # {{\n{by_facet}        let part = split(left, {chance});\n        \
-             if part.is_below {{ return LayerChoice(#, part.stretched); }}\n        left = part.stretched;\n    }}\n"
+             if part.is_below {{ return LayerChoice(#, part.remapped); }}\n        left = part.remapped;\n    }}\n"
         );
         filled(&template, *layer)
     };

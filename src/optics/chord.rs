@@ -120,13 +120,13 @@ pub fn chord_density<T: Real>(
             let reach = curve_distance_max(curve, table);
             let chord = chord_through(reach, kappa, stretch, normal, mirror, light);
             // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
-            let is_met = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
-            if !is_met.any() {
+            let is_hit = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
+            if !is_hit.any() {
                 return T::zero();
             }
             let integral = chord_integral(curve, table, kappa, &chord);
             let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
-            T::select(is_met, value.max(T::zero()), T::zero())
+            T::select(is_hit, value.max(T::zero()), T::zero())
         },
     )
 }

@@ -41,7 +41,7 @@ pub struct Progress {
     /// The error to reach is that of the denoised picture, where it is the lesser.
     pub aims_at_denoised: bool,
     /// The processor draws, because the GPU's kernel is being compiled.
-    pub is_standing_in: bool,
+    pub is_fallback: bool,
     /// How long the kernel took that was compiled last beside the picture, seconds.
     pub kernel_seconds: Option<f64>,
     /// Why nothing more is rendered.

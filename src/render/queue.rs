@@ -242,8 +242,8 @@ impl Queue {
     /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
         let mut book = self.shared.book();
-        let is_under_way = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
-        if book.entries.iter().any(is_under_way) {
+        let is_rendering = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
+        if book.entries.iter().any(is_rendering) {
             book.is_cancelled = true;
         } else {
             book.entries.retain(|entry| entry.id != id);

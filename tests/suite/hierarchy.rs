@@ -384,11 +384,11 @@ fn nothing_leaks_under_any_instruction_set() {
             let target = [a, a.lerp(b, random.unit()), b.midpoint(c)][i % 3];
             let origin = random.in_ball() * 0.9;
             let direction = target - origin;
-            let is_met = sphere
+            let is_hit = sphere
                 .intersect_by(level, origin.into(), direction.into(), f32::MAX)
                 .is_some();
             let is_occluded = sphere.occluded_by(level, origin.into(), direction.into(), f32::MAX);
-            escaped += usize::from(!is_met || !is_occluded);
+            escaped += usize::from(!is_hit || !is_occluded);
         }
         assert_eq!(escaped, 0, "{set}: rays from within a sphere");
     }

@@ -238,7 +238,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
         }));
     }
     if snapshot.activity == Activity::Rendering {
-        if snapshot.progress.is_standing_in {
+        if snapshot.progress.is_fallback {
             let text = RichText::new("compiling the kernel").weak();
             parts.push(spinner());
             parts.push(Part::text(ui, Rank::Activity, text, |ui| {

@@ -124,12 +124,12 @@ impl NoisyHalf {
             return None;
         }
         // A pixel whose samples were all dropped takes the values of the previous pixel in the same half.
-        let mut stand_in = *first?;
+        let mut replacement = *first?;
         let sources = pixels.iter().map(|pixel| {
             if has_samples(*pixel) {
-                stand_in = *pixel;
+                replacement = *pixel;
             }
-            stand_in
+            replacement
         });
         let sources: Vec<usize> = sources.collect();
         let of_pixel = |pixel: &usize| {

@@ -150,8 +150,8 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
             }
         }
         let answers = trace(stage, &geometry, &rays)?;
-        let is_met = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
-        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_met(answer) == **outward;
+        let is_hit = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
+        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_hit(answer) == **outward;
         wrong += answers.iter().zip(&is_outward).filter(bad).count() as f64;
     }
     Ok(wrong)
@@ -177,7 +177,7 @@ pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
     let triangles: Vec<_> = (0..mesh.triangles.len())
         .map(|triangle| mesh.corners(triangle).map(|corner| corner.as_vec3()))
         .collect();
-    let is_met = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
+    let is_hit = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
         let (to_b, to_c) = (b - a, c - a);
         let across = direction.cross(to_c);
         let determinant = to_b.dot(across);
@@ -191,6 +191,6 @@ pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
         let v = direction.dot(other) / determinant;
         u >= 0.0 && v >= 0.0 && u + v <= 1.0 && to_c.dot(other) / determinant > 0.0
     };
-    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_met(**aim - origin, *corners));
+    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_hit(**aim - origin, *corners));
     aims.iter().filter(misses).count()
 }

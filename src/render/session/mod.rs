@@ -39,14 +39,14 @@ pub struct Session {
     /// Of it the time in the engine's steps.
     step_time: Duration,
     /// Engine time of the stand-in, before the engine took over, seconds; and what it rendered, pixel samples.
-    stand_in_seconds: f64,
-    stand_in_samples: u64,
+    fallback_seconds: f64,
+    fallback_samples: u64,
     /// The engine was chosen automatically.
     is_automatic: bool,
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
     /// The GPU can't take over what the processor draws.
-    keeps_stand_in: bool,
+    keeps_fallback: bool,
     /// The engine failed at the picture, which stays as it is.
     is_stuck: bool,
     precision: Precision,
@@ -89,11 +89,11 @@ impl Session {
             convergence: Convergence::default(),
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
-            stand_in_seconds: 0.0,
-            stand_in_samples: 0,
+            fallback_seconds: 0.0,
+            fallback_samples: 0,
             is_automatic: false,
             workshop: None,
-            keeps_stand_in: false,
+            keeps_fallback: false,
             is_stuck: false,
             precision: Precision::default(),
             denoised: None,
@@ -112,8 +112,8 @@ impl Session {
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(Engine::open(choice, false)?, assets);
         session.is_automatic = choice == EngineChoice::Auto;
-        let stand_in = Engine::Cpu(Box::default());
-        match std::mem::replace(&mut session.engine, stand_in) {
+        let fallback = Engine::Cpu(Box::default());
+        match std::mem::replace(&mut session.engine, fallback) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
             cpu => session.engine = cpu,
         }
@@ -121,28 +121,28 @@ impl Session {
     }
 
     /// True while the processor draws because the GPU's kernel is being compiled.
-    pub fn is_standing_in(&self) -> bool {
-        self.workshop.is_some() && !self.keeps_stand_in && matches!(self.engine, Engine::Cpu(_))
+    pub fn is_fallback(&self) -> bool {
+        self.workshop.is_some() && !self.keeps_fallback && matches!(self.engine, Engine::Cpu(_))
     }
 
     /// Lets the GPU take over where its kernel is ready by now. After an error the processor goes on with the picture.
     fn change_over(&mut self) -> Result<(), SessionError> {
-        let (true, Some(job), Some(workshop)) = (self.is_standing_in(), &self.job, &mut self.workshop) else {
+        let (true, Some(job), Some(workshop)) = (self.is_fallback(), &self.job, &mut self.workshop) else {
             return Ok(());
         };
         let engine = match workshop.finished(job) {
             Ok(engine) => engine,
             Err(error) => {
-                self.keeps_stand_in = true;
+                self.keeps_fallback = true;
                 return Err(error.into());
             }
         };
         let Some(mut engine) = engine else { return Ok(()) };
-        self.stand_in_seconds += self.engine_seconds();
-        self.stand_in_samples = self.engine.schedule().pixel_samples();
+        self.fallback_seconds += self.engine_seconds();
+        self.fallback_samples = self.engine.schedule().pixel_samples();
         self.step_time = Duration::ZERO;
-        if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
-            let (film, schedule) = stand_in.hand_over();
+        if let Engine::Cpu(fallback) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+            let (film, schedule) = fallback.hand_over();
             engine.take_over(film, schedule);
         }
         self.engine = Engine::Gpu(Box::new(engine));
@@ -272,7 +272,7 @@ impl Session {
             Some(workshop) => workshop.begin(&job, &mut self.engine)?,
             None => self.engine.submit(job)?,
         }
-        self.keeps_stand_in = false;
+        self.keeps_fallback = false;
         self.start_clocks();
         Ok(())
     }
@@ -280,7 +280,7 @@ impl Session {
     fn start_clocks(&mut self) {
         (self.denoised, self.is_stuck) = (None, false);
         self.convergence = Convergence::default();
-        (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
+        (self.render_time, self.step_time, self.fallback_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
     /// Renders for about `budget`. After an error of the engine the picture is done as it is, until something is submitted.
@@ -301,18 +301,18 @@ impl Session {
     /// was compiled on its cores; where it was found to be the faster one, and both have rendered long enough to tell.
     fn rates(&self) -> Option<[f64; 2]> {
         let is_of_interest = self.is_automatic && self.info.is_software && self.device().is_some();
-        let seconds = self.engine_seconds() - self.stand_in_seconds;
-        if !is_of_interest || self.stand_in_seconds.min(seconds) < RATE_SECONDS {
+        let seconds = self.engine_seconds() - self.fallback_seconds;
+        if !is_of_interest || self.fallback_seconds.min(seconds) < RATE_SECONDS {
             return None;
         }
         let samples = self
             .engine
             .schedule()
             .pixel_samples()
-            .saturating_sub(self.stand_in_samples);
+            .saturating_sub(self.fallback_samples);
         Some([
             samples as f64 / seconds,
-            self.stand_in_samples as f64 / self.stand_in_seconds,
+            self.fallback_samples as f64 / self.fallback_seconds,
         ])
     }
 
@@ -381,7 +381,7 @@ impl Session {
 
     /// The engine's own time.
     fn engine_seconds(&self) -> f64 {
-        self.stand_in_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
+        self.fallback_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
     }
 
     /// How far the render has come.
@@ -397,7 +397,7 @@ impl Session {
             render_seconds: self.render_time.as_secs_f64(),
             engine_seconds,
             measure_seconds: self.convergence.total_seconds,
-            is_standing_in: self.is_standing_in(),
+            is_fallback: self.is_fallback(),
             kernel_seconds: self.workshop.as_ref().and_then(Workshop::compile_seconds),
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),

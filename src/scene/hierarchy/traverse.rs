@@ -323,9 +323,9 @@ impl<S: Simd> TriangleRay<S> {
         let clamped = t.max(f32x8::splat(simd, entered));
         // False for a triangle seen edge-on and for NaN.
         let is_before = t.simd_gt(zero) & clamped.simd_le(f32x8::splat(simd, t_max));
-        let is_met = is_inside & !(u + v + w).simd_eq(zero) & is_before;
+        let is_hit = is_inside & !(u + v + w).simd_eq(zero) & is_before;
         BlockHits {
-            hit_bits: is_met.to_bitmask() as u32,
+            hit_bits: is_hit.to_bitmask() as u32,
             t: clamped,
             areas,
         }

@@ -68,7 +68,7 @@ impl State<'_> {
     /// Whether the engine waits for the denoiser. On the same cores each would take as long as both, and the user waits for
     /// the denoised image.
     fn yields_to_denoiser(&self) -> bool {
-        let is_on_cores = |session: &Session| session.engine().is_software || session.is_standing_in();
+        let is_on_cores = |session: &Session| session.engine().is_software || session.is_fallback();
         self.denoising.is_pending() && self.session.as_ref().is_some_and(is_on_cores)
     }
 
