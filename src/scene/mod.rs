@@ -1,4 +1,4 @@
-//! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
+//! The scene: models and their sources, hierarchies, lights, environments and textures.
 
 mod alias;
 mod basis;

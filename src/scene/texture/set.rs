@@ -1,16 +1,17 @@
-//! Pictures of one surface, recognised by their names: `wood_basecolor.png`, `Wood062_2K_NormalGL.jpg`, `wood_arm_4k.png`.
+//! Texture sets: maps of one surface, recognised by their names: `wood_basecolor.png`, `Wood062_2K_NormalGL.jpg`,
+//! `wood_arm_4k.png`.
 
 use std::path::{Path, PathBuf};
 
 use super::own::{OwnTexture, TextureChannel, TextureTarget};
 use crate::scene::endings::is_picture;
 
-/// What a word in a picture's name says.
+/// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]
 enum Meaning {
-    /// What it is put on.
+    /// The parameter.
     Is(TextureTarget),
-    /// The same, its numbers upside down.
+    /// The parameter, with inverted values.
     IsInverted(TextureTarget),
     /// Occlusion, roughness and metalness in red, green and blue.
     Packed,
@@ -21,7 +22,7 @@ enum Meaning {
 use Meaning::{Is, IsInverted, Other, Packed};
 use TextureTarget as To;
 
-/// Words by which pictures are named, in lower case without separators. A word of two parts stands before its parts.
+/// Known words, in lower case without separators. A word of two parts comes before its parts.
 #[rustfmt::skip]
 const WORDS: &[(&str, Meaning)] = &[
     ("basecolor", Is(To::BaseColor)), ("basecolour", Is(To::BaseColor)), ("albedo", Is(To::BaseColor)),
@@ -46,8 +47,8 @@ const WORDS: &[(&str, Meaning)] = &[
     ("sheen", Other), ("anisotropy", Other), ("thickness", Other), ("curvature", Other), ("id", Other),
 ];
 
-/// The words of a name in lower case: parted where something else than a letter or a digit stands, and where a capital
-/// follows a small letter.
+/// The words of a file name in lower case: split at characters other than letters and digits, and before a capital after a
+/// small letter.
 fn words(path: &Path) -> Vec<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut words = vec![String::new()];
@@ -68,7 +69,7 @@ fn words(path: &Path) -> Vec<String> {
     words
 }
 
-/// What a picture's name says last: a resolution and the like may follow.
+/// The last meaning in a file name; a resolution or similar may follow.
 fn meaning(path: &Path) -> Option<Meaning> {
     let words = words(path);
     let known = |text: &str| {
@@ -83,14 +84,13 @@ fn meaning(path: &Path) -> Option<Meaning> {
     })
 }
 
-/// True where a picture is named for holding roughness in green and metalness in blue.
+/// True if a file name announces roughness in green and metalness in blue.
 fn is_packed(path: &Path) -> bool {
     meaning(path) == Some(Packed)
 }
 
 impl OwnTexture {
-    /// The channel that counts, of a target that is a number: 0 to 3. `has_alpha` says whether the picture is translucent
-    /// anywhere.
+    /// Channel (0 to 3) of a scalar target. `has_alpha`: the map is translucent anywhere.
     pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
         match self.channel {
             TextureChannel::Red => 0,
@@ -107,7 +107,7 @@ impl OwnTexture {
     }
 }
 
-/// What a picture's name says that it is put on; nothing where it does not say.
+/// Targets according to a file name; empty if it has none.
 pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
     let plain = || OwnTexture::of(path.to_owned());
     match meaning(path) {
@@ -124,9 +124,8 @@ pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
     }
 }
 
-/// What is put on what of several pictures, one each; and those that are left over. Of two for the same target the first
-/// counts, a normal map whose green points upwards before one whose green points down, and a picture of one number before one of
-/// several.
+/// Assigns several maps to targets, one each; also returns the unassigned ones. Of two for the same target the first is
+/// used, but a normal map with green up is preferred to green down, and a map of one scalar to one of several.
 pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Vec<PathBuf>) {
     let mut found: Vec<(TextureTarget, OwnTexture)> = Vec::new();
     let mut in_order: Vec<&PathBuf> = pictures.iter().collect();
@@ -149,7 +148,7 @@ pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Ve
     (found, left)
 }
 
-/// The pictures directly in a folder, by name.
+/// The image files directly in a folder, by name.
 pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
