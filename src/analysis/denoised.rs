@@ -489,7 +489,7 @@ mod tests {
             inside += u32::from((found.low..=found.high).contains(&true_error));
             estimated += found.value.powi(2);
             truth += true_error.powi(2);
-            // Before it is told as at least 0.
+            // Before it is clamped to at least 0.
             let sum = errors.sum(None, |moments, _, _| (moments.denoised - moments.known, 0.0));
             biases.push(sum.denoised / sum.pixels);
         }

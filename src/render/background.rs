@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use crate::panics::caught;
 
-/// How long to wait before looking whether work that is held may go on.
+/// Interval at which held work checks whether to continue.
 const HOLD_STEP: Duration = Duration::from_millis(25);
 
-/// Answers queries on a thread of its own. A query that has not been begun when the next one comes is forgotten.
+/// Answers queries on a thread of its own. A query that has not been started is replaced by the next one.
 pub struct Background<Q, A> {
     shared: Arc<Shared<Q, A>>,
 }
@@ -32,7 +32,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the work reports to.
+/// Handle through which the work reports.
 pub struct Desk<'a, Q, A> {
     shared: &'a Shared<Q, A>,
     repaint: &'a dyn Fn(),
@@ -45,7 +45,7 @@ impl<Q, A> Desk<'_, Q, A> {
         (self.repaint)();
     }
 
-    /// Waits while `hold` is set; false once the answer is no longer wanted.
+    /// Waits while `hold` is set. Returns false once superseded.
     pub fn may_go_on(&self, hold: &AtomicBool) -> bool {
         while hold.load(Ordering::Relaxed) && !self.is_superseded() {
             std::thread::sleep(HOLD_STEP);
@@ -53,7 +53,7 @@ impl<Q, A> Desk<'_, Q, A> {
         !self.is_superseded()
     }
 
-    /// Whether the answer is no longer wanted.
+    /// Whether a newer query has superseded this one.
     pub fn is_superseded(&self) -> bool {
         let orders = lock(&self.shared.orders);
         orders.quit || orders.query.is_some()
@@ -101,7 +101,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         Ok(Self { shared })
     }
 
-    /// Asks.
+    /// Submits a query.
     pub fn ask(&self, query: Q) {
         lock(&self.shared.orders).query = Some(query);
         self.shared.ordered.notify_one();
@@ -112,7 +112,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         lock(&self.shared.answer).clone()
     }
 
-    /// Why the latest query came to nothing, where the work panicked; the thread goes on.
+    /// The panic's message of the latest query, if the work panicked; the thread continues.
     pub fn failure(&self) -> Option<String> {
         lock(&self.shared.failure).clone()
     }

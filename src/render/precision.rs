@@ -1,4 +1,4 @@
-//! The map of what in a picture's numbers is not to be trusted, made beside the window.
+//! The map of numerical trouble, made in the background.
 
 use std::io;
 use std::sync::Arc;
@@ -26,7 +26,7 @@ pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
     })
 }
 
-/// The picture's shape in no more than [`SIDE_MAX_PX`].
+/// Size of the map: the image's aspect within [`SIDE_MAX_PX`].
 fn map_size([width, height]: [u32; 2]) -> [u32; 2] {
     let longest = width.max(height).max(1);
     let kept = SIDE_MAX_PX.min(longest);

@@ -1,4 +1,4 @@
-//! Small pictures of materials, rendered beside the window and kept on disk.
+//! Thumbnails of materials, rendered in the background and cached on disk.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -20,21 +20,21 @@ use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
 pub const SIDE: u32 = 128;
-/// Samples a pixel: noise is below what is seen at this size, and nothing of it is left where it is denoised.
+/// Samples per pixel: the noise is invisible at this size, and removed if denoised.
 const SAMPLES: u32 = 24;
-/// How long to render before looking whether something else is wanted.
+/// Render time between two checks for a newer request.
 const STEP: Duration = Duration::from_millis(30);
-/// To be raised where thumbnails of the same material come out otherwise than before.
+/// Cache version: increase if thumbnails of the same material change.
 const VERSION: u32 = 4;
 
-/// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
+/// A thumbnail: RGBA, 8 bits each, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels, rows from the top.
 pub type Thumbnail = Arc<Vec<u8>>;
 /// Thumbnails by [`key`].
 pub type Thumbnails = Arc<HashMap<u64, Thumbnail>>;
 /// Renders the thumbnails of the materials that it was asked for last, in their order; answers grow.
 pub type ThumbnailWorker = Background<Vec<MaterialSettings>, Thumbnails>;
 
-/// The same for materials that look the same, whatever they are called.
+/// Cache key, equal for materials of equal appearance.
 pub fn key(material: &MaterialSettings) -> u64 {
     let nameless = MaterialSettings {
         name: String::new(),
@@ -50,10 +50,11 @@ pub fn key(material: &MaterialSettings) -> u64 {
     hasher.finish()
 }
 
-/// Starts the worker; `folder` keeps the pictures from one start to the next and is made where it is not there. Nothing
-/// is rendered while `hold` is set: the viewport goes first.
+/// Starts the worker; `folder`, created if needed, caches thumbnails between starts. It pauses while `hold` is set, for the
+/// viewport.
 ///
 /// # Errors
+///
 /// If no thread can be started.
 pub fn spawn_thumbnails(
     folder: PathBuf,
@@ -104,13 +105,13 @@ fn document(material: &MaterialSettings) -> Document {
     document
 }
 
-/// What thumbnails are made with.
+/// Renderer of thumbnails.
 struct Studio {
     session: Session,
     attendant: Attendant,
 }
 
-/// `None` where something else is wanted by now.
+/// `None` if superseded.
 fn make<A>(
     studio: &mut Option<Studio>,
     material: &MaterialSettings,

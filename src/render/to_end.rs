@@ -10,14 +10,14 @@ use super::progress::Progress;
 use super::session::Session;
 use crate::document::Document;
 
-/// Step of the session between two looks at whether to go on.
+/// Session step between two checks for a stop.
 const STEP: Duration = Duration::from_millis(100);
 
-/// What a render came to.
+/// Result of a render.
 pub struct Ended {
-    /// How far it came: not to its end where it was stopped.
+    /// Progress; incomplete if stopped.
     pub progress: Progress,
-    /// The denoised picture, if it was requested and is available.
+    /// The denoised image, if requested and available.
     pub denoised: Option<Denoised>,
 }
 
@@ -44,7 +44,7 @@ pub fn step_to_end(
     go_on: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Ended, SessionError> {
     loop {
-        // Read back what the GPU has: if that fails, it can still be rendered again.
+        // Reads the GPU's sums back: if that fails, the render can still be repeated.
         let stepped = session.step(STEP).and_then(|progress| {
             if progress.is_done {
                 session.film()?;

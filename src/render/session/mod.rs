@@ -23,10 +23,10 @@ use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::scene::texture::OwnPicture;
 
-/// How long both must have rendered before their rates are compared, seconds.
+/// Render time of both engines, in seconds, before their rates are compared.
 const RATE_SECONDS: f64 = 0.5;
 
-/// A document, what it needs, and the engine that renders it.
+/// A session: a document, its assets, and the engine that renders it.
 pub struct Session {
     engine: Engine,
     info: EngineInfo,
@@ -36,26 +36,26 @@ pub struct Session {
     job: Option<Arc<Job>>,
     convergence: Convergence,
     render_time: Duration,
-    /// Of it the time in the engine's steps.
+    /// Part of it in the engine's steps.
     step_time: Duration,
-    /// Engine time of the stand-in, before the engine took over, seconds; and what it rendered, pixel samples.
+    /// Engine time in seconds and pixel samples of the CPU fallback, before the GPU took over.
     fallback_seconds: f64,
     fallback_samples: u64,
     /// The engine was chosen automatically.
     is_automatic: bool,
-    /// Where kernels are compiled beside the picture; `None` where the session waits for them.
+    /// Background compilation of kernels; `None` if the session waits for them.
     workshop: Option<Workshop>,
-    /// The GPU can't take over what the processor draws.
+    /// True if the GPU cannot take over from the CPU fallback.
     keeps_fallback: bool,
-    /// The engine failed at the picture, which stays as it is.
+    /// True if the engine failed at this render, which stays as it is.
     is_stuck: bool,
     precision: Precision,
     denoised: Option<Distance>,
-    /// Why guides are kept whatever the document says.
+    /// Reason to keep guides for any document.
     guides_wanted: Option<&'static str>,
-    /// Bytes that a picture may take; `None` is what is free.
+    /// Memory limit of a render in bytes; `None` is the free memory.
     memory_limit: Option<u64>,
-    /// How often the GPU failed.
+    /// Number of GPU failures.
     losses: u32,
     /// When devices that replace a lost one are lost as well, and how many: for tests.
     losing: Option<(Moment, u32)>,
@@ -65,14 +65,16 @@ impl Session {
     /// Opens an engine.
     ///
     /// # Errors
-    /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
+    ///
+    /// [`GpuError`] if a GPU was requested and none works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
         Self::open_with(choice, Assets::default())
     }
 
-    /// The same with models and environments that it may share with other sessions.
+    /// The same with assets that may be shared with other sessions.
     ///
     /// # Errors
+    ///
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         Ok(Self::around(Engine::open(choice, true)?, assets))
@@ -104,10 +106,11 @@ impl Session {
         }
     }
 
-    /// The same, but never waits for engines to be measured or for a kernel to be compiled: until it is ready the
-    /// processor draws, and what it has drawn then counts.
+    /// The same without waiting for measurements or kernel compilation: until the kernel is ready, the CPU engine renders,
+    /// and its samples count.
     ///
     /// # Errors
+    ///
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(Engine::open(choice, false)?, assets);
@@ -120,12 +123,12 @@ impl Session {
         Ok(session)
     }
 
-    /// True while the processor draws because the GPU's kernel is being compiled.
+    /// True while the CPU engine renders because the GPU's kernel is being compiled.
     pub fn is_fallback(&self) -> bool {
         self.workshop.is_some() && !self.keeps_fallback && matches!(self.engine, Engine::Cpu(_))
     }
 
-    /// Lets the GPU take over where its kernel is ready by now. After an error the processor goes on with the picture.
+    /// Switches to the GPU if its kernel is ready. After an error the CPU engine continues.
     fn change_over(&mut self) -> Result<(), SessionError> {
         let (true, Some(job), Some(workshop)) = (self.is_fallback(), &self.job, &mut self.workshop) else {
             return Ok(());
@@ -149,29 +152,29 @@ impl Session {
         Ok(())
     }
 
-    /// The GPU's device, where it renders at the moment.
+    /// The GPU's device, if it renders now.
     pub fn device(&self) -> Option<&GpuDevice> {
         self.engine.device()
     }
 
-    /// What renders.
+    /// The engine.
     pub fn engine(&self) -> &EngineInfo {
         &self.info
     }
 
-    /// What the processor shades with from the next submission on; the GPU goes on in f32.
+    /// Sets the CPU's shading precision from the next submission on; the GPU stays in f32.
     pub fn set_precision(&mut self, precision: Precision) {
         self.precision = precision;
         self.forget();
     }
 
-    /// Keeps what is seen first from the next submission on, also where nothing is denoised: layers are going to be asked
-    /// for, or may be. `why` is the plan's reason.
+    /// Keeps guides from the next submission on, also without denoising, because layers may be requested. `why` is the
+    /// plan's reason.
     pub fn keep_guides(&mut self, why: &'static str) {
         self.guides_wanted = Some(why);
     }
 
-    /// Refuses pictures that take more memory, in place of those that take more than is free.
+    /// Sets the memory limit of renders in bytes, instead of the free memory.
     pub fn limit_memory(&mut self, bytes: u64) {
         self.memory_limit = Some(bytes);
     }
@@ -181,23 +184,25 @@ impl Session {
         &self.assets
     }
 
-    /// The pictures of the user's own that a document's materials look up, each with why it can't be had where that is so.
+    /// Users' texture maps of a document's materials, each with its error, if any.
     ///
     /// # Errors
-    /// A model that can't be loaded.
+    ///
+    /// A model that cannot be loaded.
     pub fn own_pictures(&self, document: &Document) -> Result<Vec<OwnPicture>, SessionError> {
         compile::own_pictures(document, &self.assets)
     }
 
-    /// Forgets what was rendered, so that the next submission starts over even with the same document.
+    /// Discards the render: the next submission starts over even with the same document.
     pub fn forget(&mut self) {
         self.document = None;
     }
 
-    /// Reads the files of a document again; what they hold now. The next submission starts over.
+    /// Reloads the files of a document. The next submission starts over.
     ///
     /// # Errors
-    /// A model or environment that can't be loaded; what is rendered then goes on.
+    ///
+    /// A model or environment that cannot be loaded; the current render then continues.
     pub fn reload(&mut self, document: &Document) -> Result<Reloaded, SessionError> {
         let lighting = &document.lighting;
         let (environment, encoding) = (&lighting.environment, lighting.environment_encoding);
@@ -213,11 +218,12 @@ impl Session {
         self.job.as_ref()
     }
 
-    /// Takes a document to render: loads what it names and starts over, unless nothing changed but how the picture is
-    /// shown. After an error the old document goes on.
+    /// Submits a document: loads its assets and starts over, unless only display settings changed. After an error the old
+    /// document continues.
     ///
     /// # Errors
-    /// A model or environment that can't be loaded, or what the GPU can't hold.
+    ///
+    /// A model or environment that cannot be loaded, or the GPU's objection.
     pub fn submit(&mut self, document: &Document) -> Result<Change, SessionError> {
         self.submit_shared(&Arc::new(document.clone()))
     }
@@ -225,6 +231,7 @@ impl Session {
     /// The same without a copy of the document.
     ///
     /// # Errors
+    ///
     /// As [`Session::submit`].
     pub fn submit_shared(&mut self, document: &Arc<Document>) -> Result<Change, SessionError> {
         let change = match &self.document {
@@ -237,8 +244,8 @@ impl Session {
                 job.plan = job.plan.with(EffectId::Guides, Decision::on(why));
             }
             let job = Arc::new(job);
-            // With another aim only, the engine goes on with what it has: its kernel is the same. But a film that was begun
-            // without guides can't have them any more.
+            // With only another goal, the engine continues with the same kernel. But a film without guides cannot get them
+            // later.
             let has_guides = |job: &Arc<Job>| job.plan.has(EffectId::Guides);
             if change.restarts() || (has_guides(&job) && !self.job.as_ref().is_some_and(has_guides)) {
                 self.check_memory(&job)?;
@@ -249,7 +256,7 @@ impl Session {
         self.document = Some(document.clone());
         self.is_stuck = false;
         if change.target {
-            // The goals in force were those of another aim.
+            // The current goals were those of another target.
             self.convergence.goals.clear();
         }
         Ok(change)

@@ -1,9 +1,8 @@
-//! The race: techniques on the same view, in turn, fair in time.
+//! The race: techniques on the same view, interleaved in time.
 //!
-//! Each has a session of its own, of the same engine, and renders in slices by turns, so that whatever else the machine
-//! does meets all of them; the engine's own clock counts. Two errors are told apart. The *noise* is how far a picture
-//! is from the one that the technique itself converges to; it falls with time. The *bias* is how far that one is from
-//! the picture of the most accurate setting; it stays.
+//! Each has its own session of the same engine and renders in time slices by turns, so that disturbances affect all; the
+//! engine's own clock counts. Two errors are distinguished. *Noise* is the distance of an image from the technique's own
+//! limit; it falls with time. *Bias* is the distance of that limit from the most accurate setting's; it stays.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,27 +20,27 @@ use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
-/// References are this many times as exact as the noise to reach, where the time suffices.
+/// Precision of references relative to the target noise, if time permits.
 const REFERENCE_GAIN: f64 = 8.0;
-/// Samples of the shortest picture of equal error: one in either half.
+/// Minimum samples of the render of equal error: one in either half.
 const SAMPLES_MIN: f64 = 2.0;
 
-/// How a race is run.
+/// Options of a race.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaceOptions {
     /// The engine, the same for all.
     pub engine: EngineChoice,
-    /// Who takes part. The document as it is always does.
+    /// Techniques that take part; the current document always does.
     pub techniques: Vec<Technique>,
     /// Engine time that each has, seconds.
     pub seconds: f64,
     /// The noise at which times are compared: 0.02 is 2 %.
     pub noise: f64,
-    /// How long one renders before it is the next one's turn.
+    /// Length of a time slice.
     pub slice: Duration,
     /// Longest time for one reference, seconds.
     pub reference_seconds: f64,
-    /// Where references are kept.
+    /// Cache of references.
     pub cache: ReferenceCache,
 }
 
@@ -60,22 +59,22 @@ impl RaceOptions {
     }
 }
 
-/// How a race ended.
+/// Result of a race.
 #[derive(Clone, Debug, Serialize)]
 pub struct Race {
-    /// Where it was run.
+    /// Machine of the race.
     pub machine: Machine,
-    /// Columns of pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Height in pixels.
     pub height: u32,
     /// Engine time that each had, seconds.
     pub seconds: f64,
     /// The noise at which times are compared.
     pub noise: f64,
-    /// The noise of the pictures of equal error: the largest after equal time.
+    /// Noise of the renders of equal error: the largest after equal time.
     pub equal_error: f64,
-    /// Those who took part, in the order in which they were given, the document as it is first.
+    /// Techniques in the given order, the current document first.
     pub runners: Vec<Runner>,
 }
 
@@ -84,35 +83,35 @@ pub struct Race {
 pub struct Runner {
     /// The technique, as it is written.
     pub technique: Technique,
-    /// What it is called.
+    /// Label.
     pub label: String,
     /// Engine time that it had in fact, seconds.
     pub seconds: f64,
     /// Samples a pixel after it, in the mean.
     pub samples_per_pixel: f64,
-    /// Its own estimate of the relative error, made without a reference.
+    /// Estimated relative error, without a reference.
     #[serde(rename = "told_noise")]
     pub estimated_noise: f64,
-    /// Its relative error against its own reference.
+    /// Relative error against its own reference.
     pub error: Distance,
     /// Engine time to the race's noise, seconds: the error falls with the root of the time. (That of a denoised picture
     /// falls more slowly: where it was reached in the race the time is told too long, else too short.)
     pub time_to_noise: f64,
     /// The noise was not reached in the race: the time is extrapolated.
     pub is_extrapolated: bool,
-    /// Relative distance of what it converges to from the most accurate setting's picture; of a denoised picture the
-    /// denoiser's bias at the race's end.
+    /// Relative distance of its limit from the most accurate setting's; for a denoised render, the denoiser's bias at the
+    /// race's end.
     pub bias: Distance,
-    /// It converges to the most accurate setting's picture by its nature: the bias is 0 and not measured.
+    /// True if its limit is the most accurate setting's by construction: the bias is 0 and not measured.
     pub is_unbiased: bool,
-    /// The relative error of its own reference, as told.
+    /// Estimated relative error of its own reference.
     pub reference_noise: f64,
     /// No other one is both less biased and faster.
     pub is_on_front: bool,
-    /// The picture after equal time.
+    /// The image after equal time.
     #[serde(skip)]
     pub equal_time: Image,
-    /// The picture when its error was that of the slowest after equal time.
+    /// The image at the time of equal error.
     #[serde(skip)]
     pub equal_error: Image,
     /// The time that this took, seconds.
@@ -120,7 +119,7 @@ pub struct Runner {
 }
 
 impl Runner {
-    /// The bias as far as it is known: 0 where it cannot be told from nothing.
+    /// The bias, or 0 if not significant.
     pub fn resolved_bias(&self) -> f64 {
         if self.is_unbiased || !self.bias.is_resolved() {
             0.0
@@ -129,7 +128,7 @@ impl Runner {
         }
     }
 
-    /// Where it stands in a chart whose axis has no 0: at least what could have been told from nothing.
+    /// Bias in a logarithmic chart: at least the smallest resolvable one.
     pub fn charted_bias(&self, least: f64) -> f64 {
         let value = if self.bias.is_resolved() || self.is_unbiased {
             self.bias.value
@@ -141,7 +140,7 @@ impl Runner {
 }
 
 impl Race {
-    /// The least bias of the chart's axis: half of what could just be told from nothing.
+    /// Lower end of the chart's bias axis: half the smallest resolvable bias.
     pub fn least_bias(&self) -> f64 {
         let resolved = self.runners.iter().filter(|runner| !runner.is_unbiased);
         let least = resolved
@@ -151,7 +150,7 @@ impl Race {
     }
 }
 
-/// Someone on the way.
+/// A technique during a race.
 struct Lane {
     technique: Technique,
     document: Document,
@@ -160,7 +159,7 @@ struct Lane {
 }
 
 impl Lane {
-    /// Its picture as it is shown, and the denoised one where it is denoised.
+    /// Its displayed image, and the denoised one, if any.
     fn picture(&mut self) -> Result<(Arc<Image>, Option<Denoised>), StudyError> {
         let denoised = self.attendant.finish(&mut self.session)?;
         let image = match &denoised {
@@ -174,7 +173,8 @@ impl Lane {
 /// Runs a race. `watch` receives the progress and may stop it.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`]; [`StudyError::Black`].
+///
+/// Errors of rendering; [`StudyError::Stopped`]; [`StudyError::Black`].
 pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
     let assets = Assets::default();
     let mut lanes = lanes(document, options, &assets)?;
@@ -222,7 +222,7 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
             continue;
         }
         let mut session = Session::open_with(engine, assets.clone())?;
-        // Not one on the GPU and another on the processor.
+        // All on the same engine.
         engine = session.engine().kind.into();
         if technique.is_double() && session.engine().kind == EngineKind::Gpu {
             log::warn!("{technique}: the GPU shades in f32 only; left out");
@@ -247,14 +247,14 @@ fn precision(technique: &Technique) -> Precision {
     }
 }
 
-/// What some documents converge to.
+/// Limits of several documents.
 struct Converged {
     reference: Reference,
     document: Document,
     precision: Precision,
 }
 
-/// What everyone converges to, and what the most accurate setting does.
+/// Limits of all techniques, and of the most accurate setting.
 struct Exact {
     best: Arc<Converged>,
     own: Vec<Arc<Converged>>,
@@ -295,7 +295,7 @@ fn references_of(
         made.push(converged.clone());
         Ok(converged)
     };
-    // As exact as anyone of them calculates.
+    // In f64 if any technique uses it.
     let is_double = lanes.iter().any(|lane| lane.technique.is_double());
     let best_precision = if is_double {
         Precision::Double
@@ -415,7 +415,7 @@ fn rerun(
         if progress.is_done || progress.mean_samples >= samples {
             return Ok(());
         }
-        // So short that the last step goes little too far.
+        // Short steps, so that the last one overshoots little.
         let left = progress.engine_seconds * (samples / progress.mean_samples.max(1e-9) - 1.0);
         step = Duration::from_secs_f64(left.clamp(1e-3, 0.2));
     }
@@ -431,7 +431,7 @@ fn mark_front(runners: &mut [Runner]) {
     }
 }
 
-/// Which places have no other one that is nowhere larger and somewhere smaller.
+/// The Pareto front: points that no other point dominates.
 fn front(places: &[[f64; 2]]) -> Vec<bool> {
     let is_better = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     places

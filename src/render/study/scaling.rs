@@ -1,4 +1,4 @@
-//! How time grows with the size of things: triangles, pixels, bounces, the environment.
+//! Scaling of time with size: triangles, pixels, bounces, the environment.
 
 use std::time::{Duration, Instant};
 
@@ -14,7 +14,7 @@ use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 
 named! {
-    /// What grows.
+    /// The scaled quantity.
     Growing {
         Triangles, "triangles", "Triangles", "The triangles of the model.";
         Pixels, "pixels", "Pixels", "The pixels of the picture.";
@@ -36,14 +36,14 @@ impl Growing {
     }
 }
 
-/// How it is measured.
+/// Options of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalingOptions {
     /// The engine.
     pub engine: EngineChoice,
     /// Turns of each size.
     pub turns: usize,
-    /// How long each turn lasts.
+    /// Length of a trial.
     pub slice: Duration,
     /// The two smallest sizes alone, to see that it works.
     pub is_quick: bool,
@@ -64,36 +64,37 @@ impl ScalingOptions {
 /// The time at a size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ScalingPoint {
-    /// What grows.
+    /// The scaled quantity.
     pub growing: Growing,
-    /// How large it is.
+    /// Its size.
     pub size: u64,
     /// Engine time of a pixel sample, nanoseconds.
     pub ns_per_sample: f64,
     /// The quartiles of that over the turns.
     pub ns_quartiles: [f64; 2],
-    /// From the document to the first sample: loading, hierarchy, tables, upload, kernel; seconds.
+    /// Set-up time in seconds from the document to the first sample: loading, hierarchy, tables, upload, kernel.
     pub setup_seconds: f64,
 }
 
-/// All times.
+/// Report of all times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScalingReport {
-    /// Where it was measured.
+    /// Machine of the measurement.
     pub machine: Machine,
-    /// Columns of pixels, where they do not grow.
+    /// Width in pixels, if not scaled.
     pub width: u32,
-    /// Rows of pixels, where they do not grow.
+    /// Height in pixels, if not scaled.
     pub height: u32,
-    /// The times, by what grows.
+    /// Times by quantity.
     pub points: Vec<ScalingPoint>,
 }
 
-/// Measures a document with one thing of another size at a time. The model that grows is a bumpy sphere in the
-/// document's material. `watch` receives the progress and may stop it.
+/// Measures a document with one quantity scaled at a time. The scaled model is a bumpy sphere in the document's material.
+/// `watch` receives the progress and may stop it.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`].
+///
+/// Errors of rendering; [`StudyError::Stopped`].
 pub fn scaling(
     document: &Document,
     options: &ScalingOptions,
@@ -168,7 +169,7 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
     Ok((grown, size))
 }
 
-/// The same light with other texels.
+/// The same environment at another resolution.
 fn resampled(
     environment: &Environment,
     height: u32,
