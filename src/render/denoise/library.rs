@@ -124,6 +124,9 @@ pub struct Library {
 
 impl Library {
     /// The library, found and loaded on the first call.
+    ///
+    /// # Errors
+    /// [`LibraryError`] in one line with the remedy; the same on each call.
     pub fn get() -> Result<&'static Self, LibraryError> {
         static LIBRARY: OnceLock<Result<Library, LibraryError>> = OnceLock::new();
         LIBRARY.get_or_init(Self::find).as_ref().map_err(Clone::clone)

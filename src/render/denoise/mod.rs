@@ -37,6 +37,9 @@ pub struct Denoiser {
 
 impl Denoiser {
     /// A denoiser on the library's fastest device.
+    ///
+    /// # Errors
+    /// [`LibraryError`] in one line with the remedy.
     pub fn open() -> Result<Self, LibraryError> {
         let device = Arc::new(Device::of(Library::get()?)?);
         Ok(Self {
@@ -52,11 +55,17 @@ impl Denoiser {
     }
 
     /// Denoises a render. Returns the render itself if it has no samples.
+    ///
+    /// # Errors
+    /// If the library fails.
     pub fn denoise(&mut self, noisy: &Noisy, mode: Denoise) -> Result<Denoised, LibraryError> {
         self.denoise_cancellable(noisy, mode, &AtomicBool::new(false))
     }
 
     /// The same; cancelled soon after `cancel` becomes true.
+    ///
+    /// # Errors
+    /// [`LibraryError::Cancelled`] if so; if the library fails.
     pub fn denoise_cancellable(
         &mut self,
         noisy: &Noisy,

@@ -262,10 +262,10 @@ impl Session {
         Ok(change)
     }
 
-    /// Refuses what does not fit, so that the old picture goes on.
+    /// Refuses a job that does not fit into memory, so that the old one continues.
     fn check_memory(&self, job: &Job) -> Result<(), SessionError> {
         let is_software_gpu = self.info.kind == EngineKind::Gpu && self.info.is_software;
-        // A film takes memory from its first sample on, and goes when another is begun.
+        // A film uses memory from its first sample on, and is freed when another starts.
         let is_in_use = self.engine.schedule().pixel_samples() > 0;
         let old = self.job.as_deref().filter(|_| is_in_use);
         let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
@@ -273,7 +273,7 @@ impl Session {
         Ok(memory::check(job, is_software_gpu, allowed)?)
     }
 
-    /// Restarts the engine with a job; after an error it goes on with the one that it had.
+    /// Restarts the engine with a job; after an error it continues with the old one.
     fn start(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         match &mut self.workshop {
             Some(workshop) => workshop.begin(&job, &mut self.engine)?,
@@ -290,10 +290,11 @@ impl Session {
         (self.render_time, self.step_time, self.fallback_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
-    /// Renders for about `budget`. After an error of the engine the picture is done as it is, until something is submitted.
+    /// Renders for about `budget`. After an engine error the render is done as it is, until the next submission.
     ///
     /// # Errors
-    /// If the GPU fails; [`Session::recover`] goes on all the same.
+    ///
+    /// If the GPU fails; [`Session::recover`] continues.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
         self.change_over()?;
         let outcome = self.render(budget);
@@ -304,8 +305,8 @@ impl Session {
         outcome
     }
 
-    /// Samples a second of software Vulkan and, on the same picture, of the processor that stood in for it while a kernel
-    /// was compiled on its cores; where it was found to be the faster one, and both have rendered long enough to tell.
+    /// Rates in samples per second of software Vulkan and of the CPU fallback on the same image, which rendered while a
+    /// kernel was compiled on its cores. `None` unless the CPU engine is faster and both have rendered long enough.
     fn rates(&self) -> Option<[f64; 2]> {
         let is_of_interest = self.is_automatic && self.info.is_software && self.device().is_some();
         let seconds = self.engine_seconds() - self.fallback_seconds;
@@ -347,7 +348,7 @@ impl Session {
         Ok(self.progress())
     }
 
-    /// Sets goals where those in force have been reached or given up.
+    /// Sets new goals if the current ones have been reached or dropped.
     fn plan(&mut self) -> Result<(), SessionError> {
         let Some(document) = &self.document else { return Ok(()) };
         let goals = &self.convergence.goals;
@@ -367,7 +368,7 @@ impl Session {
         Ok(())
     }
 
-    /// Looks at the error where something was rendered since it was last looked at.
+    /// Measures the error if there are new samples since the last measurement.
     fn measure(&mut self) -> Result<(), SessionError> {
         if !self.convergence.is_stale(self.engine.schedule()) {
             return Ok(());
@@ -391,7 +392,7 @@ impl Session {
         self.fallback_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
     }
 
-    /// How far the render has come.
+    /// Progress of the render.
     pub fn progress(&self) -> Progress {
         let schedule = self.engine.schedule();
         let settings = self.document.as_ref().map(|document| document.render);
@@ -412,7 +413,7 @@ impl Session {
             aims_at_denoised: self.shows_nearer(),
             ..Progress::default()
         };
-        // Where tiles rest, one may have all while others lack samples of the round.
+        // With pausing tiles, one may be complete while others lack samples of the round.
         let is_even = settings.is_none_or(|render| !render.is_adaptive());
         let has_all = progress.samples_per_pixel >= progress.samples_wanted && (is_even || self.is_between_rounds());
         let has_least = || settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.least_samples());
@@ -439,17 +440,17 @@ impl Session {
         Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
     }
 
-    /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
+    /// Sets the denoised image's error: a noise target applies to the displayed image.
     pub fn set_denoised_error(&mut self, error: Distance) {
         self.denoised = Some(error);
     }
 
-    /// True where every tile has the samples of its round: how many is no matter of time on the CPU.
+    /// True if every tile has the samples of its round; on the CPU their number does not depend on time.
     pub fn is_between_rounds(&self) -> bool {
         self.engine.schedule().is_at_goal()
     }
 
-    /// True where the error of the denoised picture is to be looked at before rendering goes on.
+    /// True if rendering waits for the denoised image's error.
     fn awaits_denoised(&self) -> bool {
         let has_aim = self
             .document
@@ -458,7 +459,7 @@ impl Session {
         has_aim && self.shows_nearer() && self.is_between_rounds()
     }
 
-    /// Whether samples or the denoised picture are shown, whichever is nearer to the truth.
+    /// Whether the display blends samples and denoised image by error (`auto`).
     fn shows_nearer(&self) -> bool {
         let document = self.document.as_ref();
         document.is_some_and(|document| document.view.denoise == Denoise::Auto)

@@ -293,11 +293,17 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl Worker {
     /// Starts the thread, which opens the engine and calls `repaint` when there is something new to show.
+    ///
+    /// # Errors
+    /// If no thread can be started.
     pub fn spawn(choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         Self::spawn_with(choice, Assets::default(), repaint)
     }
 
     /// Starts another worker that shares models and environments with this one.
+    ///
+    /// # Errors
+    /// If no thread can be started.
     pub fn spawn_beside(&self, choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         Self::spawn_with(choice, self.assets.clone(), repaint)
     }
