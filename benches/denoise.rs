@@ -225,7 +225,7 @@ fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> 
 }
 
 fn finish(session: &mut Session, document: &Document) -> Result<Film, Failure> {
-    session.forget();
+    session.reset();
     session.submit(document)?;
     while !session.step(Duration::from_millis(100))?.is_done {}
     Ok(session.film()?.clone())
@@ -367,7 +367,7 @@ fn guides_cost(session: &mut Session, scenes: &[(&str, Document)], is_quick: boo
         (document.render.width, document.render.height, document.render.samples) = (side, side, 16);
         let mut seconds = |denoise: Denoise, seed: u32| -> Result<f64, Failure> {
             (document.view.denoise, document.render.seed) = (denoise, seed);
-            session.forget();
+            session.reset();
             session.submit(&document)?;
             let begun = Instant::now();
             while !session.step(Duration::from_secs(10))?.is_done {}

@@ -122,7 +122,7 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
 }
 
 fn finish(session: &mut Session, document: &Document) -> Result<(Film, Progress), Failure> {
-    session.forget();
+    session.reset();
     session.submit(document)?;
     while !session.step(Duration::from_millis(100))?.is_done {}
     let progress = session.progress();

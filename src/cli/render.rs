@@ -243,7 +243,7 @@ fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
-    goes_on: &dyn Fn() -> bool,
+    keep_going: &dyn Fn() -> bool,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
@@ -253,7 +253,7 @@ fn step_to_end(
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
-        goes_on()
+        keep_going()
     };
     let mut attendant = Attendant::new(document);
     let ended = to_end::step_to_end(session, engine, document, &mut attendant, &mut show_progress)?;

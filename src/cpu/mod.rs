@@ -86,7 +86,7 @@ impl CpuEngine {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
         let mut waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| None).collect();
-        self.schedule.aim(goals);
+        self.schedule.set_goals(goals);
         let start = Instant::now();
         loop {
             let left = budget.saturating_sub(start.elapsed());

@@ -77,7 +77,7 @@ mod tests {
     fn longest(budget: &mut Budget, rate: f64, latency_s: f64, ratio: f64) -> (Duration, Duration, usize) {
         let mut schedule = Schedule::new(960, 540);
         let grid = schedule.grid();
-        schedule.aim(&vec![4; grid.tiles()]);
+        schedule.set_goals(&vec![4; grid.tiles()]);
         let (mut first, mut longest, mut count) = (Duration::ZERO, Duration::ZERO, 0);
         loop {
             let limits = SliceLimits {

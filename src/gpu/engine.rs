@@ -150,7 +150,7 @@ impl GpuEngine {
     ///
     /// If the device fails.
     pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
-        self.schedule.aim(goals);
+        self.schedule.set_goals(goals);
         let start = Instant::now();
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
@@ -231,7 +231,7 @@ impl GpuEngine {
         for band in resources.sums.bands() {
             for first in (0..band.pixels).step_by(READ_PIXELS) {
                 let part = first..(first + READ_PIXELS).min(band.pixels);
-                take_over_band(&self.gpu, &mut self.film, band, part)?;
+                merge_band(&self.gpu, &mut self.film, band, part)?;
             }
         }
         resources.sums.clear(&self.gpu);
@@ -267,13 +267,13 @@ impl GpuEngine {
 }
 
 /// Merges the GPU's sums of some pixels of a band into the film.
-fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
+fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
     let [colors, statistics, guides] = &band.buffers;
     let colors: Vec<PixelColors> = gpu.read_part(colors, part.clone())?;
     let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
     let first = band.first_row as usize * film.width as usize + part.start;
     for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(&statistics)) {
-        take_over(film, pixel, colors, statistics);
+        merge_pixel(film, pixel, colors, statistics);
     }
     if film.extras().guides {
         let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
@@ -289,7 +289,7 @@ fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usi
 }
 
 /// Merges the GPU's sums of a pixel into the film.
-fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
+fn merge_pixel(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
     let [red, green, blue, coverage] = colors.all.map(f64::from);
     let [luminance_squared, odd_luminance_squared] = statistics.luminance_squared.map(f64::from);
     let [kept, dropped] = statistics.kept_dropped;

@@ -183,7 +183,7 @@ impl Schedule {
     }
 
     /// Sets how many samples a pixel of each tile is to have; one number a tile.
-    pub fn aim(&mut self, goals: &[u32]) {
+    pub fn set_goals(&mut self, goals: &[u32]) {
         self.goals.clear();
         self.goals.extend_from_slice(goals);
         self.goals.resize(self.samples.len(), 0);
@@ -301,7 +301,7 @@ mod tests {
     fn every_tile_gets_what_it_lacks_and_nothing_twice() {
         let mut schedule = Schedule::new(20, 10);
         let goals = [5, 0, 3, 5, 5, 1];
-        schedule.aim(&goals);
+        schedule.set_goals(&goals);
         let mut had = [0_u32; 6];
         let mut completed = 0;
         // No more than two tiles at a time, so that passes are cut.
@@ -327,7 +327,7 @@ mod tests {
         assert!(schedule.is_at_goal());
         assert_eq!(schedule.pixel_samples(), 64 * 5 + 32 * 3 + 16 * (5 + 5) + 8);
         // A tile that was left behind catches up.
-        schedule.aim(&[5; 6]);
+        schedule.set_goals(&[5; 6]);
         assert!(!schedule.is_at_goal());
         let all = SliceLimits {
             pass_samples: [1, 8],
@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn a_pass_has_its_least_samples_however_little_is_affordable() {
         let mut schedule = Schedule::new(20, 10);
-        schedule.aim(&[6; 6]);
+        schedule.set_goals(&[6; 6]);
         let limits = SliceLimits {
             pass_samples: [4, 8],
             tiles: [1, 2],

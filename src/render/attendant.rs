@@ -45,7 +45,7 @@ impl Attendant {
     /// If the GPU fails.
     pub fn attend(&mut self, session: &mut Session, progress: &Progress) -> Result<(), SessionError> {
         let is_due = progress.noise_wanted.is_some()
-            && progress.aims_at_denoised
+            && progress.targets_denoised
             && progress.mean_samples >= self.next_samples.max(2.0)
             && session.is_between_rounds()
             && !progress.is_done;

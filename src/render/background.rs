@@ -33,12 +33,12 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Handle through which the work reports.
-pub struct Desk<'a, Q, A> {
+pub struct Responder<'a, Q, A> {
     shared: &'a Shared<Q, A>,
     repaint: &'a dyn Fn(),
 }
 
-impl<Q, A> Desk<'_, Q, A> {
+impl<Q, A> Responder<'_, Q, A> {
     /// Shows an answer, which may be followed by a better one.
     pub fn publish(&self, answer: A) {
         *lock(&self.shared.answer) = Some(answer);
@@ -46,7 +46,7 @@ impl<Q, A> Desk<'_, Q, A> {
     }
 
     /// Waits while `hold` is set. Returns false once superseded.
-    pub fn may_go_on(&self, hold: &AtomicBool) -> bool {
+    pub fn wait_while_held(&self, hold: &AtomicBool) -> bool {
         while hold.load(Ordering::Relaxed) && !self.is_superseded() {
             std::thread::sleep(HOLD_STEP);
         }
@@ -68,7 +68,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
     pub fn spawn(
         name: &str,
         repaint: impl Fn() + Send + 'static,
-        mut work: impl FnMut(Q, &Desk<'_, Q, A>) + Send + 'static,
+        mut work: impl FnMut(Q, &Responder<'_, Q, A>) + Send + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
             orders: Mutex::new(Orders {
@@ -84,13 +84,13 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
             while let Some(query) = next(&of_thread) {
-                let desk = Desk {
+                let responder = Responder {
                     shared: &of_thread,
                     repaint: &repaint,
                 };
                 *lock(&of_thread.failure) = None;
                 let _at_work = super::quiet::at_work();
-                if let Err(why) = caught(|| work(query, &desk)) {
+                if let Err(why) = caught(|| work(query, &responder)) {
                     *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
                 }
                 // Free again before the window looks.
@@ -165,9 +165,9 @@ mod tests {
 
     #[test]
     fn a_panic_is_told_and_leaves_the_thread_free() {
-        let work = |query: u32, desk: &Desk<'_, u32, u32>| {
+        let work = |query: u32, responder: &Responder<'_, u32, u32>| {
             assert!(query != 2, "two, on purpose");
-            desk.publish(query);
+            responder.publish(query);
         };
         let background = Background::spawn("failing", || {}, work).expect("a thread");
         background.ask(1);

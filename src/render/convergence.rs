@@ -15,7 +15,7 @@ const LOOK_SAMPLES: f64 = 0.25;
 /// measurement's cost.
 const GROWTH_WATCHED: f64 = 1.1;
 const GROWTH_MIN: [f64; 2] = [1.02, 1.1];
-const GROWTH_AIMED: f64 = 1.5;
+const GROWTH_TARGETED: f64 = 1.5;
 const GROWTH_ADAPTIVE: f64 = 1.25;
 /// Largest growth after the first measurement, because cold caches make the first times unreliable.
 const GROWTH_COLD: f64 = 8.0;
@@ -51,7 +51,7 @@ pub(super) struct Convergence {
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
     /// Time of a measurement with planning in seconds: the minimum so far, because other work may disturb it.
-    look_seconds: Option<f64>,
+    measure_seconds: Option<f64>,
     plan_seconds: Option<f64>,
     /// Total time of measurements and planning, in seconds.
     pub(super) total_seconds: f64,
@@ -86,7 +86,7 @@ impl Convergence {
     /// Records how long estimating the error took.
     pub(super) fn looked(&mut self, seconds: f64) {
         self.total_seconds += seconds;
-        self.look_seconds = lesser(self.look_seconds, seconds);
+        self.measure_seconds = lesser(self.measure_seconds, seconds);
     }
 
     /// Records how long setting the goals took.
@@ -115,11 +115,13 @@ impl Convergence {
     /// Growth of samples in a round that is long enough for its measurement to stay within its share of time.
     fn paced(&self, schedule: &Schedule, settings: &RenderSettings, pacing: Pacing) -> f64 {
         let look = match pacing.engine_seconds {
-            Some(seconds) => (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9),
+            Some(seconds) => {
+                (self.measure_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9)
+            }
             None => LOOK_SAMPLES / rendered_samples(schedule, settings).max(1.0),
         };
         let most = match (pacing.is_denoised && settings.noise.is_some(), self.history.len()) {
-            (true, _) => GROWTH_AIMED,
+            (true, _) => GROWTH_TARGETED,
             (false, 0 | 1) => GROWTH_COLD,
             (false, _) => f64::INFINITY,
         };
@@ -155,8 +157,8 @@ impl Convergence {
         let samples = schedule.samples();
         let most = samples.iter().copied().max().unwrap_or(0);
         let least = settings.least_samples();
-        let is_aimed = settings.noise.is_some() || settings.is_adaptive();
-        if is_aimed && fewest_samples(schedule, settings) < least {
+        let has_target = settings.noise.is_some() || settings.is_adaptive();
+        if has_target && fewest_samples(schedule, settings) < least {
             self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
             return;
         }
@@ -170,7 +172,7 @@ impl Convergence {
         if let Some(film) = film.filter(|_| settings.is_adaptive()) {
             let round = Round {
                 growth: [growth_min, paced.max(GROWTH_ADAPTIVE)],
-                noise: settings.noise.map(|wanted| wanted * self.doubt()),
+                noise: settings.noise.map(|target_noise| target_noise * self.doubt()),
                 samples_max: settings.samples,
                 region: settings.region,
             };
@@ -179,9 +181,9 @@ impl Convergence {
         }
         let growth = match (settings.noise, self.noise()) {
             // The error falls as 1/√n; rather a little short of the target than beyond it.
-            (Some(wanted), Some(noise)) => {
-                let aim = wanted * self.doubt();
-                (noise.relative / aim).powi(2).min(paced.max(GROWTH_AIMED))
+            (Some(target_noise), Some(noise)) => {
+                let target = target_noise * self.doubt();
+                (noise.relative / target).powi(2).min(paced.max(GROWTH_TARGETED))
             }
             _ => paced.max(GROWTH_WATCHED),
         };
@@ -236,7 +238,7 @@ mod tests {
             convergence.next_round(None, &schedule, &settings, COUNTED);
             assert_eq!(convergence.goals, [goal; 2]);
         }
-        schedule.aim(&[2; 2]);
+        schedule.set_goals(&[2; 2]);
         let limits = SliceLimits {
             pass_samples: [2; 2],
             tiles: [2; 2],

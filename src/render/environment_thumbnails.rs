@@ -43,9 +43,9 @@ pub fn spawn_environment_thumbnails(
     repaint: impl Fn() + Send + 'static,
 ) -> io::Result<EnvironmentThumbnailWorker> {
     let mut made: HashMap<EnvironmentSource, (u64, EnvironmentThumbnail)> = HashMap::new();
-    Background::spawn("environments", repaint, move |queue: Vec<Wanted>, desk| {
+    Background::spawn("environments", repaint, move |queue: Vec<Wanted>, responder| {
         for wanted in queue {
-            if !desk.may_go_on(&hold) {
+            if !responder.wait_while_held(&hold) {
                 return;
             }
             let key = key(&wanted.source);
@@ -68,7 +68,7 @@ pub fn spawn_environment_thumbnails(
             let pictures = made
                 .iter()
                 .map(|(source, (_, picture))| (source.clone(), picture.clone()));
-            desk.publish(Arc::new(pictures.collect()));
+            responder.publish(Arc::new(pictures.collect()));
         }
     })
 }

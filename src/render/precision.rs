@@ -19,9 +19,9 @@ pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
 /// # Errors
 /// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
-    Background::spawn("precision", repaint, |job: Arc<Job>, desk| {
-        if let Some(map) = precision(&job, map_size(job.settings.image_size), || desk.is_superseded()) {
-            desk.publish(Arc::new(map));
+    Background::spawn("precision", repaint, |job: Arc<Job>, responder| {
+        if let Some(map) = precision(&job, map_size(job.settings.image_size), || responder.is_superseded()) {
+            responder.publish(Arc::new(map));
         }
     })
 }

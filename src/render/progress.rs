@@ -39,7 +39,7 @@ pub struct Progress {
     /// Estimated error of the denoised image, see [`Session::set_denoised_error`](super::Session::set_denoised_error).
     pub denoised: Option<Distance>,
     /// True if the target also applies to the denoised image's error, if lower.
-    pub aims_at_denoised: bool,
+    pub targets_denoised: bool,
     /// True while the CPU engine renders because the GPU's kernel is being compiled.
     pub is_fallback: bool,
     /// Compile time of the latest kernel in the background, in seconds.
@@ -53,14 +53,14 @@ pub struct Progress {
 impl Progress {
     /// Whether the target error is reached.
     pub fn is_converged(&self) -> bool {
-        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        let pair = self.stop_error().zip(self.noise_wanted);
         pair.is_some_and(|(error, wanted)| error <= wanted)
     }
 
     /// Error used for the stop criterion: raw, or denoised if enabled and lower.
-    fn error_aimed_at(&self) -> Option<f64> {
+    fn stop_error(&self) -> Option<f64> {
         let noisy = self.noise.map(|noise| noise.relative);
-        let denoised = self.denoised.filter(|_| self.aims_at_denoised).map(|error| error.value);
+        let denoised = self.denoised.filter(|_| self.targets_denoised).map(|error| error.value);
         noisy.into_iter().chain(denoised).reduce(f64::min)
     }
 
@@ -69,7 +69,7 @@ impl Progress {
         let by_samples = f64::from(self.samples_per_pixel) / f64::from(self.samples_wanted.max(1));
         let by_time = time_limit_s.map_or(0.0, |limit| self.render_seconds / limit);
         // The time to a noise level is proportional to its inverse square.
-        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        let pair = self.stop_error().zip(self.noise_wanted);
         let by_noise = pair.map_or(0.0, |(error, wanted)| (wanted / error.max(1e-30)).powi(2));
         by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }

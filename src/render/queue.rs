@@ -133,7 +133,7 @@ impl Shared {
     }
 
     /// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
-    fn goes_on(&self, id: u64, share: f64) -> bool {
+    fn report(&self, id: u64, share: f64) -> bool {
         let mut book = self.book();
         book.set(id, State::Rendering(share));
         if book.gives_way {
@@ -180,14 +180,14 @@ impl Queue {
             while let Some((id, task, engine)) = of_thread.next() {
                 repaint();
                 let _at_work = quiet::at_work();
-                let mut go_on = |share: f64| {
-                    let goes_on = of_thread.goes_on(id, share);
+                let mut on_progress = |share: f64| {
+                    let continues = of_thread.report(id, share);
                     repaint();
-                    goes_on
+                    continues
                 };
                 let rendered = caught(|| {
                     let session = opened(&mut session, engine, &assets)?;
-                    render(session, engine, &task, &mut go_on)
+                    render(session, engine, &task, &mut on_progress)
                 });
                 let ended = match rendered {
                     Ok(Ok(words)) => Ok(words),
@@ -339,13 +339,13 @@ fn render(
     session: &mut Session,
     engine: EngineChoice,
     task: &Task,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    on_progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<String, TaskError> {
     match task {
-        Task::Picture { document, path } => picture(session, engine, document, path, go_on),
+        Task::Picture { document, path } => picture(session, engine, document, path, on_progress),
         Task::Turntable(table) => {
             let outcome = turntable::render(session, engine, table, &mut |progress| {
-                go_on((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
+                on_progress((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
             })?;
             Ok(summary(table, outcome.frames))
         }
@@ -357,7 +357,7 @@ fn picture(
     engine: EngineChoice,
     document: &Document,
     path: &Path,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    on_progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<String, TaskError> {
     output::format_of(path)?;
     check_saving(path)?;
@@ -365,7 +365,7 @@ fn picture(
     let limit_s = document.render.time_s;
     let mut attendant = Attendant::new(document);
     let ended = step_to_end(session, engine, document, &mut attendant, &mut |progress| {
-        go_on(progress.share_done(limit_s))
+        on_progress(progress.share_done(limit_s))
     })?;
     if !ended.progress.is_done {
         return Ok(format!("{} cancelled: nothing was written", path.display()));

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::background::{Background, Desk};
+use super::background::{Background, Responder};
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
@@ -79,17 +79,17 @@ pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 /// If no thread can be started.
 pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
-    Background::spawn("samples", repaint, move |query: SampleQuery, desk| {
+    Background::spawn("samples", repaint, move |query: SampleQuery, responder| {
         match draw(&mut sampler, &query) {
             Ok(report) => {
-                desk.publish(Ok(Arc::new(report.clone())));
+                responder.publish(Ok(Arc::new(report.clone())));
                 if query.compare {
-                    compare(report, desk);
+                    compare(report, responder);
                 }
             }
             Err(why) => {
                 sampler = None;
-                desk.publish(Err(why));
+                responder.publish(Err(why));
             }
         }
     })
@@ -134,14 +134,14 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
 }
 
 /// Adds the lobes of equal look, one after the other, unless something else is asked for meanwhile.
-fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>) {
+fn compare(mut report: SampleReport, responder: &Responder<'_, SampleQuery, SampleAnswer>) {
     let request = report.query.request.clone();
     let target = &request.model;
     if !target.has_density() {
         return;
     }
     for lobe in [Lobe::Phong, Lobe::Ggx].into_iter().filter(|lobe| *lobe != target.lobe) {
-        if desk.is_superseded() {
+        if responder.is_superseded() {
             return;
         }
         // Matched at normal incidence, where the models are most comparable.
@@ -155,7 +155,7 @@ fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>)
             nearest,
             analytic: analytic(&matched, &request),
         });
-        desk.publish(Ok(Arc::new(report.clone())));
+        responder.publish(Ok(Arc::new(report.clone())));
     }
 }
 

@@ -38,9 +38,9 @@ pub struct SeenMap {
 /// # Errors
 /// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
-    Background::spawn("outlines", repaint, |job: Arc<Job>, desk| {
-        if let Some(map) = seen_map(&job, || desk.is_superseded()) {
-            desk.publish(Arc::new(map));
+    Background::spawn("outlines", repaint, |job: Arc<Job>, responder| {
+        if let Some(map) = seen_map(&job, || responder.is_superseded()) {
+            responder.publish(Arc::new(map));
         }
     })
 }

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::attendant::Attendant;
-use super::background::{Background, Desk};
+use super::background::{Background, Responder};
 use super::denoise::Library;
 use super::display::display;
 use super::looks::ball;
@@ -63,18 +63,19 @@ pub fn spawn_thumbnails(
 ) -> io::Result<ThumbnailWorker> {
     let mut studio: Option<Studio> = None;
     let mut made: HashMap<u64, Thumbnail> = HashMap::new();
-    Background::spawn("thumbnails", repaint, move |materials, desk| {
+    Background::spawn("thumbnails", repaint, move |materials, responder| {
         for material in materials {
             let key = key(&material);
             if made.contains_key(&key) {
                 continue;
             }
             let path = folder.join(format!("{key:016x}.png"));
-            let picture = picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, desk));
+            let picture =
+                picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, responder));
             match picture {
                 Ok(Some(pixels)) => {
                     made.insert(key, Arc::new(pixels));
-                    desk.publish(Arc::new(made.clone()));
+                    responder.publish(Arc::new(made.clone()));
                 }
                 Ok(None) => return,
                 Err(error) => log::warn!("no small picture of {}: {error}", material.name),
@@ -116,9 +117,9 @@ fn make<A>(
     studio: &mut Option<Studio>,
     material: &MaterialSettings,
     hold: &AtomicBool,
-    desk: &Desk<'_, Vec<MaterialSettings>, A>,
+    responder: &Responder<'_, Vec<MaterialSettings>, A>,
 ) -> Result<Option<Vec<u8>>, SessionError> {
-    if !desk.may_go_on(hold) {
+    if !responder.wait_while_held(hold) {
         return Ok(None);
     }
     let document = document(material);
@@ -131,7 +132,7 @@ fn make<A>(
     };
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {
-        if !desk.may_go_on(hold) {
+        if !responder.wait_while_held(hold) {
             return Ok(None);
         }
     }

@@ -32,7 +32,7 @@ pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) 
 }
 
 /// Steps until the document that was submitted is done, falling back as [`submit`] does, and denoises the picture where
-/// that is asked for. `go_on` receives the progress after every step and stops the render by returning `false`.
+/// that is asked for. `on_progress` receives the progress after every step and stops the render by returning `false`.
 ///
 /// # Errors
 /// What the engine says.
@@ -41,7 +41,7 @@ pub fn step_to_end(
     engine: EngineChoice,
     document: &Document,
     attendant: &mut Attendant,
-    go_on: &mut dyn FnMut(&Progress) -> bool,
+    on_progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Ended, SessionError> {
     loop {
         // Reads the GPU's sums back: if that fails, the render can still be repeated.
@@ -54,7 +54,7 @@ pub fn step_to_end(
         or_fall_back(stepped, session, engine, document)?;
         attendant.attend(session, &session.progress())?;
         let progress = session.progress();
-        let is_stopped = !go_on(&progress);
+        let is_stopped = !on_progress(&progress);
         if progress.is_done {
             let denoised = attendant.finish(session)?;
             let progress = session.progress();

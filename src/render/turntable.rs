@@ -95,7 +95,7 @@ impl Turntable {
     }
 }
 
-/// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` receives the progress after
+/// Renders the frames in order, falling back to another engine as [`submit`] does. `on_progress` receives the progress after
 /// every step, and stops the whole by `false`: pictures that were written stay, of a video what
 /// [`Turntable::keeps_part`] says.
 ///
@@ -105,7 +105,7 @@ pub fn render(
     session: &mut Session,
     engine: EngineChoice,
     table: &Turntable,
-    go_on: &mut dyn FnMut(TurntableProgress) -> bool,
+    on_progress: &mut dyn FnMut(TurntableProgress) -> bool,
 ) -> Result<TurntableOutcome, TurntableError> {
     let mut video = table.begin()?;
     let mut outcome = TurntableOutcome::default();
@@ -121,7 +121,7 @@ pub fn render(
         let mut is_stopped = false;
         let ended = step_to_end(session, engine, &document, &mut attendant, &mut |progress| {
             let share = progress.share_done(document.render.time_s);
-            is_stopped = !go_on(TurntableProgress { done: frame, share });
+            is_stopped = !on_progress(TurntableProgress { done: frame, share });
             !is_stopped
         })?;
         if !ended.progress.is_done {

@@ -302,11 +302,11 @@ impl Profile {
         let on_axis = place.x.abs() < 1e-12;
         let place = if on_axis { dvec2(0.0, place.y) } else { place };
         let place = if step == 0 { self.end } else { place };
-        let goes_on = self
+        let continues = self
             .points
             .last()
             .is_some_and(|last| last.normal.dot(normal) > 1.0 - 1e-9);
-        if step > 0 || !goes_on {
+        if step > 0 || !continues {
             self.points.push(ProfilePoint { place, normal });
         }
         self.end = place;

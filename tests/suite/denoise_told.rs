@@ -56,7 +56,7 @@ fn textured_plane(folder: &Folder, scale: f32) -> Document {
 }
 
 fn finish(session: &mut Session, document: &Document) -> Film {
-    session.forget();
+    session.reset();
     session.submit(document).unwrap();
     while !session.step(std::time::Duration::from_millis(100)).unwrap().is_done {}
     session.film().unwrap().clone()

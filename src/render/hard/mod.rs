@@ -64,7 +64,7 @@ impl HardCase {
     /// Where the engine fails, a file of the case can't be written, or the stage is stopped.
     pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
         let begun = Instant::now();
-        stage.go_on()?;
+        stage.check_stop()?;
         stage.take_picture();
         let value = (self.find)(stage)?;
         Ok(HardRow {

@@ -94,7 +94,7 @@ impl Stage {
     ///
     /// # Errors
     /// [`HardError::Stopped`] where they are to end.
-    pub fn go_on(&self) -> Result<(), HardError> {
+    pub fn check_stop(&self) -> Result<(), HardError> {
         match self.stop.load(Ordering::Relaxed) {
             true => Err(HardError::Stopped),
             false => Ok(()),
@@ -131,11 +131,11 @@ impl Stage {
             // One kernel for all pictures: compiling one for each takes longer than they do.
             document.render.effects = EffectSwitches::all_on();
         }
-        self.go_on()?;
-        self.session.forget();
+        self.check_stop()?;
+        self.session.reset();
         self.session.submit(&document)?;
         while !self.session.step(SLICE)?.is_done {
-            self.go_on()?;
+            self.check_stop()?;
         }
         let film = self.session.film()?.clone();
         self.picture = Some(film.image());

@@ -134,7 +134,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     let mut oracle = CpuEngine::default();
     oracle.submit(job);
     while oracle.samples_per_pixel() < samples {
-        stage.go_on()?;
+        stage.check_stop()?;
         oracle.step_double(SLICE, samples);
     }
     let expected = oracle.film();

@@ -165,7 +165,7 @@ impl Session {
     /// Sets the CPU's shading precision from the next submission on; the GPU stays in f32.
     pub fn set_precision(&mut self, precision: Precision) {
         self.precision = precision;
-        self.forget();
+        self.reset();
     }
 
     /// Keeps guides from the next submission on, also without denoising, because layers may be requested. `why` is the
@@ -194,7 +194,7 @@ impl Session {
     }
 
     /// Discards the render: the next submission starts over even with the same document.
-    pub fn forget(&mut self) {
+    pub fn reset(&mut self) {
         self.document = None;
     }
 
@@ -209,7 +209,7 @@ impl Session {
         let reloaded = self
             .assets
             .reload(&document.model, &document.import, environment, encoding)?;
-        self.forget();
+        self.reset();
         Ok(reloaded)
     }
 
@@ -410,7 +410,7 @@ impl Session {
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),
             denoised: self.denoised,
-            aims_at_denoised: self.shows_nearer(),
+            targets_denoised: self.shows_nearer(),
             ..Progress::default()
         };
         // With pausing tiles, one may be complete while others lack samples of the round.
@@ -452,11 +452,11 @@ impl Session {
 
     /// True if rendering waits for the denoised image's error.
     fn awaits_denoised(&self) -> bool {
-        let has_aim = self
+        let has_target = self
             .document
             .as_ref()
             .is_some_and(|document| document.render.noise.is_some());
-        has_aim && self.shows_nearer() && self.is_between_rounds()
+        has_target && self.shows_nearer() && self.is_between_rounds()
     }
 
     /// Whether the display blends samples and denoised image by error (`auto`).

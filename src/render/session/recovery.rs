@@ -25,7 +25,7 @@ impl Session {
         let mut cause = error.clone();
         loop {
             self.losses += 1;
-            let how = self.go_on_after(&cause);
+            let how = self.continue_after(&cause);
             let Some(job) = self.job.clone() else {
                 return format!("{why}; {how}");
             };
@@ -33,7 +33,7 @@ impl Session {
             match self.start(job) {
                 Ok(()) => {
                     self.render_time = render_time;
-                    self.take_back(kept);
+                    self.restore_samples(kept);
                     return format!("{why}; {how}");
                 }
                 Err(again) => cause = again,
@@ -42,8 +42,8 @@ impl Session {
     }
 
     /// Opens another engine. Returns a message.
-    fn go_on_after(&mut self, cause: &GpuError) -> String {
-        let may_go_on = cause.is_lost() && self.losses <= REPLACEMENTS;
+    fn continue_after(&mut self, cause: &GpuError) -> String {
+        let may_reopen = cause.is_lost() && self.losses <= REPLACEMENTS;
         let kind = if self.info.is_software {
             AdapterKind::Software
         } else {
@@ -51,7 +51,7 @@ impl Session {
         };
         let is_fluid = self.workshop.take().is_some();
         let traversal = self.info.traversal;
-        let opened = may_go_on.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
+        let opened = may_reopen.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
         match opened {
             Some(Ok(engine)) if is_fluid => self.workshop = Some(Workshop::new(engine)),
             Some(Ok(engine)) => self.engine = Engine::Gpu(Box::new(engine)),
@@ -70,7 +70,7 @@ impl Session {
     }
 
     /// Passes the samples so far to the engine, if they are of the same image.
-    fn take_back(&mut self, kept: Option<(Film, Schedule)>) {
+    fn restore_samples(&mut self, kept: Option<(Film, Schedule)>) {
         let Some((film, schedule)) = kept else { return };
         // The first job has no samples yet.
         if schedule.grid() != self.engine.schedule().grid() {

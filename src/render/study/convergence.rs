@@ -119,8 +119,8 @@ pub fn convergence(
         seconds: reference_seconds,
     };
     let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
-    let mut go_on = |share: f64| steps.report("Reference", share);
-    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut go_on)?;
+    let mut on_progress = |share: f64| steps.report("Reference", share);
+    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut on_progress)?;
     Ok(ConvergenceReport {
         machine: Machine::of(session.engine()),
         width: document.render.width,

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
 use crate::document::effect::{Effect, Switch};
@@ -163,7 +163,7 @@ struct Rival {
 pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
     let mut with = Session::open(options.engine)?;
     let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
-    let document = without_aim(document);
+    let document = without_target(document);
     warmed(&mut with, &document)?;
     let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());
     let rivals = rivals(&document, &plan);

@@ -118,7 +118,7 @@ impl Machine {
 }
 
 /// The same document without a target and without a region.
-fn without_aim(document: &Document) -> Document {
+fn without_target(document: &Document) -> Document {
     let mut document = document.clone();
     let render = &mut document.render;
     // A document that is adaptive because of its noise target stays adaptive.
@@ -132,7 +132,7 @@ fn without_aim(document: &Document) -> Document {
 fn warmed(session: &mut Session, document: &Document) -> Result<(), StudyError> {
     session.submit(document)?;
     session.step(Duration::from_millis(1))?;
-    session.forget();
+    session.reset();
     session.submit(document)?;
     Ok(())
 }

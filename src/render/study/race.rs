@@ -10,7 +10,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, Reference, ReferenceCache};
-use super::{Machine, Steps, StudyError, Watch, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
@@ -216,7 +216,7 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     let mut engine = options.engine;
     let mut lanes: Vec<Lane> = Vec::new();
     for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
-        let changed = without_aim(&technique.apply(document));
+        let changed = without_target(&technique.apply(document));
         let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
         if lanes.iter().any(is_there) {
             continue;
@@ -281,11 +281,11 @@ fn references_of(
             return Ok::<_, StudyError>(known.clone());
         }
         let what = format!("Reference: {what}");
-        let mut go_on = |share: f64| steps.report(what.clone(), 2.0 * share);
-        go_on(0.0)?;
+        let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
+        on_progress(0.0)?;
         let reference = options
             .cache
-            .reference(session, document, precision, effort, &mut go_on)?;
+            .reference(session, document, precision, effort, &mut on_progress)?;
         steps.finish(2.0);
         let converged = Arc::new(Converged {
             reference,
@@ -406,7 +406,7 @@ fn rerun(
     if !document.render.is_adaptive() {
         document.render.samples = samples.round() as u32;
     }
-    lane.session.forget();
+    lane.session.reset();
     lane.session.submit(&document)?;
     let mut step = Duration::from_millis(1);
     loop {

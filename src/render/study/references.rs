@@ -99,7 +99,7 @@ impl ReferenceCache {
         Self { limit_bytes, ..self }
     }
 
-    /// What a document converges to: kept, if it is exact enough or had the time that this one would have, else rendered by the session and kept. `go_on` is
+    /// What a document converges to: kept, if it is exact enough or had the time that this one would have, else rendered by the session and kept. `on_progress` is
     /// asked now and then, with the share of the time that has gone by.
     ///
     /// # Errors
@@ -110,7 +110,7 @@ impl ReferenceCache {
         document: &Document,
         precision: Precision,
         effort: Effort,
-        go_on: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+        on_progress: &mut dyn FnMut(f64) -> Result<(), StudyError>,
     ) -> Result<Reference, StudyError> {
         let key = Key::of(document, &Machine::of(session.engine()), precision);
         let path = self.folder.as_ref().map(|folder| folder.join(key.file_name()));
@@ -119,7 +119,7 @@ impl ReferenceCache {
         {
             return Ok(kept);
         }
-        let reference = render(session, document, precision, effort, go_on)?;
+        let reference = render(session, document, precision, effort, on_progress)?;
         if let (Some(path), Some(folder)) = (&path, &self.folder) {
             match write(path, &key, &reference) {
                 Ok(()) => shrink(folder, self.limit_bytes),
@@ -272,7 +272,7 @@ fn render(
     document: &Document,
     precision: Precision,
     effort: Effort,
-    go_on: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+    on_progress: &mut dyn FnMut(f64) -> Result<(), StudyError>,
 ) -> Result<Reference, StudyError> {
     let mut document = converged(document);
     document.render.seed = SEED;
@@ -284,7 +284,7 @@ fn render(
     session.submit(&document)?;
     loop {
         let progress = session.step(STEP)?;
-        go_on((progress.render_seconds / effort.seconds).min(1.0))?;
+        on_progress((progress.render_seconds / effort.seconds).min(1.0))?;
         // Both halves of every pixel need some samples.
         if progress.is_done && progress.mean_samples >= 4.0 {
             break;

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::document::Document;
 use crate::named::named;
 use crate::optics::vector::Vec3;
@@ -101,7 +101,7 @@ pub fn scaling(
     watch: &mut Watch<'_>,
 ) -> Result<ScalingReport, StudyError> {
     let mut session = Session::open(options.engine)?;
-    let document = without_aim(document);
+    let document = without_target(document);
     let cases: Vec<_> = Growing::ALL
         .iter()
         .copied()

@@ -27,7 +27,7 @@ pub(super) fn load(
         cube::unfolded(decode(source)?)
     };
     loading.step("the environment's distribution")?;
-    mend(&mut picture);
+    repair(&mut picture);
     let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
     environment.warnings = picture.warnings;
     Ok(environment)
@@ -47,7 +47,7 @@ fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
 }
 
 /// Replaces what is no radiance, makes the texels opaque, and says what was odd.
-fn mend(picture: &mut Picture) {
+fn repair(picture: &mut Picture) {
     let (mut not_a_number, mut negative, mut infinite) = (0_u64, 0_u64, 0_u64);
     let mut largest = 0.0_f32;
     for texel in &mut picture.texels {

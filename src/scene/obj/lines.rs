@@ -102,20 +102,20 @@ fn are_numbers(words: &[&str]) -> bool {
 /// Lines, those that end in `\` with the next one. A comment may end in a folder's name.
 fn joined(text: &str) -> Vec<String> {
     let mut lines = Vec::new();
-    let mut goes_on = false;
+    let mut continues = false;
     for line in text.lines() {
-        let (line, next_goes_on) = match line.trim_end().strip_suffix('\\') {
-            Some(start) if goes_on || !line.trim_start().starts_with('#') => (start, true),
+        let (line, next_continues) = match line.trim_end().strip_suffix('\\') {
+            Some(start) if continues || !line.trim_start().starts_with('#') => (start, true),
             _ => (line, false),
         };
         match lines.last_mut() {
-            Some(last) if goes_on => {
+            Some(last) if continues => {
                 String::push(last, ' ');
                 last.push_str(line);
             }
             _ => lines.push(line.to_owned()),
         }
-        goes_on = next_goes_on;
+        continues = next_continues;
     }
     lines
 }

@@ -107,7 +107,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
 /// The thread that runs the cases, apart from those that render.
 fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Standing>> {
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
+    let work = move |options: HardOptions, desk: &crate::render::background::Responder<'_, HardOptions, Standing>| {
         work_apart();
         run(&options, &stop, &|standing| desk.publish(standing));
     };

@@ -126,7 +126,7 @@ impl State<'_> {
         (0..orders.reloads).for_each(|_| self.reload());
         if orders.restart {
             self.guarded(|state| {
-                state.session()?.forget();
+                state.session()?.reset();
                 Ok(())
             });
             self.restart();
@@ -388,9 +388,9 @@ impl State<'_> {
     fn begin(&mut self, stage: Stage) -> bool {
         let document = stage.document();
         let engine = self.snapshot.engine.clone();
-        let is_taken = self.guarded(|state| state.hand_over(&document))
+        let is_taken = self.guarded(|state| state.submit_stage(&document))
             // The GPU failed: try again with the CPU engine.
-            || (self.snapshot.engine != engine && self.guarded(|state| state.hand_over(&document)));
+            || (self.snapshot.engine != engine && self.guarded(|state| state.submit_stage(&document)));
         if !is_taken {
             return false;
         }
@@ -405,7 +405,7 @@ impl State<'_> {
         true
     }
 
-    fn hand_over(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
+    fn submit_stage(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
         if self.is_new_model(document) {
             self.begin_loading(document.model.to_string());
             self.session()?.assets().model(&document.model, &document.import)?;
