@@ -27,7 +27,7 @@ use glossmith::render::worker::{Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Luma, Rgb};
 
 type Failure = Box<dyn std::error::Error>;
@@ -186,9 +186,9 @@ fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> 
         Ok(document)
     };
     let pictured = |document: &mut Document, target: TextureTarget, file: &Path, scale: f32| {
-        let texture = OwnTexture {
+        let texture = UserTexture {
             scale,
-            ..OwnTexture::of(file.to_owned())
+            ..UserTexture::of(file.to_owned())
         };
         document.materials[0].put_texture(target, texture);
     };

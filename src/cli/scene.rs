@@ -161,7 +161,7 @@ impl SceneArguments {
         if self.textures.is_empty() {
             return Ok(());
         }
-        for own in session.own_pictures(document)? {
+        for own in session.user_texture_files(document)? {
             if let Err(why) = own.picture
                 && files().any(|file| *file == own.file)
             {

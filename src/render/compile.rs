@@ -20,7 +20,7 @@ use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::medium::medium_at;
-use crate::scene::texture::{OwnPicture, Textures};
+use crate::scene::texture::{Textures, UserTextureFile};
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
@@ -66,11 +66,13 @@ fn textures_of(
 }
 
 /// Users' texture maps of a document's materials, readable or not.
-pub(super) fn own_pictures(document: &Document, assets: &Assets) -> Result<Vec<OwnPicture>, SessionError> {
+pub(super) fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, SessionError> {
     let document = &*without_what_is_off(document);
     let model = assets.model(&document.model, &document.import)?;
     let slots = slot_materials(document, model.slots.len());
-    Ok(textures_of(document, &slots[..model.slots.len()], assets)?.own.clone())
+    Ok(textures_of(document, &slots[..model.slots.len()], assets)?
+        .user_textures
+        .clone())
 }
 
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.

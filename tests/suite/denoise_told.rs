@@ -9,7 +9,7 @@ use glossmith::render::denoise::{Denoiser, Noisy};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Luma, Rgb, RgbImage};
 
 use super::gltf_builder::Folder;
@@ -47,9 +47,9 @@ fn plane() -> Document {
 /// Such a plane shows nothing but its squares: as many of the picture's as `scale` says lie on it.
 fn textured_plane(folder: &Folder, scale: f32) -> Document {
     let mut document = plane();
-    let texture = OwnTexture {
+    let texture = UserTexture {
         scale,
-        ..OwnTexture::of(squares(folder))
+        ..UserTexture::of(squares(folder))
     };
     document.materials[0].put_texture(TextureTarget::BaseColor, texture);
     document
@@ -171,7 +171,7 @@ fn guides_show_the_coat() {
     let mut document = plane();
     let bumps = folder.path("bumps.png");
     RgbImage::from_pixel(4, 4, Rgb([218, 128, 218])).save(&bumps).unwrap();
-    document.materials[0].put_texture(TextureTarget::Normal, OwnTexture::of(bumps));
+    document.materials[0].put_texture(TextureTarget::Normal, UserTexture::of(bumps));
     let coat = [
         "coat.weight=1",
         "coat.roughness=0.3",

@@ -21,7 +21,7 @@ use crate::document::{Denoise, Document};
 use crate::gpu::{GpuDevice, GpuError, Moment};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
-use crate::scene::texture::OwnPicture;
+use crate::scene::texture::UserTextureFile;
 
 /// Render time of both engines, in seconds, before their rates are compared.
 const RATE_SECONDS: f64 = 0.5;
@@ -189,8 +189,8 @@ impl Session {
     /// # Errors
     ///
     /// A model that cannot be loaded.
-    pub fn own_pictures(&self, document: &Document) -> Result<Vec<OwnPicture>, SessionError> {
-        compile::own_pictures(document, &self.assets)
+    pub fn user_texture_files(&self, document: &Document) -> Result<Vec<UserTextureFile>, SessionError> {
+        compile::user_texture_files(document, &self.assets)
     }
 
     /// Discards the render: the next submission starts over even with the same document.

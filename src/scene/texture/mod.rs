@@ -5,10 +5,10 @@
 //! codes as bits of f32: colours are decoded before filtering, by a look-up without rounding of its own.
 
 mod mean;
-mod own;
 mod pack;
 pub(super) mod scale;
 pub mod set;
+mod user;
 mod uses;
 
 use bytemuck::{Pod, Zeroable};
@@ -24,8 +24,8 @@ use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
 pub use mean::{TextureMean, mean_of_file, texture_mean};
-pub use own::{OwnTexture, TextureChannel, TextureProjection, TextureSpace, TextureTarget};
-pub use pack::{OwnPicture, Pack, Pictures, SlotTextures, Textures, WORDS_MAX, slots_with_coordinates};
+pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
+pub use user::{TextureChannel, TextureProjection, TextureSpace, TextureTarget, UserTexture};
 pub use uses::TextureAssignment;
 
 /// Wrap mode: repeat.

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::mean::{TextureMean, texture_mean};
-use super::own::TextureTarget;
 use super::scale::{fraction, halved};
-use super::uses::{SlotUses, TextureAssignment, Use, of_own, of_slot};
+use super::user::TextureTarget;
+use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::tone::linear_from_srgb;
@@ -27,7 +27,7 @@ pub type Pictures<'a> = &'a dyn Fn(&Path, bool) -> Result<Arc<Texture>, String>;
 
 /// A user's texture map, or the reason why it cannot be read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OwnPicture {
+pub struct UserTextureFile {
     /// File of the map.
     pub file: PathBuf,
     /// The map, or the error.
@@ -46,7 +46,7 @@ pub struct Textures {
     /// Warnings on reduced and missing maps, one line each.
     pub warnings: Vec<String>,
     /// Users' texture maps.
-    pub own: Vec<OwnPicture>,
+    pub user_textures: Vec<UserTextureFile>,
 }
 
 /// Textures of a slot, as indices into [`Textures::records`] or [`NO_TEXTURE`]. A map of one value is a constant instead.
@@ -122,7 +122,7 @@ fn vertex_flags(slot: &Slot) -> u32 {
 pub struct Pack {
     words: Arc<Vec<u32>>,
     pictures: Vec<Packed>,
-    own: Vec<Own>,
+    user_textures: Vec<PackedUserTexture>,
     /// Whether the triangles of each slot have texture coordinates.
     has_coordinates: Vec<bool>,
     warnings: Vec<String>,
@@ -130,11 +130,11 @@ pub struct Pack {
 
 /// A packed user's map.
 #[derive(Debug)]
-struct Own {
+struct PackedUserTexture {
     is_srgb: bool,
     /// Index among the packed maps, if readable.
     index: Option<usize>,
-    of: OwnPicture,
+    source: UserTextureFile,
 }
 
 /// A packed map.
@@ -164,13 +164,13 @@ impl Pack {
 
     fn within(model: &Model, assigned: &[TextureAssignment], read: Pictures<'_>, words_max: usize) -> Self {
         let mut warnings = Vec::new();
-        let mut own: Vec<Own> = Vec::new();
+        let mut user_textures: Vec<PackedUserTexture> = Vec::new();
         let mut count = model.textures.len();
         for TextureAssignment { target, texture, .. } in assigned {
             let is_srgb = texture.is_srgb(*target);
-            if own
+            if user_textures
                 .iter()
-                .any(|own| own.of.file == texture.file && own.is_srgb == is_srgb)
+                .any(|user| user.source.file == texture.file && user.is_srgb == is_srgb)
             {
                 continue;
             }
@@ -184,21 +184,24 @@ impl Pack {
             }
             let index = picture.is_ok().then_some(count);
             count += usize::from(picture.is_ok());
-            own.push(Own {
+            user_textures.push(PackedUserTexture {
                 is_srgb,
                 index,
-                of: OwnPicture {
+                source: UserTextureFile {
                     file: texture.file.clone(),
                     picture,
                 },
             });
         }
-        let read: Vec<Arc<Texture>> = own.iter().filter_map(|own| own.of.picture.clone().ok()).collect();
+        let read: Vec<Arc<Texture>> = user_textures
+            .iter()
+            .filter_map(|user| user.source.picture.clone().ok())
+            .collect();
         let all: Vec<&Texture> = model.textures.iter().chain(read.iter().map(Arc::as_ref)).collect();
         let mut pack = Self {
             words: Arc::default(),
             pictures: all.iter().map(|picture| Packed::of(picture)).collect(),
-            own,
+            user_textures,
             has_coordinates: slots_with_coordinates(model),
             warnings,
         };
@@ -229,9 +232,9 @@ impl Pack {
     }
 
     /// Index of a user's map.
-    fn own_picture(&self, file: &Path, is_srgb: bool) -> Option<usize> {
-        let is_it = |own: &&Own| own.is_srgb == is_srgb && own.of.file == file;
-        self.own.iter().find(is_it)?.index
+    fn user_texture_index(&self, file: &Path, is_srgb: bool) -> Option<usize> {
+        let is_it = |user: &&PackedUserTexture| user.is_srgb == is_srgb && user.source.file == file;
+        self.user_textures.iter().find(is_it)?.index
     }
 
     fn is_translucent(&self, picture: usize) -> bool {
@@ -249,18 +252,23 @@ impl Pack {
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
             if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = self.use_of_own(assignment);
+                slot[assignment.target as usize] = self.use_of_user_texture(assignment);
             }
         }
         uses
     }
 
     /// A use of a user's map; `None` if unreadable.
-    fn use_of_own(&self, assigned: &TextureAssignment) -> Option<Use> {
+    fn use_of_user_texture(&self, assigned: &TextureAssignment) -> Option<Use> {
         let (file, is_srgb) = assigned.picture();
-        let picture = self.own_picture(&file, is_srgb)?;
+        let picture = self.user_texture_index(&file, is_srgb)?;
         let has_coordinates = self.has_coordinates(assigned.slot);
-        Some(of_own(assigned, picture, self.is_translucent(picture), has_coordinates))
+        Some(of_user_texture(
+            assigned,
+            picture,
+            self.is_translucent(picture),
+            has_coordinates,
+        ))
     }
 
     /// Texture data for the same users' maps with any mapping.
@@ -270,7 +278,7 @@ impl Pack {
             words: self.words.clone(),
             slots: Vec::new(),
             warnings: self.warnings.clone(),
-            own: self.own.iter().map(|own| own.of.clone()).collect(),
+            user_textures: self.user_textures.iter().map(|user| user.source.clone()).collect(),
         };
         for (slot, uses) in model.slots.iter().zip(self.uses(model, assigned)) {
             let mut packed = SlotTextures {

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::own::{OwnTexture, TextureChannel, TextureTarget};
+use super::user::{TextureChannel, TextureTarget, UserTexture};
 use crate::scene::endings::is_picture;
 
 /// Meaning of a word in a file name.
@@ -89,7 +89,7 @@ fn is_packed(path: &Path) -> bool {
     meaning(path) == Some(Packed)
 }
 
-impl OwnTexture {
+impl UserTexture {
     /// Channel (0 to 3) of a scalar target. `has_alpha`: the map is translucent anywhere.
     pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
         match self.channel {
@@ -108,12 +108,12 @@ impl OwnTexture {
 }
 
 /// Targets according to a file name; empty if it has none.
-pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
-    let plain = || OwnTexture::of(path.to_owned());
+pub fn targets_of(path: &Path) -> Vec<(TextureTarget, UserTexture)> {
+    let plain = || UserTexture::of(path.to_owned());
     match meaning(path) {
         Some(Is(target)) => vec![(target, plain())],
         Some(IsInverted(target)) => {
-            let inverted = OwnTexture {
+            let inverted = UserTexture {
                 inverted: true,
                 ..plain()
             };
@@ -126,8 +126,8 @@ pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
 
 /// Assigns several maps to targets, one each; also returns the unassigned ones. Of two for the same target the first is
 /// used, but a normal map with green up is preferred to green down, and a map of one scalar to one of several.
-pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Vec<PathBuf>) {
-    let mut found: Vec<(TextureTarget, OwnTexture)> = Vec::new();
+pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, UserTexture)>, Vec<PathBuf>) {
+    let mut found: Vec<(TextureTarget, UserTexture)> = Vec::new();
     let mut in_order: Vec<&PathBuf> = pictures.iter().collect();
     let comes_late = |path: &Path| match meaning(path) {
         Some(IsInverted(_)) => 1,

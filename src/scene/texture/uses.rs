@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::own::{OwnTexture, TextureProjection, TextureTarget};
+use super::user::{TextureProjection, TextureTarget, UserTexture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
 use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
 use crate::scene::model::{AlphaMode, Filter, Slot, TextureRef, Wrap};
@@ -15,7 +15,7 @@ pub struct TextureAssignment {
     /// What it is put on.
     pub target: TextureTarget,
     /// The texture map.
-    pub texture: OwnTexture,
+    pub texture: UserTexture,
 }
 
 impl TextureAssignment {
@@ -99,7 +99,12 @@ fn wrap_flags(wrap: [Wrap; 2]) -> u32 {
 
 /// A use of a user's map with its index, whether it is translucent anywhere, and whether the slot's triangles have texture
 /// coordinates.
-pub(super) fn of_own(assigned: &TextureAssignment, picture: usize, is_translucent: bool, has_coordinates: bool) -> Use {
+pub(super) fn of_user_texture(
+    assigned: &TextureAssignment,
+    picture: usize,
+    is_translucent: bool,
+    has_coordinates: bool,
+) -> Use {
     let TextureAssignment { target, texture, .. } = assigned;
     let is_srgb = texture.is_srgb(*target);
     let channel = match target.is_number() {

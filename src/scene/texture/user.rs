@@ -70,7 +70,7 @@ impl TextureTarget {
 /// A user's texture map and its mapping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct OwnTexture {
+pub struct UserTexture {
     /// File of the texture map.
     pub file: PathBuf,
     /// Channel, for a scalar target.
@@ -93,7 +93,7 @@ pub struct OwnTexture {
     pub inverted: bool,
 }
 
-impl Default for OwnTexture {
+impl Default for UserTexture {
     fn default() -> Self {
         Self {
             file: PathBuf::new(),
@@ -110,7 +110,7 @@ impl Default for OwnTexture {
     }
 }
 
-impl OwnTexture {
+impl UserTexture {
     /// A texture map with default mapping.
     pub fn of(file: PathBuf) -> Self {
         Self {
