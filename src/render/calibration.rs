@@ -1,8 +1,8 @@
-//! Which of the engines, and which way for rays, is the fastest on this machine?
+//! Calibration: the fastest engine and traversal on this machine.
 //!
-//! Measured on a small picture of the default document while nothing else is at work, by turns, and remembered for this
-//! adapter, driver and version: without a hardware GPU the processor's engine and software Vulkan, and on any adapter that
-//! has ray queries those and our own traversal. Where pictures render at rates that say otherwise, it is measured again.
+//! Measured in interleaved trials on a small image of the default document while the process is idle, and stored per
+//! adapter, driver and version. Without a hardware GPU the candidates are the CPU engine and software Vulkan; on adapters
+//! with ray queries, those and our own traversal. If rates of real renders contradict the result, it is measured again.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

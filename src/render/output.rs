@@ -125,12 +125,12 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
         .ok_or_else(|| OutputError::Format { path: path.to_owned() })
 }
 
-/// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
-/// and the document itself inside. A denoised picture takes the samples' place; in an .exr file it stands beside them, as
-/// `denoised.R`, `.G`, `.B`, and so do layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`;
-/// `variance.Y`) and sums.
+/// Writes an image of a document in the format of the file extension. A .png has the document's exposure and tone curve, and
+/// contains the document. A denoised image replaces the samples; in an .exr file it is added as `denoised.R`, `.G`, `.B`,
+/// and so are layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`) and sums.
 ///
 /// # Errors
+///
 /// [`OutputError`] naming the file.
 pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result<(), OutputError> {
     let shown = rendered.denoised.unwrap_or(rendered.image);

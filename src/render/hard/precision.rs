@@ -166,7 +166,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
     Ok(error)
 }
 
-/// The relative error of an answer; nothing at a singularity.
+/// Relative error of an answer; 0 at a singularity.
 fn error(scene: &ProbeScene<'_>, question: &MaterialQuestion, answer: &Vec3<f32>) -> Option<f64> {
     relative_error(*answer, |moved| probe_material::<f64>(scene, question, moved))
 }

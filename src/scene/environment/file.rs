@@ -1,4 +1,4 @@
-//! Environments from files: which decoder, and what is mended afterwards.
+//! Environments from files: choice of the decoder, and repairs.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::{container, cube, display_referred, open_exr, radiance_hdr};
 use crate::scene::endings::{ending, is_picture};
 use crate::scene::loading::Loading;
 
-/// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.
+/// Loads an image of the whole sphere: a latitude-longitude or cube map in a file, or six faces in a folder.
 pub(super) fn load(
     path: &Path,
     encoding: EnvironmentEncoding,
@@ -33,7 +33,7 @@ pub(super) fn load(
     Ok(environment)
 }
 
-/// The picture in a file.
+/// Decodes a file.
 fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
@@ -46,7 +46,7 @@ fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
 }
 
-/// Replaces what is no radiance, makes the texels opaque, and says what was odd.
+/// Replaces invalid radiances, makes the texels opaque, and records warnings.
 fn repair(picture: &mut Picture) {
     let (mut not_a_number, mut negative, mut infinite) = (0_u64, 0_u64, 0_u64);
     let mut largest = 0.0_f32;
