@@ -47,8 +47,8 @@ pub struct Geometry {
     model_is_coarse: bool,
     /// Centre of the model's bounding box, in world units.
     pub center_world: DVec3,
-    /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
-    /// is no triangle.
+    /// Bounding radius of the model in world units: from that centre to the farthest vertex of a triangle; 1 without
+    /// triangles.
     pub world_units_per_unit: f64,
     /// Bounds of the model (without ground and area lights): lowest and highest corner, in world units.
     pub bounds_world: [DVec3; 2],
@@ -66,11 +66,12 @@ impl Geometry {
         alone.surrounded(ground, &[])
     }
 
-    /// A model with nothing around it, for those who wait, without the objects whose numbers are hidden: place and scale stay
-    /// those of the whole model.
+    /// Builds a model without surroundings, with progress and cancellation. Objects in `hidden` are left out; position and
+    /// scale stay those of the whole model.
     ///
     /// # Errors
-    /// Where it was cancelled.
+    ///
+    /// If cancelled.
     pub fn of_model(model: &Model, hidden: &[usize], loading: &Loading) -> Result<Self, Cancelled> {
         loading.step("measuring the model")?;
         let mesh = &model.mesh;
@@ -111,8 +112,8 @@ impl Geometry {
         })
     }
 
-    /// The same model on another ground and with other area lights, each in a slot of its own: shares the model's triangles,
-    /// and builds what is around it.
+    /// The same model with another ground and area lights, each in a slot of its own: shares the model's triangles and
+    /// builds the surroundings.
     pub fn surrounded(&self, ground: impl Into<Ground>, area_lights: &[AreaShape]) -> Self {
         let mut around = Part::default();
         let ground = ground.into().mesh(self.ground_height(), self.model_slots);
@@ -133,17 +134,17 @@ impl Geometry {
         }
     }
 
-    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    /// Whether every ray that leaves a face on its outside misses: the scene is one convex body.
     pub fn is_convex(&self) -> bool {
         self.model_is_convex && self.around.is_empty()
     }
 
-    /// Smooth normals lean so far from the model's triangles that shadows show where these end.
+    /// Whether smooth normals lean so far from the model's triangles that shadows reveal their edges.
     pub fn is_coarse(&self) -> bool {
         self.model_is_coarse
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     #[inline(always)]
     pub fn triangle_count(&self) -> usize {
         self.model.triangles.len() + self.around.triangles.len()
@@ -190,24 +191,24 @@ impl Geometry {
         part.corners(triangle)
     }
 
-    /// What else shading needs of a triangle's corners.
+    /// Shading attributes of a triangle's vertices.
     #[inline(always)]
     pub fn vertices(&self, triangle: usize) -> [&Vertex; 3] {
         let (part, triangle) = self.part_of(triangle);
         part.triangles[triangle].map(|vertex| &part.vertices[vertex as usize])
     }
 
-    /// The slots of the model; those after it are the ground's and the area lights'.
+    /// Number of the model's slots; the ground's and the area lights' follow.
     pub fn model_slots(&self) -> usize {
         self.model_slots as usize
     }
 
-    /// Bytes in memory, with the hierarchies that have been built; what is shared with other geometries counts, too.
+    /// Memory in bytes, with the hierarchies built so far; data shared with other geometries counts, too.
     pub fn bytes(&self) -> usize {
         self.model.bytes() + self.around.bytes()
     }
 
-    /// Builds the processor's hierarchies if they are not there yet, which the first ray would do otherwise; their bytes.
+    /// Builds the CPU's hierarchies, if not built yet, instead of at the first ray. Returns their memory in bytes.
     pub fn prepare(&self) -> usize {
         self.model.wide().bytes() + self.around.wide().bytes()
     }
@@ -237,7 +238,7 @@ impl Geometry {
         self.occluded_by(instructions::level(), origin, direction, t_max)
     }
 
-    /// The same computed with these instructions.
+    /// The same with a given instruction set.
     #[inline]
     pub fn occluded_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         let frame = RayFrame::new(origin.into(), direction.into());
@@ -354,7 +355,7 @@ impl Geometry {
             .collect()
     }
 
-    /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` where there are none.
+    /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` without triangles.
     pub fn sphere_around(&self, is_chosen: impl Fn(usize) -> bool) -> Option<([f32; 3], f64)> {
         let chosen = || (0..self.triangle_count()).filter(|&triangle| is_chosen(triangle));
         let places = || {
@@ -416,7 +417,7 @@ impl Framing {
 }
 
 impl Model {
-    /// From the middle of its bounding box to the farthest vertex of a triangle, in the world; 1 where there is none.
+    /// Bounding radius in world units, from the centre of the bounding box to the farthest vertex; 1 without triangles.
     pub fn bounding_radius(&self) -> f64 {
         Framing::of(&self.mesh).world_units_per_unit
     }

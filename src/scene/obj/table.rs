@@ -1,5 +1,4 @@
-//! What becomes of each keyword of a `.mtl` library: the table in docs/FORMATS.md, by which the import report tells what is
-//! left out.
+//! Fate of each keyword of a `.mtl` library: the table in docs/FORMATS.md, from which the import report is made.
 
 use tobj::Material;
 
@@ -12,7 +11,7 @@ const fn row(place: &'static str, default: &'static str, example: &'static str, 
     FileParameter::new(place, default, example, goes)
 }
 
-/// A picture beside the library.
+/// Example of a texture file.
 const PICTURE: &str = "picture.png";
 
 /// Every keyword of a material that the format and its additions have.
@@ -82,7 +81,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
 /// Illumination models that are shown as they are, or nearly: 2 is a highlight; 3, 5 and 8 reflect the scene besides.
 const SHOWN: [u8; 6] = [0, 1, 2, 3, 5, 8];
 
-/// Tells what of a material goes nowhere by the table, what is out of its range, and what the table does not have.
+/// Reports a material's parameters that the table ignores or does not have, and values out of range.
 pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
     let mut note = |fate, what: String| report.note(fate, what, &material.name);
     for (key, text) in keywords(material) {
@@ -117,7 +116,7 @@ pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
     }
 }
 
-/// The keywords that a material has, with what stands after them.
+/// Keywords of a material with their text.
 fn keywords(material: &Material) -> Vec<(&str, String)> {
     let color = |color: Option<[f32; 3]>| color.map(|[r, g, b]| format!("{r} {g} {b}"));
     let number = |number: Option<f32>| number.map(|x| x.to_string());
