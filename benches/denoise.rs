@@ -86,7 +86,7 @@ fn main() -> Result<(), Failure> {
         scenes.retain(|(name, _)| name.starts_with(only));
         hard.retain(|(name, _)| name.starts_with(only));
     }
-    let is_wanted = |part: &str| has(part) || !["estimate", "edit", "steps", "cost"].iter().any(|other| has(other));
+    let is_wanted = |part: &str| has(part) || !["told", "edit", "steps", "cost"].iter().any(|other| has(other));
     if is_wanted("cost") {
         guides_cost(&mut session, &scenes, has("quick"))?;
         denoising_cost(&scenes)?;
@@ -97,7 +97,7 @@ fn main() -> Result<(), Failure> {
     if is_wanted("edit") {
         edits(&mut session, &scenes, has("quick"))?;
     }
-    if is_wanted("estimate") {
+    if is_wanted("told") {
         let read: Reader = if has("shared") {
             led_by_all
         } else {
@@ -308,11 +308,11 @@ fn truth(
     (most, read): (u32, Reader),
 ) -> Result<(), Failure> {
     println!(
-        "## Errors estimate and true, {0} x {0}, {1} renders",
+        "## Estimated and true errors, {0} x {0}, {1} renders",
         extent.side, extent.renders
     );
     println!(
-        "| scene | samples | samples' error, % | at once, % | denoised, % | estimate/true | inside, % | auto, % | estimate/true | inside, % | auto/samples | relMSE |"
+        "| scene | samples | samples' error, % | at once, % | denoised, % | estimated/true | inside, % | auto, % | estimated/true | inside, % | auto/samples | relMSE |"
     );
     for (name, document) in scenes {
         let mut document = document.clone();

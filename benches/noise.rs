@@ -142,7 +142,7 @@ fn true_error(film: &Film, reference: &[f64]) -> f64 {
 
 fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
     println!("## True error inside the 95 % band, of {} renders", extent.renders);
-    println!("| scene | sequence | samples | true error | estimate over true | by the spread over true | inside |");
+    println!("| scene | sequence | samples | true error | estimated over true | by the spread over true | inside |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (name, document) in scenes {
         let mut document = document.clone();
@@ -159,7 +159,7 @@ fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
                     document.render.seed = seed;
                     let (film, _) = finish(session, &document)?;
                     let error = true_error(&film, &reference);
-                    let estimate = noise(&film).ok_or("no error is estimate")?;
+                    let estimate = noise(&film).ok_or("no error is estimated")?;
                     inside += u32::from((estimate.low..=estimate.high).contains(&error));
                     for (sum, x) in squares.iter_mut().zip([error, estimate.relative, estimate.from_spread]) {
                         *sum += x * x / f64::from(extent.renders);
@@ -201,7 +201,7 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
             (document.render.adaptive, document.render.noise) = (Some(false), None);
             document.render.samples = extent.samples_even;
             let (film, even) = finish(session, &document)?;
-            wanted = noise(&film).ok_or("no error is estimate")?.relative;
+            wanted = noise(&film).ok_or("no error is estimated")?.relative;
             (document.render.adaptive, document.render.noise) = (Some(true), Some(wanted));
             document.render.samples = u32::MAX;
             let (film_adaptive, progress) = finish(session, &document)?;

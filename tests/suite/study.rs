@@ -334,7 +334,7 @@ fn accuracy_writes_the_race() {
             "samples_per_pixel",
             "time_to_noise",
             "equal_error_seconds",
-            "estimated_noise",
+            "told_noise",
         ] {
             assert!(number(runner, key) > 0.0, "{key} of {runner}");
         }

@@ -129,7 +129,7 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
         "error",
         "error_low",
         "error_high",
-        "estimated_noise",
+        "told_noise",
         "time_to_noise",
         "is_extrapolated",
         "bias",

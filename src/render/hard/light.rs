@@ -118,7 +118,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "light",
         danger: "NaN, infinity or a negative number in a file spreads over everything that it lights",
         made: "an .exr with 3 values that are NaN, 2 infinite and 4 negative; a sphere under it",
-        must: "each is replaced and expected of, the picture is clean: what is not expected of or dropped is counted",
+        must: "each is replaced and told of, the picture is clean: what is not told of or dropped is counted",
         naive: || format!("a mean of {}", (f32::NAN + 1.0).to_string().to_lowercase()),
         measure: "count",
         limit: 0.0,
