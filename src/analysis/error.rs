@@ -15,12 +15,12 @@ pub fn relative_mean_squared_error(image: &[f32], reference: &[f32]) -> f64 {
     terms.sum::<f64>() / image.len().max(1) as f64
 }
 
-/// Estimates with their uncertainty, one a pixel and channel.
+/// Estimates with their uncertainty, one per pixel and channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimates<'a> {
-    /// The means.
+    /// Means, one per pixel and channel.
     pub mean: &'a [f64],
-    /// The variances of these means: the samples' variance over their number.
+    /// Variances of these means: the samples' variance over their number.
     pub variance: &'a [f64],
 }
 

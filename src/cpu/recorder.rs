@@ -71,7 +71,7 @@ pub enum Purpose {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// The environment.
+    /// The environment light, at infinity.
     Environment,
     /// A surface that emits.
     Surface,
@@ -97,7 +97,7 @@ pub enum End {
 /// Sampling probability of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LayerChance {
-    /// The layer.
+    /// Layer of the material.
     pub layer: Layer,
     /// In [0, 1].
     pub probability: f32,
@@ -145,11 +145,11 @@ pub enum Event {
         slot: u32,
         /// Distance from the ray's origin.
         distance: f32,
-        /// Position.
+        /// Position of the hit, in the geometry's units.
         position: [f32; 3],
         /// Geometric normal, on the ray's side.
         normal: [f32; 3],
-        /// Shading normal.
+        /// Unit shading normal, on the ray's side.
         shading_normal: [f32; 3],
         /// True for a hit on the triangle's back.
         is_inside: bool,

@@ -63,7 +63,7 @@ impl GpuError {
 pub struct GpuDevice {
     /// wgpu's device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Command queue of the device.
     pub queue: wgpu::Queue,
     /// Name, driver, kind.
     pub info: wgpu::AdapterInfo,

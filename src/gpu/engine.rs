@@ -67,7 +67,7 @@ impl GpuEngine {
         })
     }
 
-    /// The device.
+    /// The device that renders.
     pub fn device(&self) -> &GpuDevice {
         &self.gpu
     }

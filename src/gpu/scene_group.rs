@@ -74,9 +74,9 @@ impl SceneForm {
 /// A scene on the GPU. Its parts are shared: a new scene may reuse some of an old one's.
 #[derive(Clone, Debug)]
 pub struct SceneGroup {
-    /// The geometry.
+    /// Arrays of the geometry.
     pub geometry: GeometryArrays,
-    /// The materials.
+    /// Array of the materials, by slot.
     pub materials: MaterialArray,
     /// See [`tables`].
     pub tables: wgpu::TextureView,

@@ -28,7 +28,7 @@ use plan::Plan;
 /// A render job: everything that an image depends on. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// The geometry.
+    /// Geometry of the model and its surroundings, in units of its bounding radius.
     pub geometry: Arc<Geometry>,
     /// The environment light.
     pub environment: Arc<Environment>,
@@ -144,7 +144,7 @@ pub struct Catcher {
 /// Background of camera rays that miss.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BackgroundKind {
-    /// The environment.
+    /// The environment map, unblurred.
     Environment,
     /// The environment, averaged around each direction; the sine of the largest angle.
     Blurred(f64),

@@ -108,7 +108,7 @@ pub struct FresnelQuestion {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct RandomQuestion {
-    /// Pixel.
+    /// Pixel coordinates (x, y).
     pub pixel: [u32; 2],
     /// Seed of the render.
     pub seed: u32,

@@ -23,7 +23,7 @@ impl SamplingStage {
 /// Directions to sample over an image of a quad, seen from above its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplingRequest {
-    /// The lobe.
+    /// Lobe to sample.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,

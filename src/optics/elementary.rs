@@ -10,7 +10,7 @@ use super::real::Real;
 
 /// A number in single precision, or several in lanes, with its bits.
 pub trait Single: Real<Scalar = f32> {
-    /// The bits.
+    /// Unsigned integer with the number's bits.
     type Bits: Bits;
     /// The number's bits.
     fn to_bits(self) -> Self::Bits;

@@ -18,7 +18,7 @@ named! {
 /// Parameters of the Fresnel factor, besides the angle.
 #[derive(Clone, Copy, Debug)]
 pub struct FresnelTerms<T> {
-    /// The model.
+    /// Equation of the Fresnel factor.
     pub model: Fresnel,
     /// Reflectance at normal incidence of the metal, linear RGB.
     pub metal_f0: Vec3<T>,

@@ -51,9 +51,9 @@ pub struct Assets {
 pub struct Reloaded {
     /// The model before, if known.
     pub before: Option<Arc<Model>>,
-    /// The model.
+    /// The reloaded model.
     pub model: Arc<Model>,
-    /// The environment.
+    /// The reloaded environment.
     pub environment: Arc<Environment>,
 }
 

@@ -34,7 +34,7 @@ impl FromStr for EngineChoice {
 }
 
 named! {
-    /// An engine.
+    /// Kind of engine: CPU or GPU.
     EngineKind {
         Gpu, "gpu", "GPU", "Compute shaders on an adapter.";
         Cpu, "cpu", "CPU", "Rust on the processor's cores.";
@@ -61,7 +61,7 @@ pub struct EngineInfo {
     pub driver: String,
     /// Why this engine, in words.
     pub reason: String,
-    /// Traversal.
+    /// How rays are traced on the engine.
     pub traversal: Traversal,
     /// True if the CPU does the work, by either engine.
     pub is_software: bool,

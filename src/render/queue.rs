@@ -27,7 +27,7 @@ const GIVES_WAY: Duration = Duration::from_millis(50);
 pub enum Task {
     /// A document as an image of its own size.
     Picture {
-        /// The document.
+        /// Document, rendered at its own size.
         document: Box<Document>,
         /// File of the image.
         path: PathBuf,
@@ -58,7 +58,7 @@ pub struct Entry {
     pub id: u64,
     /// Name: its file's, with a number if taken.
     pub name: String,
-    /// State.
+    /// Whether it waits, renders, or how it ended.
     pub state: State,
 }
 

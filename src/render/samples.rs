@@ -57,7 +57,7 @@ pub struct OtherLobe {
 /// Answer to a query.
 #[derive(Clone, Debug)]
 pub struct SampleReport {
-    /// The query.
+    /// The query that this answers.
     pub query: SampleQuery,
     /// The samples.
     pub cloud: ScatterCloud,

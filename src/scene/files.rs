@@ -23,7 +23,7 @@ pub(super) struct Files {
     place: Place,
     /// Files that were given with the model.
     given: Vec<PathBuf>,
-    /// The import.
+    /// The import: files asked for, budget and progress.
     pub import: Import,
 }
 
@@ -81,7 +81,6 @@ impl Seen {
 /// Search location of the files that a model names.
 #[derive(Debug)]
 enum Place {
-    /// In a folder.
     Folder(PathBuf),
     /// In an archive, below one of its folders (with a slash at its end, or empty).
     Archive(Box<Archive>, String),

@@ -394,7 +394,7 @@ pub enum Filter {
 /// Wrap mode beyond a texture's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// Repeat.
+    /// The texture repeats.
     #[default]
     Repeat,
     /// Back and forth.
@@ -465,7 +465,7 @@ pub enum ModelError {
     NotGltf {
         /// The model file.
         path: PathBuf,
-        /// Reason.
+        /// Reason of the reader, in words.
         reason: String,
     },
     /// The file ends too early.
@@ -501,7 +501,7 @@ pub enum ModelError {
         path: PathBuf,
         /// The extension.
         name: String,
-        /// Remedy.
+        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
     /// A referenced buffer or image is missing or unreadable.
@@ -523,7 +523,7 @@ pub enum ModelError {
     /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// No triangles.
+    /// The scene has no triangles to render.
     #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
     NoTriangles {
         /// The model file.

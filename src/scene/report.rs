@@ -37,7 +37,7 @@ impl Fate {
 /// One kind of part in a file, and its fate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Entry {
-    /// Its fate.
+    /// Whether the part was used, approximated, ignored or missing.
     pub fate: Fate,
     /// Description, and what is shown instead.
     pub what: String,

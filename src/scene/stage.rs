@@ -5,7 +5,7 @@
 pub struct ModelCamera {
     /// Name in the file.
     pub name: String,
-    /// Position.
+    /// Position in the units of the scene.
     pub position: [f64; 3],
     /// Unit viewing direction.
     pub forward: [f64; 3],

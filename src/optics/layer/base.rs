@@ -12,7 +12,7 @@ use crate::optics::vector::Vec3;
 /// Rounding of a squared sine at the edge of the cone.
 pub const BASE_EDGE: f64 = 1.00001;
 
-/// The base.
+/// The Lambertian base layer.
 #[derive(Debug)]
 pub struct Base;
 

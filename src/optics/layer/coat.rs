@@ -15,7 +15,7 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 
-/// The coat.
+/// The clear coat layer.
 #[derive(Debug)]
 pub struct Coat;
 

@@ -226,7 +226,7 @@ pub enum Facets {
 /// Parameters of a lobe, besides directions.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeShape<'a, T> {
-    /// The lobe.
+    /// Model of the lobe.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,

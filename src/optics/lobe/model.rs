@@ -11,7 +11,7 @@ use crate::optics::vector::{Vec3, vec3};
 pub struct LobeModel {
     /// Name in legends and columns.
     pub name: String,
-    /// The lobe.
+    /// Model of the lobe.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,

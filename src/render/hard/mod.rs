@@ -80,7 +80,7 @@ impl HardCase {
 /// Result of a case.
 #[derive(Clone)]
 pub struct HardRow {
-    /// The case.
+    /// The case that was run.
     pub case: &'static HardCase,
     /// Outcome.
     pub check: Check,

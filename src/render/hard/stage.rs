@@ -113,7 +113,7 @@ impl Stage {
         self.picture.take()
     }
 
-    /// The engine.
+    /// The engine that runs the cases.
     pub fn engine(&self) -> &EngineInfo {
         self.session.engine()
     }

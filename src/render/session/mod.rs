@@ -157,7 +157,7 @@ impl Session {
         self.engine.device()
     }
 
-    /// The engine.
+    /// The engine in use, and why it was chosen.
     pub fn engine(&self) -> &EngineInfo {
         &self.info
     }

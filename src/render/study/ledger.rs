@@ -36,7 +36,7 @@ const KERNEL: &str = "kernel";
 /// Options of a ledger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LedgerOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
     /// Turns of each pair.
     pub turns: usize,
@@ -117,7 +117,7 @@ impl Entry {
     }
 }
 
-/// A ledger.
+/// Cost of all active effects and settings of a document.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ledger {
     /// Machine of the measurement.

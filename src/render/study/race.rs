@@ -83,7 +83,7 @@ pub struct Race {
 pub struct Runner {
     /// The technique, as it is written.
     pub technique: Technique,
-    /// Label.
+    /// Label in tables and charts.
     pub label: String,
     /// Engine time that it had in fact, seconds.
     pub seconds: f64,

@@ -33,7 +33,7 @@ const STEP: Duration = Duration::from_millis(100);
 /// A reference render of the requested precision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// The image.
+    /// The mean image, linear.
     pub image: Image,
     /// Halves of its samples.
     pub halves: Halves,

@@ -37,13 +37,13 @@ pub const PAPER: [(&str, Lobe, [f64; 3]); 4] = [
 /// Options of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplingOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
     /// Width and height of the image, in pixels.
     pub size: [u32; 2],
     /// Roughness of all lobes, in (0, 1]: it changes no lobe's time.
     pub roughness: f32,
-    /// Turns.
+    /// Number of interleaved trials.
     pub turns: usize,
     /// Time limit of one measurement; slower images are measured in part and scaled.
     pub budget: Duration,
@@ -67,7 +67,7 @@ impl SamplingOptions {
 pub struct SamplingRow {
     /// The lobe, with the curve of the geometric one.
     pub name: String,
-    /// The lobe.
+    /// Lobe that was sampled.
     pub lobe: Lobe,
     /// Directions per pixel.
     pub samples: u32,

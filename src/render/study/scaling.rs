@@ -39,7 +39,7 @@ impl Growing {
 /// Options of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalingOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
     /// Turns of each size.
     pub turns: usize,
@@ -66,7 +66,7 @@ impl ScalingOptions {
 pub struct ScalingPoint {
     /// The scaled quantity.
     pub growing: Growing,
-    /// Its size.
+    /// Value of the scaled quantity.
     pub size: u64,
     /// Engine time of a pixel sample, nanoseconds.
     pub ns_per_sample: f64,

@@ -66,7 +66,7 @@ pub enum Activity {
     Loading(String),
     /// Building the hierarchy and the engine's resources.
     Preparing,
-    /// Rendering.
+    /// Samples are being rendered.
     Rendering,
     /// Rendering has reached its goal.
     Done,

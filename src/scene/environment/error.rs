@@ -70,9 +70,9 @@ pub enum EnvironmentError {
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// The feature.
+        /// The unsupported feature, in words.
         feature: String,
-        /// Remedy.
+        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
     /// Larger than the largest size.

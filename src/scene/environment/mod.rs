@@ -96,7 +96,7 @@ pub enum EnvironmentEncoding {
 
 /// An environment that needs no file.
 pub struct BuiltIn {
-    /// The source.
+    /// Source that [`load`] takes.
     pub source: EnvironmentSource,
     /// Name on the command line and in files.
     pub name: &'static str,

@@ -35,7 +35,7 @@ impl TextureAssignment {
 pub(super) struct Use {
     /// Index among the packed maps.
     pub picture: usize,
-    /// Its target.
+    /// Material parameter that it varies.
     pub target: TextureTarget,
     /// True if its green channel points down.
     pub is_flipped: bool,
