@@ -43,7 +43,7 @@ fn lifted_normal(shading: vec3f, geometric: vec3f, wo: vec3f) -> vec3f {
 // Position of a hit.
 struct HitPlace {
     position: vec3f,
-    // How far off the true place `position` may be, along the normal.
+    // Error bound of `position` along the normal.
     error: f32,
     // The geometric normal, on the side of the ray's origin.
     normal: vec3f,

@@ -141,7 +141,7 @@ pub enum Event {
         bounce: u32,
         /// Triangle index, in the order of the hierarchy's leaves.
         triangle: u32,
-        /// The surface's slot.
+        /// Material slot of the surface.
         slot: u32,
         /// Distance from the ray's origin.
         distance: f32,

@@ -41,11 +41,11 @@ pub enum LightKind {
 /// A light of a file (KHR_lights_punctual), in the units of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelLight {
-    /// What to call it.
+    /// Name in the file.
     pub name: String,
     /// Kind of the light.
     pub kind: LightKind,
-    /// Where it is.
+    /// Position.
     pub position: [f64; 3],
     /// Unit direction of its light.
     pub forward: [f64; 3],

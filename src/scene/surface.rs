@@ -125,7 +125,7 @@ pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>)
 pub struct HitPlace<T: Real> {
     /// The point, in the geometry's units.
     pub position: Vec3<T>,
-    /// How far off the true place `position` may be, along the normal.
+    /// Error bound of `position` along the normal, in the geometry's units.
     pub error: T,
     /// The geometric normal, on the side of the ray's origin.
     pub normal: Vec3<T>,

@@ -125,7 +125,7 @@ impl Curve {
         !self.has_table() && curve_distance_max::<f64>(self, &[]) <= 1.0
     }
 
-    /// D(ξ) written out.
+    /// Formula of D(ξ).
     pub fn formula(self) -> &'static str {
         self.traits().formula
     }

@@ -160,7 +160,7 @@ pub struct Snapshot {
     pub samples_per_second: f64,
     /// Divisor of width and height of the render in progress.
     pub reduction: u32,
-    /// What the worker is doing.
+    /// Activity of the worker.
     pub activity: Activity,
     /// The engine; `None` while it is being opened.
     pub engine: Option<EngineInfo>,

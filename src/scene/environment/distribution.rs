@@ -215,7 +215,7 @@ pub(super) struct Luminances {
     pub cells: Vec<f64>,
     /// Columns of cells: the map's, or halved until there are at most [`MAX_CELLS`].
     pub width: u32,
-    /// Rows of cells.
+    /// Height of the grid, in cells.
     pub height: u32,
 }
 

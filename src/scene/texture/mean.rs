@@ -20,7 +20,7 @@ pub struct TextureMean {
     pub linear: [f32; 3],
 }
 
-/// The mean of a picture.
+/// Mean of a texture map.
 pub fn texture_mean(picture: &Texture) -> TextureMean {
     let mut sums = [0_u64; 4];
     for texel in picture.rgba8.as_chunks::<4>().0 {

@@ -221,7 +221,7 @@ impl Pack {
         pack
     }
 
-    /// What had to be changed, and what is missing, one line each.
+    /// Warnings on reduced and missing maps, one line each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
