@@ -10,7 +10,7 @@ struct Camera {
     lens_radius: f32,
     forward: vec3f,
     focus_distance: f32,
-    // Half the picture's width and height at distance 1.
+    // Half the image's width and height at distance 1.
     right: vec3f,
     filter_kind: u32,
     up: vec3f,

@@ -224,7 +224,7 @@ impl Film {
         }
     }
 
-    /// Adds sample number `sample` of a pixel: linear color with coverage.
+    /// Adds sample number `sample` of a pixel: linear colour with coverage.
     pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
         let mut halves = self.halves(pixel);
         let [red, green, blue, coverage] = color;

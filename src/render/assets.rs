@@ -28,7 +28,7 @@ type PackKey = (ModelKey, Vec<(PictureKey, bool)>);
 /// Key of an environment: source and encoding.
 type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
 
-/// Memory budget in bytes. The most recently used asset of each kind is kept whatever its size.
+/// Memory budget in bytes. The most recently used asset of each kind is kept at any size.
 const MEMORY: usize = 1 << 30;
 
 /// Geometries kept per model: each position of a dragged light makes a new one, built from one that is kept.

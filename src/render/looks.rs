@@ -19,7 +19,7 @@ pub const SIDE: u32 = 64;
 const SAMPLES: u32 = 64;
 /// Step of the session.
 const STEP: Duration = Duration::from_millis(100);
-/// Difference over the mean brightness that has the brightest color of the map.
+/// Relative difference with the brightest colour of the map.
 const BRIGHTEST: f64 = 0.5;
 
 /// Result of a comparison.

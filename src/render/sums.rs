@@ -1,9 +1,9 @@
-//! Films in `.exr` files: the sums behind a picture, so that parts of its samples can be rendered apart and joined.
+//! Films in `.exr` files: an image's sums, so that parts of its samples can be rendered separately and joined.
 //!
-//! Beside the picture's own channels a file has, for each half of the samples, `sums.even.R.high` and `.low` and so on: the
-//! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The sums of
-//! what the first samples of each half saw first are f32 (`sums.guides.even.…`), with their number. An attribute has
-//! the document and the numbers of the samples.
+//! Besides the image's channels, a file has `sums.even.R.high`, `.low` and so on for each half of the samples: the upper and
+//! lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold only 48 of its 53 bits. The sums of the
+//! guides of each half's first samples are f32 (`sums.guides.even.…`), with their number. An attribute has the document and
+//! the sample ranges.
 
 use std::path::{Path, PathBuf};
 

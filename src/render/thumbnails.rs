@@ -153,7 +153,7 @@ mod tests {
 
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {
-            // The middle of the picture: the sphere.
+            // The centre of the image: the sphere.
             let middle = (48..80).flat_map(|y| (48..80).map(move |x| 4 * (y * SIDE as usize + x) + channel));
             middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 1024.0
         })

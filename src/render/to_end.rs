@@ -21,21 +21,23 @@ pub struct Ended {
     pub denoised: Option<Denoised>,
 }
 
-/// Hands a session a document. Where the GPU's device was lost it goes on with another, and on the processor after any other
-/// failure of it, unless the GPU was asked for by name.
+/// Submits a document to a session. After a lost GPU device it continues with another one; after any other GPU failure on
+/// the CPU, unless the GPU was requested by name.
 ///
 /// # Errors
-/// What the engine says, or the files that the document names.
+///
+/// Errors of the engine, or of the files that the document names.
 pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
     let submitted = session.submit(document).map(|_| ());
     or_fall_back(submitted, session, engine, document)
 }
 
-/// Steps until the document that was submitted is done, falling back as [`submit`] does, and denoises the picture where
-/// that is asked for. `on_progress` receives the progress after every step and stops the render by returning `false`.
+/// Renders the submitted document to its end, falling back as [`submit`] does, and denoises it if requested. `on_progress`
+/// receives the progress after every step and stops the render by returning `false`.
 ///
 /// # Errors
-/// What the engine says.
+///
+/// Errors of the engine.
 pub fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,

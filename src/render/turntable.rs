@@ -96,11 +96,11 @@ impl Turntable {
 }
 
 /// Renders the frames in order, falling back to another engine as [`submit`] does. `on_progress` receives the progress after
-/// every step, and stops the whole by `false`: pictures that were written stay, of a video what
-/// [`Turntable::keeps_part`] says.
+/// every step, and stops the whole by `false`: written frames stay; for a video see [`Turntable::keeps_part`].
 ///
 /// # Errors
-/// [`TurntableError`] naming the file; frames before stay.
+///
+/// [`TurntableError`] naming the file; earlier frames stay.
 pub fn render(
     session: &mut Session,
     engine: EngineChoice,

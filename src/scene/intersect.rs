@@ -127,7 +127,7 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     if (areas.min_element() < 0.0 && areas.max_element() > 0.0) || area == 0.0 {
         return None;
     }
-    // The distance by the plane: exact in sign for planes along the axes, whatever the triangle's size.
+    // The distance by the plane: exact in sign for axis-aligned planes, for any size of triangle.
     let normal = triangle_normal([v0, v1, v2].map(|v| vec3(v.x, v.y, v.z)));
     let normal = Vec3A::new(normal.x, normal.y, normal.z);
     let t = normal.dot(a) / normal.dot(ray.direction);

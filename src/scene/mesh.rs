@@ -248,7 +248,7 @@ fn append_optional<T: Copy>(values: &mut Vec<T>, others: &[T], counts: [usize; 2
     values.resize(counts[0] + counts[1], default);
 }
 
-/// The unit normal of the plane through three points in counter-clockwise order; +Y where they are on one line.
+/// Unit normal of the plane through three points in anticlockwise order; +Y if they are collinear.
 pub fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
 }

@@ -83,7 +83,7 @@ pub struct Part {
     pub positions: Vec<[f32; 3]>,
     /// Other vertex attributes, as many as `positions`.
     pub vertices: Vec<Vertex>,
-    /// The vertices of each triangle, counter-clockwise from outside.
+    /// Vertex indices of each triangle, anticlockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The material slot of each triangle.
     pub slots: Vec<u32>,

@@ -296,8 +296,8 @@ impl Profile {
         }
     }
 
-    /// Step 0 of a piece takes the very place where the last piece ended, so that no crack opens; it is left out where
-    /// the normal goes on unchanged.
+    /// Step 0 of a piece has exactly the end position of the last piece, so that no crack opens. It is skipped if the normal
+    /// is unchanged.
     fn push(&mut self, step: u32, place: DVec2, normal: DVec2) {
         let on_axis = place.x.abs() < 1e-12;
         let place = if on_axis { dvec2(0.0, place.y) } else { place };

@@ -9,8 +9,8 @@ use crate::optics::random::random_pairs;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 
-/// A run of paths with consecutive indices, at most [`Real::LANES`]. Lanes beyond the run load whatever follows; their
-/// results are ignored.
+/// A run of paths with consecutive indices, at most [`Real::LANES`]. Lanes beyond the run load the elements that follow;
+/// their results are ignored.
 #[derive(Clone, Copy)]
 pub(super) struct Group<T: Real> {
     first: usize,

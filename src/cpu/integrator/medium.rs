@@ -1,9 +1,9 @@
 //! The medium that a path is in, and its absorption (Beer–Lambert). Twin of the media's functions in
 //! `shaders/pass/path_trace.wgsl`.
 //!
-//! A path remembers the slot of the medium that it entered last. So each segment is absorbed, whatever ends it: the medium's
-//! back, an object inside it, or the front of another medium. It remembers one slot only: after leaving a nested medium it
-//! has none until it hits the outer one's back.
+//! A path remembers the slot of the medium that it entered last. So each segment is absorbed, no matter what ends it: the
+//! medium's back, an object inside it, or the front of another medium. It remembers one slot only: after leaving a nested
+//! medium it has none until it hits the outer one's back.
 
 use super::paths::Paths;
 use super::{Integrator, PathVertex};

@@ -202,7 +202,8 @@ fn exact(cosine: f32, eta: f32, k: f32) -> f64 {
         if below > 0.0 { (above / below).powi(2) } else { 0.0 }
     };
     let perpendicular = share([c, 0.0], root);
-    // m² cos against the root. Head-on there is no plane of incidence, so that both are alike, whatever vanishes.
+    // m² cos against the root. At normal incidence there is no plane of incidence, so that both are equal, even if terms
+    // vanish.
     let parallel = if cosine < 1.0 {
         share([(eta * eta - k * k) * c, 2.0 * eta * k * c], root)
     } else {

@@ -416,7 +416,7 @@ fn share_of_noise([with, without]: [f64; 2]) -> f64 {
     if without > 0.0 { with / without - 1.0 } else { 0.0 }
 }
 
-/// An entry in words: "Exact Fresnel: +2 % time, changes the picture by 0.3 %".
+/// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
 fn words(entry: &Entry) -> String {
     let mut parts = vec![entry.time_words()];
     if entry.noise_share.abs() >= NOISE_WORTH_TELLING {

@@ -94,8 +94,8 @@ pub struct Runner {
     pub estimated_noise: f64,
     /// Relative error against its own reference.
     pub error: Distance,
-    /// Engine time to the race's noise, seconds: the error falls with the root of the time. (That of a denoised picture
-    /// falls more slowly: where it was reached in the race the time is told too long, else too short.)
+    /// Engine time in seconds to the race's noise: the error falls with the root of time. (A denoised image's error falls
+    /// more slowly: its time is overestimated if the noise was reached in the race, else underestimated.)
     pub time_to_noise: f64,
     /// The noise was not reached in the race: the time is extrapolated.
     pub is_extrapolated: bool,
@@ -396,7 +396,7 @@ fn runner(
     })
 }
 
-/// Renders anew up to so many samples a pixel in the mean; `tell` is told the share that has been done.
+/// Renders again up to `samples` per pixel on average; `report` receives the finished share.
 fn rerun(
     lane: &mut Lane,
     samples: f64,

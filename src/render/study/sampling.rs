@@ -21,7 +21,7 @@ use crate::scene::environment::EnvironmentSource;
 
 /// Directions a pixel, as in the paper.
 pub const SAMPLES: [u32; 2] = [1, 100];
-/// The paper's picture.
+/// Image size of the paper, in pixels.
 pub const SIZE: [u32; 2] = [1880, 1812];
 /// Minimum rows to measure of an image that takes too long.
 const ROWS_MIN: u32 = 8;
@@ -50,7 +50,7 @@ pub struct SamplingOptions {
 }
 
 impl SamplingOptions {
-    /// The paper's picture.
+    /// Options for the paper's image.
     pub fn new(engine: EngineChoice) -> Self {
         Self {
             engine,
@@ -274,7 +274,7 @@ fn quad(lobe: Lobe, curve: Curve, samples: u32, options: &SamplingOptions) -> Do
     document.lighting.environment = EnvironmentSource::Furnace;
     document.lighting.strength = 0.0;
     document.lighting.area_lights = vec![AreaLight::default()];
-    // Near enough to fill the picture.
+    // Close enough to fill the image.
     (document.camera.pitch_deg, document.camera.distance) = (70.0, Some(2.0));
     let render = &mut document.render;
     [render.width, render.height] = options.size;

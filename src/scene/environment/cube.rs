@@ -81,11 +81,12 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
     unfolded
 }
 
-/// The lat-long picture of six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names;
-/// `decode` reads one.
+/// Converts six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, to a
+/// latitude-longitude map; `decode` reads one.
 ///
 /// # Errors
-/// What is wrong with a file; [`EnvironmentError::NoFaces`] where they are not there.
+///
+/// The fault of a file; [`EnvironmentError::NoFaces`] if they are missing.
 pub(super) fn read_folder(
     source: Source<'_>,
     decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,

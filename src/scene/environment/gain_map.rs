@@ -166,7 +166,7 @@ fn segments(jpeg: &[u8]) -> impl Iterator<Item = Segment<'_>> {
     })
 }
 
-/// The second picture of a file that lists them (CIPA DC-007, multi-picture format).
+/// The second image of a file with an image list (CIPA DC-007, multi-picture format).
 fn listed_picture(bytes: &[u8]) -> Option<&[u8]> {
     let mut segments = segments(bytes).filter(|segment| segment.marker == APP2);
     let (start, list) = segments.find_map(|segment| Some((segment.at + 4, segment.data.strip_prefix(b"MPF\0")?)))?;

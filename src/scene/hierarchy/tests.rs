@@ -69,7 +69,7 @@ fn a_hierarchy_that_nobody_wants_is_not_built() {
     assert!(loading.doing().contains("hierarchy"), "{}", loading.doing());
 }
 
-/// Hierarchies that are too deep for the stack of a ray are built anew: their depth is counted.
+/// Hierarchies too deep for the traversal stack are rebuilt: their depth must be right.
 #[test]
 fn levels_are_counted_to_the_deepest() {
     let found = triangles();

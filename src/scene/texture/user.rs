@@ -83,7 +83,7 @@ pub struct UserTexture {
     pub scale: f32,
     /// Vertical repetitions per horizontal one, above 0.
     pub stretch: f32,
-    /// Turn about the middle of the texture coordinates, counterclockwise as seen, degrees.
+    /// Rotation about the centre of the texture coordinates in degrees, anticlockwise as seen.
     pub rotation_deg: f32,
     /// Offset to the right and upwards, in its width and height.
     pub offset: [f32; 2],

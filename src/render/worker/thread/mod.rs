@@ -515,7 +515,7 @@ mod tests {
         let shared = Arc::new(Shared::default());
         let mut state = State::new(&shared, &|| {}, Assets::default());
         state.session = Some(Session::open(EngineChoice::Cpu).expect("the processor"));
-        // A small picture is shown of a document whose model has gone since.
+        // A reduced image is shown of a document whose model is gone.
         let document = Document {
             model: ModelSource::File("gone.glb".into()),
             ..Document::default()
