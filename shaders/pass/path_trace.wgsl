@@ -167,9 +167,9 @@ fn sample_light(point: SurfacePoint, is_environment: bool, xi: vec3f) -> LightSa
     if !is_environment {
         return light_sample(point.position, point.error, xi);
     }
-    let drawn = environment_sample(xi, globals.environment_cells_size);
-    let direction = environment_world_from_local(drawn.direction, globals.environment_rotation);
-    return LightSample(direction, drawn.density * globals.environment_probability, vec3f(0.0), 1e30);
+    let sampled = environment_sample(xi, globals.environment_cells_size);
+    let direction = environment_world_from_local(sampled.direction, globals.environment_rotation);
+    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30);
 }
 
 // A shadow ray and the light that it may bring.
@@ -357,14 +357,14 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             }
             // The environment is looked up only where its light arrives: after an unoccluded shadow ray towards it, or after
             // a miss. A blurred background is seen in a direction of its own.
-            var wants_sky = intersection.transmittance > 0.0 && shadow_ray.is_environment;
+            var needs_sky = intersection.transmittance > 0.0 && shadow_ray.is_environment;
             if !is_shadow_ray {
-                wants_sky = hit.triangle == NO_HIT && needs_environment(bounce, was_mirror);
+                needs_sky = hit.triangle == NO_HIT && needs_environment(bounce, was_mirror);
                 if bounce == 0u && globals.background_kind == BACKGROUND_BLURRED {
                     along.direction = blurred(along.direction, random_pair(state, FIRST_DIMENSION));
                 }
             }
-            if wants_sky {
+            if needs_sky {
                 sky = world_environment_radiance(along.direction);
             }
             // Direct light of the last vertex: `bounce` reflections, as that vertex was number `bounce` - 1.
@@ -458,7 +458,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         // has no light sampling.
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         let transmits = material_transmits(material);
-        let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
+        let needs_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var is_lit = false;
         var sampled_light = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
         if may_sample_light() && samples_light() && !is_mirrored {
@@ -476,11 +476,11 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
-        let asked = MaterialLight(
+        let light_query = MaterialLight(
             sampled_light.direction, sampled_light.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS),
         );
         let steps = material_steps(is_lit, true);
-        let scattered = material_scatter(material, point.surface, layers, steps, numbers, wants_density, asked);
+        let scattered = material_scatter(material, point.surface, layers, steps, numbers, needs_density, light_query);
         // The shadow ray is traced at the start of the next bounce, where the path's own ray needs the same code. Its value
         // is the whole contribution but for visibility and the environment's radiance.
         if may_sample_light() && any(scattered.reflected > vec3f(0.0)) {
@@ -497,20 +497,20 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             shadow_ray.is_pending = true;
         }
         // The sampled direction: the medium that it enters, and whether it can hit anything.
-        var drawn = scattered.drawn;
+        var sampled = scattered.drawn;
         if PLAN_ABSORPTION == 1u {
-            medium = medium_towards(medium, point, slot, drawn.wi, transmits);
+            medium = medium_towards(medium, point, slot, sampled.wi, transmits);
         }
-        known_miss = is_known_miss(point, drawn.wi);
-        records_guides = records_guides && drawn.is_mirror;
+        known_miss = is_known_miss(point, sampled.wi);
+        records_guides = records_guides && sampled.is_mirror;
         if is_mirrored {
             // The catcher's mirror ray keeps its full weight, also the light that facets would block. Its light must not
             // compete with light sampling, which the catcher does not do.
-            known_miss = known_miss || !any(drawn.throughput > vec3f(0.0));
-            drawn.throughput = vec3f(1.0);
-            drawn.is_mirror = true;
+            known_miss = known_miss || !any(sampled.throughput > vec3f(0.0));
+            sampled.throughput = vec3f(1.0);
+            sampled.is_mirror = true;
         }
-        throughput *= drawn.throughput;
+        throughput *= sampled.throughput;
         // Russian roulette by the largest throughput component. In glass the limit is low until enough bounces were rough:
         // long specular paths carry the caustics. NaN ends the path, too.
         let strength = max(max(throughput.x, throughput.y), throughput.z);
@@ -518,7 +518,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         var limit = 1.0;
         if PLAN_TRANSMISSION == 1u {
             limit = select(globals.roulette_floor, 1.0, rough_bounces >= ROULETTE_START);
-            rough_bounces += select(1u, 0u, drawn.is_mirror);
+            rough_bounces += select(1u, 0u, sampled.is_mirror);
         }
         if bounce >= ROULETTE_START && strength < limit {
             let survival = strength / limit;
@@ -526,9 +526,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             throughput /= max(survival, 1e-37);
         }
         // What the next vertex needs to weight light that the ray finds.
-        lobe_density = drawn.density;
-        was_mirror = drawn.is_mirror;
-        ray = Ray(ray_origin(point, drawn.wi, transmits), drawn.wi);
+        lobe_density = sampled.density;
+        was_mirror = sampled.is_mirror;
+        ray = Ray(ray_origin(point, sampled.wi, transmits), sampled.wi);
     }
     // Over a transparent background, the catcher's light is its alpha. A render of a part of the light has no shadow.
     if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_SHADOW_ALPHA {

@@ -1,8 +1,9 @@
 //! Adaptive sampling: which tiles get further samples.
 //!
-//! For a given time, the squared error of an image, Σ σ²/n over its tiles, is least if n ∝ σ/√cost (Neyman 1934), with the
-//! variance σ² of one sample and its cost in rays. So a tile pauses while it has more than its share of samples, not when
-//! its own error reaches a goal: that would give dark smooth tiles enough samples, but noisy ones too many.
+//! For a given time, the squared error of an image is Σ σ²/n over its tiles, with the variance σ² of one sample. It is least
+//! if n ∝ σ/√cost, with the cost of a sample in rays (Neyman 1934). So a tile pauses while it has more than its share of
+//! samples, not when its own error reaches a goal: that would give dark smooth tiles enough samples, but noisy ones too
+//! many.
 
 use super::noise::{TileError, finite_sum, half_difference_variance, tile_errors};
 use crate::job::film::Film;

@@ -1,6 +1,6 @@
 //! Pearson's χ² test of sampled directions against a density.
 //!
-//! The cells are in polar coordinates around an axis, and their rings follow the samples' own quantiles, so that a lobe of a
+//! The cells are in polar coordinates around an axis. Their rings follow the samples' own quantiles, so that a lobe of a
 //! hundredth of a degree is resolved as well as a diffuse one. An absorbed sample is an outcome like any other: its
 //! expectation is 1 minus the density's integral.
 

@@ -191,9 +191,9 @@ impl Sums {
         }
     }
 
-    /// Σ V² over the pixels, from their own spreads. With rare bright samples this is almost always an underestimate. So it
-    /// is at least the value from the windowed means, which include the neighbours' samples, and at least that from the half
-    /// differences over their kurtosis, which responds to rare bright samples of a few pixels.
+    /// Σ V² over the pixels, from their own spreads. With rare bright samples this is almost always an underestimate. So
+    /// there are two lower bounds. The windowed means include the neighbours' samples. The half differences over their
+    /// kurtosis respond to rare bright samples of a few pixels.
     fn squared_variance(&self) -> f64 {
         let sums = [self.of_pixels, self.of_neighbours, self.of_differences];
         sums.into_iter().fold(f64::MIN_POSITIVE, f64::max)

@@ -37,10 +37,10 @@ fn material_steps(evaluates: bool, draws: bool) -> vec2u {
 }
 
 fn material_sample(
-    material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, wants_density: bool,
+    material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, needs_density: bool,
 ) -> MaterialSample {
     let steps = material_steps(false, true);
-    return material_scatter(material, surface, layers, steps, numbers, wants_density, MaterialLight()).drawn;
+    return material_scatter(material, surface, layers, steps, numbers, needs_density, MaterialLight()).drawn;
 }
 
 fn material_evaluate(
@@ -54,7 +54,7 @@ fn material_evaluate(
 // Runs steps.x up to but not including steps.y. A loop, so that the lobes' code is in the kernel once: drivers inline every
 // call, and compile time grows faster than size.
 fn material_scatter(
-    material: Material, surface: Surface, of_view: Layers, steps: vec2u, numbers: MaterialNumbers, wants_density: bool,
+    material: Material, surface: Surface, of_view: Layers, steps: vec2u, numbers: MaterialNumbers, needs_density: bool,
     light: MaterialLight,
 ) -> MaterialScatter {
     var layers = of_view;
@@ -108,7 +108,7 @@ fn material_scatter(
         }
         let share = layer_share(layer, layers);
         var evaluated = vec2f(0.0);
-        if !draws || (wants_density && !mirror) {
+        if !draws || (needs_density && !mirror) {
             let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
             evaluated = layer_refined(layer, material, surface, wi, of_lobe);
         }

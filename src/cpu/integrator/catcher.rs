@@ -165,17 +165,17 @@ impl<S: Scalar> CatcherHit<S> {
 
     /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
     /// light has no shadow.
-    pub(super) fn result(self, found: PathResult<S>, is_all_light: bool) -> PathResult<S> {
+    pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
         match self {
             Self::Shadow { is_transparent: true } => PathResult {
                 alpha: match is_all_light {
-                    true => S::one() - found.radiance.luminance(),
+                    true => S::one() - path.radiance.luminance(),
                     false => S::zero(),
                 },
                 radiance: Vec3::zero(),
-                ..found
+                ..path
             },
-            _ => found,
+            _ => path,
         }
     }
 }

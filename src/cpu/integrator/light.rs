@@ -191,35 +191,35 @@ impl<T: Real> Integrator<'_, T> {
             group.padded_number(&numbers.y),
             group.padded_number(&numbers.z),
         );
-        let is_environment = self.are_environment(group, &paths.shadow_rays);
-        let (far, near) = (group.mask() & is_environment, group.mask() & !is_environment);
-        let mut drawn = LightSample {
+        let is_environment = self.samples_of_environment(group, &paths.shadow_rays);
+        let (of_environment, of_emitters) = (group.mask() & is_environment, group.mask() & !is_environment);
+        let mut sampled = LightSample {
             direction: Vec3::zero(),
             density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
         };
-        if far.any() {
+        if of_environment.any() {
             let rows = group.each(&paths.light_rows);
             let (local, density) = sample_in_rows(self.distribution, &rows, xi);
-            drawn.direction = environment_world_from_local(local, self.rotation);
-            drawn.density = density * self.environment_probability;
+            sampled.direction = environment_world_from_local(local, self.rotation);
+            sampled.density = density * self.environment_probability;
         }
-        if !near.any() {
-            return drawn;
+        if !of_emitters.any() {
+            return sampled;
         }
         let emitted = self.sample_emitter_directions(point, xi);
         LightSample {
-            direction: Vec3::select(near, emitted.direction, drawn.direction),
-            density: T::select(near, emitted.density, drawn.density),
-            distance: T::select(near, emitted.distance, drawn.distance),
-            radiance: Vec3::select(near, emitted.radiance, drawn.radiance),
+            direction: Vec3::select(of_emitters, emitted.direction, sampled.direction),
+            density: T::select(of_emitters, emitted.density, sampled.density),
+            distance: T::select(of_emitters, emitted.distance, sampled.distance),
+            radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
         }
     }
 
     /// Lanes whose light sample is of the environment; arbitrary beyond the group.
     #[inline(always)]
-    fn are_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays<T::Scalar>) -> T::Mask {
+    fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays<T::Scalar>) -> T::Mask {
         if self.samples_emitters {
             group.flags(&shadow_rays.is_environment)
         } else {
@@ -264,16 +264,16 @@ impl<T: Real> Integrator<'_, T> {
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let (group, zero) = (vertex.group, T::zero());
-        let drawn = self.sample_light_directions(point, &group, paths);
-        let wi = drawn.direction;
+        let sampled = self.sample_light_directions(point, &group, paths);
+        let wi = sampled.direction;
         let transmits = material.transmits();
         let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;
-        let reaches = vertex.active & zero.less(drawn.density) & is_ahead;
+        let reaches = vertex.active & zero.less(sampled.density) & is_ahead;
         let competing = match self.settings.strategy {
             Strategy::Mis => T::one(),
             _ => zero,
         };
-        let (tables, surface, density) = (self.tables, &point.surface, drawn.density);
+        let (tables, surface, density) = (self.tables, &point.surface, sampled.density);
         let evaluate = |competing| material_evaluate(material, tables, surface, layers, wi, density, competing);
         let mut value = Vec3::zero();
         if reaches.any() {
@@ -281,19 +281,19 @@ impl<T: Real> Integrator<'_, T> {
         }
         let mut unweighted = Vec3::zero();
         if R::KEEPS {
-            unweighted = Vec3::select(zero.less(drawn.density), evaluate(zero), unweighted);
+            unweighted = Vec3::select(zero.less(sampled.density), evaluate(zero), unweighted);
         }
-        let mut radiance = drawn.radiance;
+        let mut radiance = sampled.radiance;
         if self.samples_emitters {
-            radiance = self.attenuated_emission(point, material, [wi, radiance], drawn.distance, vertex, paths);
+            radiance = self.attenuated_emission(point, material, [wi, radiance], sampled.distance, vertex, paths);
         }
         let largest = value.max_component();
         let is_lit = vertex.active & (zero.less(largest) | largest.is_nan());
         let all = group.mask();
         let shadow_rays = &mut paths.shadow_rays;
         group.set_vector(&mut shadow_rays.direction, all, wi);
-        group.set_number(&mut shadow_rays.density, all, drawn.density);
-        group.set_number(&mut shadow_rays.distance, all, drawn.distance);
+        group.set_number(&mut shadow_rays.density, all, sampled.density);
+        group.set_number(&mut shadow_rays.distance, all, sampled.distance);
         group.set_vector(&mut shadow_rays.origin, all, point.ray_origin(wi, transmits));
         group.set_vector(&mut shadow_rays.value, all, value);
         group.set_vector(&mut shadow_rays.throughput, all, vertex.throughput);
@@ -335,7 +335,7 @@ impl<T: Real> Integrator<'_, T> {
     ) {
         let shadow_rays = &paths.unoccluded_rays;
         let members = group.members(&shadow_rays.ids);
-        let is_environment = self.are_environment(group, shadow_rays);
+        let is_environment = self.samples_of_environment(group, shadow_rays);
         let mut radiance = Vec3::zero();
         if is_environment.any() {
             radiance = self.world_environment_radiance([
@@ -356,13 +356,20 @@ impl<T: Real> Integrator<'_, T> {
             });
         }
         // A path has one light sample; accounts differ by its source.
-        let (near, far) = (group.mask() & !is_environment, group.mask() & is_environment);
-        if near.any() {
-            self.add(&members, near, Source::Surface, light, bounce + 1, &mut paths.outputs);
+        let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
+        if of_emitters.any() {
+            self.add(
+                &members,
+                of_emitters,
+                Source::Surface,
+                light,
+                bounce + 1,
+                &mut paths.outputs,
+            );
         }
         self.add(
             &members,
-            far,
+            of_environment,
             Source::Environment,
             light,
             bounce + 1,

@@ -26,11 +26,11 @@ impl<T: Real> Integrator<'_, T> {
     ) {
         let group = vertex.group;
         let numbers = material_numbers(material, vertex, paths);
-        let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
-        let mut drawn = material_sample(material, self.tables, &point.surface, layers, numbers, wants_density);
-        let mut known_miss = self.is_known_miss(point, drawn.wi);
+        let needs_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
+        let mut sampled = material_sample(material, self.tables, &point.surface, layers, numbers, needs_density);
+        let mut known_miss = self.is_known_miss(point, sampled.wi);
         if !paths.guides.is_empty() {
-            let mirrors = drawn.is_mirror.to_bits();
+            let mirrors = sampled.is_mirror.to_bits();
             vertex
                 .members
                 .for_each(&mut paths.guides, vertex.active, |record, lane| {
@@ -40,23 +40,23 @@ impl<T: Real> Integrator<'_, T> {
         if vertex.is_catcher_mirror {
             // The mirrored ray keeps its full weight, also the light that facets would block. Its light must not compete
             // with light sampling, which the catcher does not do.
-            known_miss = known_miss | !T::zero().less(drawn.throughput.max_component());
-            drawn.throughput = Vec3::splat(T::one());
-            drawn.is_mirror = T::Mask::splat(true);
+            known_miss = known_miss | !T::zero().less(sampled.throughput.max_component());
+            sampled.throughput = Vec3::splat(T::one());
+            sampled.is_mirror = T::Mask::splat(true);
         }
-        let mut throughput = vertex.throughput * drawn.throughput;
-        record_scattered(layers, vertex, &drawn, throughput, paths);
+        let mut throughput = vertex.throughput * sampled.throughput;
+        record_scattered(layers, vertex, &sampled, throughput, paths);
         let is_active = russian_roulette(vertex, &mut throughput, self.settings.roulette_floor, paths);
-        self.count_rough(vertex, &drawn, paths);
-        let origin = point.ray_origin(drawn.wi, material.transmits());
-        self.update_media(point, material, drawn.wi, vertex, paths);
+        self.count_rough(vertex, &sampled, paths);
+        let origin = point.ray_origin(sampled.wi, material.transmits());
+        self.update_media(point, material, sampled.wi, vertex, paths);
         let active = vertex.active;
         group.set_flags(&mut paths.is_active, active, is_active);
         group.set_vector(&mut paths.state.throughput, active, throughput);
         group.set_vector(&mut paths.origin, active, origin);
-        group.set_vector(&mut paths.state.direction, active, drawn.wi);
-        group.set_number(&mut paths.state.lobe_density, active, drawn.density);
-        group.set_flags(&mut paths.state.is_mirror, active, drawn.is_mirror);
+        group.set_vector(&mut paths.state.direction, active, sampled.wi);
+        group.set_number(&mut paths.state.lobe_density, active, sampled.density);
+        group.set_flags(&mut paths.state.is_mirror, active, sampled.is_mirror);
         group.set_flags(&mut paths.is_known_miss, active, known_miss);
     }
 
@@ -65,12 +65,12 @@ impl<T: Real> Integrator<'_, T> {
     fn count_rough<R: Recorder>(
         &self,
         vertex: &PathVertex<T>,
-        drawn: &MaterialSample<T>,
+        sampled: &MaterialSample<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
         if self.settings.roulette_floor < 1.0 {
             let counts = vertex.group.each(&paths.state.rough_bounces);
-            let rough = (vertex.active & !drawn.is_mirror).to_bits();
+            let rough = (vertex.active & !sampled.is_mirror).to_bits();
             let counts = T::each(
                 #[inline(always)]
                 |lane| counts.as_ref()[lane] + (rough >> lane & 1),
@@ -84,7 +84,7 @@ impl<T: Real> Integrator<'_, T> {
 fn record_scattered<T: Real, R: Recorder>(
     layers: &Layers<T>,
     vertex: &PathVertex<T>,
-    drawn: &MaterialSample<T>,
+    sampled: &MaterialSample<T>,
     throughput: Vec3<T>,
     paths: &mut Paths<T::Scalar, R>,
 ) {
@@ -101,12 +101,12 @@ fn record_scattered<T: Real, R: Recorder>(
     vertex
         .members
         .record(&mut paths.outputs, vertex.active, |lane| Event::Scattered {
-            layer: drawn.layer,
+            layer: sampled.layer,
             probabilities: Layer::ALL.iter().zip(probabilities).map(probability(lane)).collect(),
-            direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
-            factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
-            density: single(drawn.density.lane(lane)),
-            is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
+            direction: sampled.wi.to_each().as_ref()[lane].to_f32(),
+            factor: sampled.throughput.to_each().as_ref()[lane].to_f32(),
+            density: single(sampled.density.lane(lane)),
+            is_mirror: sampled.is_mirror.to_bits() >> lane & 1 == 1,
             throughput: throughput.to_each().as_ref()[lane].to_f32(),
         });
 }

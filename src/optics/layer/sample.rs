@@ -62,7 +62,7 @@ pub struct MaterialNumbers<T> {
     pub below: [T; 3],
 }
 
-/// Samples a direction from one of the layers. `wants_density` is false if no other strategy competes: then the geometric
+/// Samples a direction from one of the layers. `needs_density` is false if no other strategy competes: then the geometric
 /// lobe never computes its density.
 pub fn material_sample<T: Real>(
     material: &Material<T>,
@@ -70,7 +70,7 @@ pub fn material_sample<T: Real>(
     surface: &Surface<T>,
     layers: &Layers<T>,
     numbers: MaterialNumbers<T>,
-    wants_density: bool,
+    needs_density: bool,
 ) -> MaterialSample<T> {
     T::out_of_line(
         #[inline(always)]
@@ -81,7 +81,7 @@ pub fn material_sample<T: Real>(
                 surface,
                 layers: *layers,
                 numbers,
-                wants_density,
+                needs_density,
                 xi: numbers.lobe,
                 choice: numbers.lobe[0],
                 is_apart: T::Mask::splat(false),
@@ -102,7 +102,7 @@ struct Drawing<'a, T: Real> {
     /// Shares, updated by directions that were sampled first.
     layers: Layers<T>,
     numbers: MaterialNumbers<T>,
-    wants_density: bool,
+    needs_density: bool,
     /// The numbers that draw a direction.
     xi: [T; 3],
     /// The number that chooses a layer.
@@ -161,7 +161,7 @@ impl<T: Real> Drawing<'_, T> {
         let share = &self.layers[L::LAYER];
         let is_mirror = is_mirror(&lobe.shape);
         let mut density = T::zero();
-        if self.wants_density && !is_mirror.all() {
+        if self.needs_density && !is_mirror.all() {
             let [_, of_lobe] = lobe_of::<T, L>(self.material, self.surface, lobe, drawn.wi);
             let density_there = share.reached * toward.probability * of_lobe;
             density = T::select(is_mirror, T::zero(), density_there);

@@ -1,7 +1,7 @@
 //! A session on a thread of its own, so that the window never waits.
 //!
 //! The window submits documents and the worker publishes snapshots; the latest of each wins. They communicate through two
-//! short locks. Work is cut into steps of [`STEP`], and orders are read after each.
+//! short locks. Work is cut into steps of [`STEP`], and commands are read after each.
 
 mod denoising;
 mod stage;
@@ -30,7 +30,7 @@ use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Loading, Model, ModelOptions, ModelSource};
 
-/// Longest rendering step between two reads of the orders; and the step before the first image, which must not wait for
+/// Longest rendering step between two reads of the commands; and the step before the first image, which must not wait for
 /// later samples.
 const STEP: Duration = Duration::from_millis(20);
 const FIRST_STEP: Duration = Duration::from_millis(6);
@@ -223,9 +223,9 @@ impl InjectedFault {
     }
 }
 
-/// Pending orders of the window.
+/// Pending commands of the window.
 #[derive(Debug, Default)]
-struct Orders {
+struct Commands {
     submission: Option<Submission>,
     models: Vec<(ModelSource, ModelOptions)>,
     environments: Vec<EnvironmentSource>,
@@ -239,7 +239,7 @@ struct Orders {
     quit: bool,
 }
 
-impl Orders {
+impl Commands {
     fn is_empty_beside_submission(&self) -> bool {
         self.models.is_empty()
             && self.environments.is_empty()
@@ -264,15 +264,15 @@ struct Submission {
 
 #[derive(Default)]
 struct Shared {
-    orders: Mutex<OrderBook>,
-    ordered: Condvar,
+    commands: Mutex<CommandQueue>,
+    command_arrived: Condvar,
     snapshot: Mutex<Arc<Snapshot>>,
     events: Mutex<Vec<Event>>,
 }
 
 #[derive(Default)]
-struct OrderBook {
-    orders: Orders,
+struct CommandQueue {
+    commands: Commands,
     is_paused: bool,
     last_revision: u64,
 }
@@ -280,8 +280,8 @@ struct OrderBook {
 impl Shared {
     /// Wakes the thread. Takes the lock, because the thread holds it while it decides to wait: so no wake-up is lost.
     fn wake(&self) {
-        let _orders = lock(&self.orders);
-        self.ordered.notify_one();
+        let _commands = lock(&self.commands);
+        self.command_arrived.notify_one();
     }
 }
 
@@ -330,77 +330,77 @@ impl Worker {
 
     /// Submits a document to render instead of the last one. Returns its revision, which its images carry.
     pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
-        let mut book = lock(&self.shared.orders);
-        book.last_revision += 1;
-        let revision = book.last_revision;
-        book.orders.submission = Some(Submission {
+        let mut queue = lock(&self.shared.commands);
+        queue.last_revision += 1;
+        let revision = queue.last_revision;
+        queue.commands.submission = Some(Submission {
             document: Arc::new(document.clone()),
             pace,
             revision,
             at: Instant::now(),
         });
-        self.shared.ordered.notify_one();
+        self.shared.command_arrived.notify_one();
         revision
     }
 
     /// Pauses or resumes rendering. Submissions are still shown with their first sample while paused.
     pub fn pause(&self, is_paused: bool) {
-        lock(&self.shared.orders).is_paused = is_paused;
-        self.shared.ordered.notify_one();
+        lock(&self.shared.commands).is_paused = is_paused;
+        self.shared.command_arrived.notify_one();
     }
 
     /// Loads a model in the background; an [`Event`] reports the result.
     pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.models.push((source, options)));
+        self.send(|commands| commands.models.push((source, options)));
     }
 
     /// Loads an environment in the background; an [`Event`] reports the result.
     pub fn open_environment(&self, source: EnvironmentSource) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.environments.push(source));
+        self.send(|commands| commands.environments.push(source));
     }
 
     /// Makes the image's layers as soon as it has samples at full resolution; an [`Event`] returns them with the file name.
     pub fn make_layers(&self, path: PathBuf) {
-        self.order(|orders| orders.layers.push(path));
+        self.send(|commands| commands.layers.push(path));
     }
 
     /// Reads the scene's files again; an [`Event`] reports the result. If they cannot be read, the current render continues.
     pub fn reload(&self) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.reloads += 1);
+        self.send(|commands| commands.reloads += 1);
     }
 
     /// Restarts the render.
     pub fn restart(&self) {
-        self.order(|orders| orders.restart = true);
+        self.send(|commands| commands.restart = true);
     }
 
     /// Injects losses of the GPU's device, as by a driver's reset: at `moment`, and `times` in all. No effect on the CPU
     /// engine. For tests.
     pub fn lose_device(&self, moment: Moment, times: u32) {
-        self.order(|orders| orders.faults.push(InjectedFault::Lost(moment, times)));
+        self.send(|commands| commands.faults.push(InjectedFault::Lost(moment, times)));
     }
 
     /// Makes the GPU refuse buffers above a size in bytes, as a small adapter does. For tests.
     pub fn limit_buffers(&self, bytes: u64) {
-        self.order(|orders| orders.faults.push(InjectedFault::Limited(bytes)));
+        self.send(|commands| commands.faults.push(InjectedFault::Limited(bytes)));
     }
 
     /// Switches to another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
-        self.order(|orders| orders.engine = Some(choice));
+        self.send(|commands| commands.engine = Some(choice));
     }
 
     /// Shows the image, or a map of its error or samples; the render continues.
     pub fn show(&self, shown: Shown) {
-        self.order(|orders| orders.shown = Some(shown));
+        self.send(|commands| commands.shown = Some(shown));
     }
 
     /// Turns per-pixel quantities ([`Picture::facts`]) on or off.
     pub fn set_inspected(&self, is_inspected: bool) {
-        self.order(|orders| orders.is_inspected = Some(is_inspected));
+        self.send(|commands| commands.is_inspected = Some(is_inspected));
     }
 
     /// Cancels loading; the current render continues.
@@ -413,9 +413,9 @@ impl Worker {
         self.assets.loading()
     }
 
-    fn order(&self, change: impl FnOnce(&mut Orders)) {
-        change(&mut lock(&self.shared.orders).orders);
-        self.shared.ordered.notify_one();
+    fn send(&self, change: impl FnOnce(&mut Commands)) {
+        change(&mut lock(&self.shared.commands).commands);
+        self.shared.command_arrived.notify_one();
     }
 
     /// The latest snapshot.
@@ -447,7 +447,7 @@ impl Drop for Worker {
     /// Asks the thread to end. Leaves it behind if that takes longer than [`SHUTDOWN_TIMEOUT`], as while it reads a large
     /// file.
     fn drop(&mut self) {
-        self.order(|orders| orders.quit = true);
+        self.send(|commands| commands.quit = true);
         let begun = Instant::now();
         while let Some(thread) = &self.thread
             && !thread.is_finished()

@@ -1,4 +1,4 @@
-//! The worker's thread: follows orders, steps the session, publishes images.
+//! The worker's thread: executes commands, steps the session, publishes images.
 
 mod load;
 mod publish;
@@ -39,7 +39,7 @@ const SPEED_WEIGHT: f64 = 0.1;
 pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
     let mut state = State::new(shared, repaint, assets);
     state.open(choice);
-    while state.turn().is_some() {}
+    while state.run_once().is_some() {}
 }
 
 struct State<'a> {
@@ -110,45 +110,45 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Follows orders, then renders a step. Returns `None` to end the thread.
-    fn turn(&mut self) -> Option<()> {
-        let (orders, is_paused) = self.await_orders();
-        if orders.quit {
+    /// Executes commands, then renders a step. Returns `None` to end the thread.
+    fn run_once(&mut self) -> Option<()> {
+        let (commands, is_paused) = self.await_commands();
+        if commands.quit {
             return None;
         }
-        if let Some(choice) = orders.engine {
+        if let Some(choice) = commands.engine {
             self.open(choice);
             self.restart();
         }
         if let Some(session) = &mut self.session {
-            orders.faults.iter().for_each(|fault| fault.inject(session));
+            commands.faults.iter().for_each(|fault| fault.inject(session));
         }
-        (0..orders.reloads).for_each(|_| self.reload());
-        if orders.restart {
+        (0..commands.reloads).for_each(|_| self.reload());
+        if commands.restart {
             self.guarded(|state| {
                 state.session()?.reset();
                 Ok(())
             });
             self.restart();
         }
-        if orders.shown.is_some() || orders.is_inspected.is_some() {
-            self.shown = orders.shown.unwrap_or(self.shown);
-            self.is_inspected = orders.is_inspected.unwrap_or(self.is_inspected);
+        if commands.shown.is_some() || commands.is_inspected.is_some() {
+            self.shown = commands.shown.unwrap_or(self.shown);
+            self.is_inspected = commands.is_inspected.unwrap_or(self.is_inspected);
             if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
                 self.guarded(Self::republish);
             }
         }
-        orders
+        commands
             .models
             .into_iter()
             .for_each(|(source, options)| self.load_model(source, options));
-        orders
+        commands
             .environments
             .into_iter()
             .for_each(|source| self.load_environment(source));
-        self.requested_layers.extend(orders.layers);
+        self.requested_layers.extend(commands.layers);
         self.collect_denoised();
-        if let Some(submission) = orders.submission {
+        if let Some(submission) = commands.submission {
             self.accept(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
             self.settle();
@@ -507,7 +507,7 @@ impl State<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::worker::{OrderBook, Orders, Pace};
+    use crate::render::worker::{CommandQueue, Commands, Pace};
     use crate::scene::ModelSource;
 
     #[test]
@@ -533,14 +533,14 @@ mod tests {
         });
         for _ in 0..5 {
             // Something to do, so that no turn waits.
-            *lock(&shared.orders) = OrderBook {
-                orders: Orders {
+            *lock(&shared.commands) = CommandQueue {
+                commands: Commands {
                     environments: vec![EnvironmentSource::Furnace],
-                    ..Orders::default()
+                    ..Commands::default()
                 },
-                ..OrderBook::default()
+                ..CommandQueue::default()
             };
-            state.turn().expect("nobody told it to go");
+            state.run_once().expect("nobody told it to go");
         }
         let events = lock(&shared.events);
         let is_failure =
