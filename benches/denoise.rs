@@ -27,7 +27,7 @@ use glossmith::render::worker::{Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Luma, Rgb};
 
 type Failure = Box<dyn std::error::Error>;
@@ -188,9 +188,9 @@ fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> 
         Ok(document)
     };
     let pictured = |document: &mut Document, target: TextureTarget, file: &Path, scale: f32| {
-        let texture = OwnTexture {
+        let texture = UserTexture {
             scale,
-            ..OwnTexture::of(file.to_owned())
+            ..UserTexture::of(file.to_owned())
         };
         document.materials[0].put_texture(target, texture);
     };
@@ -227,7 +227,7 @@ fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> 
 }
 
 fn finish(session: &mut Session, document: &Document) -> Result<Film, Failure> {
-    session.forget();
+    session.reset();
     session.submit(document)?;
     while !session.step(Duration::from_millis(100))?.is_done {}
     Ok(session.film()?.clone())
@@ -277,18 +277,18 @@ fn undivided(film: &Film) -> Noisy {
 #[derive(Default)]
 struct Told {
     true_squared: f64,
-    told_squared: f64,
+    estimated_squared: f64,
     inside: u32,
     count: u32,
 }
 
 impl Told {
-    fn add(&mut self, true_squared: f64, told: Option<Distance>) {
+    fn add(&mut self, true_squared: f64, estimate: Option<Distance>) {
         self.true_squared += true_squared;
         self.count += 1;
-        let Some(told) = told else { return };
-        self.told_squared += told.value.powi(2);
-        self.inside += u32::from((told.low..=told.high).contains(&true_squared.max(0.0).sqrt()));
+        let Some(estimate) = estimate else { return };
+        self.estimated_squared += estimate.value.powi(2);
+        self.inside += u32::from((estimate.low..=estimate.high).contains(&true_squared.max(0.0).sqrt()));
     }
 
     /// The true error in percent; told over true; percent inside the band.
@@ -296,7 +296,7 @@ impl Told {
         format!(
             "{:.3} | {:.2} | {:.0}",
             100.0 * (self.true_squared / f64::from(self.count)).sqrt(),
-            (self.told_squared / self.true_squared).sqrt(),
+            (self.estimated_squared / self.true_squared).sqrt(),
             100.0 * f64::from(self.inside) / f64::from(self.count)
         )
     }
@@ -310,11 +310,11 @@ fn truth(
     (most, read): (u32, Reader),
 ) -> Result<(), Failure> {
     println!(
-        "## Errors told and true, {0} x {0}, {1} renders",
+        "## Estimated and true errors, {0} x {0}, {1} renders",
         extent.side, extent.renders
     );
     println!(
-        "| scene | samples | samples' error, % | at once, % | denoised, % | told/true | inside, % | auto, % | told/true | inside, % | auto/samples | relMSE |"
+        "| scene | samples | samples' error, % | at once, % | denoised, % | estimated/true | inside, % | auto, % | estimated/true | inside, % | auto/samples | relMSE |"
     );
     for (name, document) in scenes {
         let mut document = document.clone();
@@ -369,7 +369,7 @@ fn guides_cost(session: &mut Session, scenes: &[(&str, Document)], is_quick: boo
         (document.render.width, document.render.height, document.render.samples) = (side, side, 16);
         let mut seconds = |denoise: Denoise, seed: u32| -> Result<f64, Failure> {
             (document.view.denoise, document.render.seed) = (denoise, seed);
-            session.forget();
+            session.reset();
             session.submit(&document)?;
             let begun = Instant::now();
             while !session.step(Duration::from_secs(10))?.is_done {}

@@ -125,7 +125,7 @@ fn await_kernel(worker: &Worker) {
     loop {
         std::thread::sleep(Duration::from_millis(100));
         let snapshot = worker.snapshot();
-        if snapshot.activity == Activity::Rendering && !snapshot.progress.is_standing_in {
+        if snapshot.activity == Activity::Rendering && !snapshot.progress.is_fallback {
             return;
         }
     }

@@ -122,7 +122,7 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
 }
 
 fn finish(session: &mut Session, document: &Document) -> Result<(Film, Progress), Failure> {
-    session.forget();
+    session.reset();
     session.submit(document)?;
     while !session.step(Duration::from_millis(100))?.is_done {}
     let progress = session.progress();
@@ -142,7 +142,7 @@ fn true_error(film: &Film, reference: &[f64]) -> f64 {
 
 fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
     println!("## True error inside the 95 % band, of {} renders", extent.renders);
-    println!("| scene | sequence | samples | true error | told over true | by the spread over true | inside |");
+    println!("| scene | sequence | samples | true error | estimated over true | by the spread over true | inside |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (name, document) in scenes {
         let mut document = document.clone();
@@ -159,18 +159,18 @@ fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
                     document.render.seed = seed;
                     let (film, _) = finish(session, &document)?;
                     let error = true_error(&film, &reference);
-                    let told = noise(&film).ok_or("no error is told")?;
-                    inside += u32::from((told.low..=told.high).contains(&error));
-                    for (sum, x) in squares.iter_mut().zip([error, told.relative, told.from_spread]) {
+                    let estimate = noise(&film).ok_or("no error is estimated")?;
+                    inside += u32::from((estimate.low..=estimate.high).contains(&error));
+                    for (sum, x) in squares.iter_mut().zip([error, estimate.relative, estimate.from_spread]) {
                         *sum += x * x / f64::from(extent.renders);
                     }
                 }
-                let [error, told, spread] = squares.map(f64::sqrt);
+                let [error, estimate, spread] = squares.map(f64::sqrt);
                 println!(
                     "| {name} | {} | {samples} | {:.2} % | {:.3} | {:.3} | {:.1} % |",
                     sequence.name(),
                     100.0 * error,
-                    told / error,
+                    estimate / error,
                     spread / error,
                     100.0 * f64::from(inside) / f64::from(extent.renders)
                 );
@@ -201,7 +201,7 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
             (document.render.adaptive, document.render.noise) = (Some(false), None);
             document.render.samples = extent.samples_even;
             let (film, even) = finish(session, &document)?;
-            wanted = noise(&film).ok_or("no error is told")?.relative;
+            wanted = noise(&film).ok_or("no error is estimated")?.relative;
             (document.render.adaptive, document.render.noise) = (Some(true), Some(wanted));
             document.render.samples = u32::MAX;
             let (film_adaptive, progress) = finish(session, &document)?;

@@ -68,10 +68,10 @@ fn time_text(since_1970: Duration) -> String {
 fn message(error: &anyhow::Error) -> String {
     error
         .chain()
-        .fold(String::new(), |told, cause| match cause.to_string() {
-            cause if told.is_empty() => cause,
-            cause if told.contains(&cause) => told,
-            cause => format!("{told}: {cause}"),
+        .fold(String::new(), |chain, cause| match cause.to_string() {
+            cause if chain.is_empty() => cause,
+            cause if chain.contains(&cause) => chain,
+            cause => format!("{chain}: {cause}"),
         })
 }
 

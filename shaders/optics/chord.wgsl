@@ -1,4 +1,4 @@
-// The geometric lobe's density where the lobe is a unit ball. Twin of src/optics/chord.rs, which explains the mathematics.
+// The geometric lobe's density with the lobe as a unit ball. Twin of src/optics/chord.rs, which explains the mathematics.
 #import "optics/curve/registry"
 
 const PEAK_RADIUS: f32 = 1e-7;
@@ -50,7 +50,7 @@ fn chord_density(
     curve: u32, table: u32, kappa: f32, stretch: f32, normal: vec3f, mirror: vec3f, light: vec3f,
 ) -> f32 {
     let chord = chord_through(curve_distance_max(curve, table), kappa, stretch, normal, mirror, light);
-    // Nothing is met, or nothing ahead.
+    // No intersection, or none ahead.
     if chord.nearest >= chord.last.x || chord.first.y <= -chord.last.y {
         return 0.0;
     }
@@ -201,7 +201,8 @@ fn chord_integrand(curve: u32, chord: Chord, mu: f32, exp_v: f32) -> f32 {
 
 fn chord_table_integral(table: u32, chord: Chord) -> f32 {
     var sum = 0.0;
-    // Spheres that are met twice ahead of the surface point, where what is odd in W cancels; then those around it, met once.
+    // Spheres that are intersected twice ahead of the surface point, where odd terms in W cancel; then those around it,
+    // intersected once.
     for (var times = 2u; times > 0u; times--) {
         let is_around = times == 1u;
         let start = select(vec2f(chord.nearest, 0.0), vec2f(chord.first.x, abs(chord.first.y)), is_around);

@@ -55,7 +55,7 @@ fn has_flag(material: Material, flag: u32) -> bool {
     return (material.flags & flag) != 0u;
 }
 
-// What vertices say of opacity and emission.
+// Whether vertices carry opacity or emission.
 fn has_vertex_flag(material: Material, flag: u32) -> bool {
     return PLAN_VERTEX_COLORS == 1u && has_flag(material, flag);
 }

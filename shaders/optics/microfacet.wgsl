@@ -1,4 +1,4 @@
-// What the microfacet lobes share. Twin of src/optics/microfacet.rs; local frame, n = +z.
+// Common part of the microfacet lobes. Twin of src/optics/microfacet.rs; local frame, n = +z.
 #import "optics/lobe/lobe"
 
 struct Facet {

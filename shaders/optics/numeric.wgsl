@@ -36,8 +36,8 @@ fn arctan2(y: f32, x: f32) -> f32 {
     return select(angle, -angle, y < 0.0);
 }
 
-// The place on the unit circle after so many turns, in [-1e4, 1e4]: cosine and sine to 2e-7. Instead of the built-ins, which
-// may be 5e-4 off: a tenth of what a sharp reflection is wide. Polynomials of Cephes.
+// Cosine and sine of an angle in turns, in [-1e4, 1e4], accurate to 2e-7. The built-ins may be off by 5e-4, a tenth of the
+// width of a sharp reflection. Polynomials of Cephes.
 fn unit_circle(turns: f32) -> vec2f {
     let quarters = 4.0 * turns;
     let quadrant = round(quarters);

@@ -31,8 +31,8 @@ fn refracting_cosines(wo: vec3f, wi: vec3f, eta: f32) -> vec2f {
     return clamp(vec2f(dot(wo, h), -dot(wi, h)), vec2f(0.0), vec2f(1.0));
 }
 
-// What turns the density of the direction that the facet mirrors `wo` to into the density of `wi`; 0 where no facet
-// refracts one to the other, and where `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
+// Factor from the density of the facet's mirror direction of `wo` to the density of `wi`. 0 if no facet refracts one to the
+// other, or if `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
 fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec3f) -> f32 {
     let square = max(dot(along, along), 1e-30);
     let h = along / sqrt(square);

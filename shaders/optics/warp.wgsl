@@ -13,13 +13,13 @@ fn uniform_disc(xi: vec2f) -> vec2f {
     return safe_sqrt(xi.x) * unit_circle(xi.y);
 }
 
-// A part of [0, 1) in which a number lies, and where in it, stretched to [0, 1) again.
+// A part of [0, 1) that a number selects, and the number remapped to [0, 1) within it.
 struct Part {
     is_below: bool,
-    stretched: f32,
+    remapped: f32,
 }
 
-// One number chooses and draws from what it chose.
+// Chooses with a number, and remaps it for further use.
 fn split(number: f32, share: f32) -> Part {
     let is_below = number < share;
     let start = select(share, 0.0, is_below);

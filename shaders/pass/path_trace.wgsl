@@ -10,107 +10,107 @@
 #import "scene/surface"
 #import "scene/visibility"
 
-// Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
+// Random pairs before the first bounce (pixel, lens) and per bounce (two for the lobe, two for light and roulette).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
-// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+// First dimension of the directions below the specular lobe, two pairs per bounce: beyond the dimensions of every path.
 const BELOW_DIMENSION: u32 = 4096u;
-// The pairs of numbers for what a shadow catcher does with a camera ray, and for the blur of the background below it.
+// Dimensions of the shadow catcher's choice to mirror, and (the next one) of the background's blur.
 const CATCHER_DIMENSION: u32 = 12288u;
-// What a shadow catcher makes of a path: it has met none; the light that arrives tells how much of the background is seen,
-// or, over a transparent one, its alpha; it is mirrored.
-const CAUGHT_NOT: u32 = 0u;
-const CAUGHT_SHADOW: u32 = 1u;
-const CAUGHT_ALPHA: u32 = 2u;
-const CAUGHT_MIRRORED: u32 = 3u;
-// The slot of no solid.
+// A path's state after its camera ray hit the shadow catcher: no visible hit; shadow over an opaque background; shadow over
+// a transparent one, whose light becomes alpha; mirrored.
+const CATCHER_MISS: u32 = 0u;
+const CATCHER_SHADOW: u32 = 1u;
+const CATCHER_SHADOW_ALPHA: u32 = 2u;
+const CATCHER_MIRRORED: u32 = 3u;
+// The slot that stands for no medium.
 const NO_MEDIUM: u32 = 0xffffffffu;
-// Bounces before Russian roulette.
+// Number of bounces without Russian roulette.
 const ROULETTE_START: u32 = 3u;
-// Beyond it the square would overflow: dropped and counted.
+// Largest radiance per channel that is kept. Its square would overflow; larger samples are dropped and counted.
 const RADIANCE_MAX: f32 = 1e18;
 
-// What a dispatch renders of one tile.
+// A tile of a dispatch: its top left pixel, first sample and samples per pixel.
 struct Tile {
-    // Its top left pixel.
+    // In pixels.
     origin: vec2u,
     first_sample: u32,
     sample_count: u32,
 }
 
-// Sums of a pixel's colours since the host last took them.
+// Sums of a pixel's colours since the host last read them.
 struct PixelColors {
-    // With the coverage.
+    // rgb, and coverage in a.
     all: vec4f,
-    // The same of the odd samples alone, one of two independent halves, with their number.
+    // rgb of the odd-numbered samples alone (the second half, for the variance), and their number in a.
     odd: vec4f,
 }
 
-// Other sums over the samples of a pixel since the host last took them.
+// Other sums over a pixel's samples since the host last read them.
 struct PixelStatistics {
-    // Of all samples, and of the odd ones.
+    // x: all samples; y: the odd-numbered ones.
     luminance_squared: vec2f,
-    // Samples in the sums, and samples that were not sound.
+    // x: samples in the sums; y: samples dropped as not sound.
     kept_dropped: vec2f,
-    // Rays, and luminance that limiting fireflies took.
+    // x: rays traced; y: luminance that the firefly clamp removed.
     rays_clamped: vec2f,
-    // Luminance of the throughput of paths that ended at their last bounce.
+    // Throughput's luminance of paths that the bounce limit ended.
     cut: f32,
     unused: f32,
 }
 
-// Sums over the even or the odd ones of a pixel's first samples of what they saw first.
+// Sums of the first-hit guides over a pixel's first samples, of the even-numbered or the odd-numbered ones.
 struct GuideSums {
-    // Each times what mirrors and glass before it leave of the light.
+    // Times the throughput of the mirrors and glass before it.
     albedo: vec3f,
-    // How many samples met something.
+    // Number of samples whose camera ray hit.
     hits: f32,
     normal: vec3f,
     // Along the camera's axis, in the geometry's units.
     depth: f32,
 }
 
-// x: the first row of pixels that the sums are of.
+// x: the first pixel row of the sums.
 @group(1) @binding(0) var<uniform> band: vec4u;
-// What this dispatch renders, a Tile each; TILE_COLUMNS in a row.
+// The tiles of this dispatch, one texel each (see Tile); TILE_COLUMNS per row.
 @group(1) @binding(1) var tiles: texture_2d<u32>;
-// Sums over the samples of a pixel since the host last took them.
+// One element per pixel.
 @group(1) @binding(2) var<storage, read_write> color_sums: array<PixelColors>;
 @group(1) @binding(3) var<storage, read_write> statistics: array<PixelStatistics>;
-// Two a pixel: of the even samples and of the odd ones.
+// Two elements per pixel: even-numbered samples, then odd-numbered ones.
 @group(1) @binding(4) var<storage, read_write> guide_sums: array<GuideSums>;
 
-// Pixels along the side of a tile, which is a workgroup.
+// Side of a tile in pixels; a tile is a workgroup.
 const TILE_SIDE: u32 = 8u;
 
 struct PathResult {
     radiance: vec3f,
     alpha: f32,
     rays: u32,
-    // Luminance that limiting fireflies took.
+    // Luminance that the firefly clamp removed.
     clamped: f32,
-    // Luminance of the throughput where it ended at its last bounce.
+    // Throughput's luminance if the bounce limit ended the path.
     cut: f32,
-    // What it saw first, where it is one of those that tell.
-    seen: GuideSums,
+    // First-hit guides.
+    guides: GuideSums,
 }
 
-fn far_radiance(direction: vec3f) -> vec3f {
+fn world_environment_radiance(direction: vec3f) -> vec3f {
     let local = environment_local_from_world(direction, globals.environment_rotation);
     return environment_radiance(local) * globals.environment_strength;
 }
 
-// The share of what a path that left the scene sees, weighed against light sampling.
-fn far_share(direction: vec3f, lobe_density: f32, is_mirror: bool) -> f32 {
+// MIS weight of BSDF sampling for the environment's light, in [0, 1].
+fn environment_mis_weight(direction: vec3f, lobe_density: f32, is_mirror: bool) -> f32 {
     if !samples_environment() || is_mirror {
         return 1.0;
     }
     let local = environment_local_from_world(direction, globals.environment_rotation);
     let light_density = globals.environment_probability * environment_density(local, globals.environment_cells_size);
-    return lobe_share(lobe_density, light_density);
+    return mis_weight_lobe(lobe_density, light_density);
 }
 
-// What a surface emits that a path met at `distance`, weighed against light sampling.
+// Emission of a surface that the path hit after `distance`, times the MIS weight of BSDF sampling.
 fn emitted_light(
     point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
 ) -> vec3f {
@@ -126,32 +126,32 @@ fn emitted_light(
         return vec3f(0.0);
     }
     let cosine = dot(point.flat, point.surface.wo);
-    return emission * lobe_share(lobe_density, light_density(material.light_luminance, cosine, distance));
+    return emission * mis_weight_lobe(lobe_density, light_density(material.light_luminance, cosine, distance));
 }
 
-// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
-fn lobe_share(lobe_density: f32, light_density: f32) -> f32 {
+// Balance-heuristic weight of BSDF sampling (Veach 1997).
+fn mis_weight_lobe(lobe_density: f32, light_density: f32) -> f32 {
     return lobe_density / max(lobe_density + light_density, 1e-30);
 }
 
-// Whether directions are drawn from the environment.
+// Whether light sampling samples the environment.
 fn samples_environment() -> bool {
     return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
 }
 
-// Whether directions are drawn towards the triangles that emit.
+// Whether light sampling samples emitting triangles.
 fn samples_emitters() -> bool {
     return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
 }
 
-// Whether light is sampled at all.
+// Whether light is sampled (next-event estimation).
 fn samples_light() -> bool {
     return samples_environment() || samples_emitters();
 }
 
-// Whether the first number of a light sample chooses the environment, not the triangles that emit; and the number that
-// draws from what it chose.
-fn choose_afar(xi: f32) -> Part {
+// Chooses by a light sample's first number between the environment (is_below) and the emitters; also returns the remapped
+// number.
+fn choose_environment(xi: f32) -> Part {
     if !samples_emitters() {
         return Part(true, xi);
     }
@@ -161,37 +161,38 @@ fn choose_afar(xi: f32) -> Part {
     return split(xi, globals.environment_probability);
 }
 
-// A direction drawn from the environment, whose radiance is looked up once it is known to arrive, or from the triangles
-// that emit.
-fn draw_light(point: SurfacePoint, is_from_afar: bool, xi: vec3f) -> LightSample {
-    if !is_from_afar {
+// Samples a direction to the environment or an emitter. The environment's radiance is left out: it is looked up only if the
+// shadow ray is unoccluded.
+fn sample_light(point: SurfacePoint, is_environment: bool, xi: vec3f) -> LightSample {
+    if !is_environment {
         return light_sample(point.position, point.error, xi);
     }
-    let drawn = environment_sample(xi, globals.environment_cells_size);
-    let direction = environment_world_from_local(drawn.direction, globals.environment_rotation);
-    return LightSample(direction, drawn.density * globals.environment_probability, vec3f(0.0), 1e30);
+    let sampled = environment_sample(xi, globals.environment_cells_size);
+    let direction = environment_world_from_local(sampled.direction, globals.environment_rotation);
+    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30);
 }
 
-// Light drawn at a surface point, on the way there.
-struct SampledLight {
+// A shadow ray and the light that it may bring.
+struct ShadowRay {
     ray: Ray,
     distance: f32,
-    // What it adds to the picture where nothing is in its way: times the radiance where it comes from afar.
+    // Contribution if unoccluded; for the environment without its radiance.
     value: vec3f,
-    is_from_afar: bool,
-    // Where it is proven that nothing is.
-    is_free: bool,
-    // Where it is to be looked after.
-    waits: bool,
+    is_environment: bool,
+    // True if known to be unoccluded: no traversal needed.
+    is_known_miss: bool,
+    // True until the ray has been traced.
+    is_pending: bool,
 }
 
-// True where it is proven that nothing lies ahead: outside a convex body.
-fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
+// True if a ray from the point is known to miss: outside a convex body, in a scene without interreflection.
+fn is_known_miss(point: SurfacePoint, wi: vec3f) -> bool {
     return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.flat, wi) > 0.0;
 }
 
-// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
-fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> vec3f {
+// A contribution after `reflections` bounces of the light, limited by the firefly clamp; adds the removed luminance to
+// `clamped`.
+fn clamp_fireflies(contribution: vec3f, reflections: u32, clamped: ptr<function, f32>) -> vec3f {
     if reflections < globals.least_reflections {
         return vec3f(0.0);
     }
@@ -200,11 +201,11 @@ fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> 
         return contribution;
     }
     let kept = globals.firefly_clamp / largest;
-    *taken += luminance(contribution) * (1.0 - kept);
+    *clamped += luminance(contribution) * (1.0 - kept);
     return contribution * kept;
 }
 
-// The slot of the solid that a path is in which leaves a surface towards wi.
+// Slot of the medium that a path enters in direction wi.
 fn medium_towards(medium: u32, point: SurfacePoint, slot: u32, wi: vec3f, transmits: bool) -> u32 {
     if !transmits {
         return medium;
@@ -216,16 +217,16 @@ fn medium_towards(medium: u32, point: SurfacePoint, slot: u32, wi: vec3f, transm
     return select(medium, NO_MEDIUM, is_behind);
 }
 
-// What a solid leaves of light over a distance.
-fn kept_over(medium: u32, distance: f32) -> vec3f {
+// Beer-Lambert transmittance of a medium over a distance, per channel.
+fn transmittance_over(medium: u32, distance: f32) -> vec3f {
     if medium == NO_MEDIUM {
         return vec3f(1.0);
     }
     return exp(-material_at(medium).absorption * distance);
 }
 
-// Whether a path that meets nothing looks the environment up.
-fn looks_afar(bounce: u32, was_mirror: bool) -> bool {
+// Whether an escaped path looks up the environment.
+fn needs_environment(bounce: u32, was_mirror: bool) -> bool {
     if bounce == 0u {
         return globals.background_kind == BACKGROUND_BLURRED || globals.background_kind == BACKGROUND_ENVIRONMENT;
     }
@@ -237,66 +238,72 @@ fn blurred(direction: vec3f, xi: vec2f) -> vec3f {
     return world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
 }
 
-// The colour of what the camera sees where it meets nothing, and its alpha; `sky` where it is looked up.
+// Background colour and alpha of camera rays that miss; `sky` is the environment's radiance, if needed.
 fn plain_background(sky: vec3f) -> vec4f {
-    if looks_afar(0u, true) {
+    if needs_environment(0u, true) {
         return vec4f(sky, 1.0);
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
     return select(vec4f(globals.background, 1.0), vec4f(0.0), is_transparent);
 }
 
-// Whether a kernel has light sampling at all.
+// Whether the kernel is compiled with light sampling.
 fn may_sample_light() -> bool {
     return PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u;
 }
 
-// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
+// Background colour and alpha of a camera ray that misses; a blur draws the random pair of `dimension`.
 fn camera_background(direction: vec3f, state: RandomState, dimension: u32) -> vec4f {
     var sky = vec3f(0.0);
-    if looks_afar(0u, true) {
+    if needs_environment(0u, true) {
         var along = direction;
         if globals.background_kind == BACKGROUND_BLURRED {
             along = blurred(direction, random_pair(state, dimension));
         }
-        sky = far_radiance(along);
+        sky = world_environment_radiance(along);
     }
     return plain_background(sky);
 }
 
-// How a path begins anew at the shadow catcher.
-struct Caught {
+// How a path continues after its camera ray hit the shadow catcher.
+struct CatcherHit {
     kind: u32,
     throughput: vec3f,
-    // Of the background where it is mirrored or the catcher is not there; else what has no shadow, since no light of that
-    // colour would reach the place.
+    // Radiance that is added directly: the background if mirrored or invisible; else the background's channels that receive
+    // no light here, which have no shadow.
     radiance: vec3f,
     alpha: f32,
 }
 
-// A camera ray met the shadow catcher; it is not there seen from below, and without light.
-fn catch_shadow(position: vec3f, direction: vec3f, state: RandomState) -> Caught {
+// Hit of a camera ray on the shadow catcher. The catcher is invisible from below and without light.
+fn hit_catcher(position: vec3f, direction: vec3f, state: RandomState) -> CatcherHit {
     let light = catcher_light(globals.catcher_table, position);
-    let is_there = direction.y < 0.0 && max(max(light.x, light.y), light.z) > 0.0;
-    // Where it is not, the numbers are those of a ray that met nothing.
-    let background = camera_background(direction, state, select(FIRST_DIMENSION, CATCHER_DIMENSION + 1u, is_there));
+    let is_visible = direction.y < 0.0 && max(max(light.x, light.y), light.z) > 0.0;
+    // An invisible catcher uses the random pair of a ray that missed.
+    let background = camera_background(direction, state, select(FIRST_DIMENSION, CATCHER_DIMENSION + 1u, is_visible));
     let is_mirrored = random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y);
-    if !is_there || is_mirrored {
-        return Caught(select(CAUGHT_NOT, CAUGHT_MIRRORED, is_there), vec3f(1.0), background.rgb, background.a);
+    if !is_visible || is_mirrored {
+        return CatcherHit(select(CATCHER_MISS, CATCHER_MIRRORED, is_visible), vec3f(1.0), background.rgb, background.a);
     }
     let is_transparent = background.a <= 0.0;
     let shown = select(background.rgb, vec3f(1.0), is_transparent);
     let albedo = material_at(globals.catcher_slot).base_color;
     let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
     let reflected = light * albedo + (vec3f(1.0) - is_lit);
-    let kind = select(CAUGHT_SHADOW, CAUGHT_ALPHA, is_transparent);
-    return Caught(kind, shown * is_lit / reflected, shown * (vec3f(1.0) - is_lit), 1.0);
+    let kind = select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent);
+    return CatcherHit(kind, shown * is_lit / reflected, shown * (vec3f(1.0) - is_lit), 1.0);
 }
 
+// One sample of a pixel: unidirectional path tracing with next-event estimation and multiple importance sampling.
+//
+// A bounce has these steps: trace the last vertex's shadow ray and the path's own ray; if that escaped, add the background or
+// the environment and end; else absorb, record guides, add emission, sample a light, sample the BSDF, play Russian roulette.
+// Each look-up stands in the code once, because copies cost registers and compile time. Hence the loop over both rays.
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
+    // The path's state. A camera ray counts as a mirror's: light sampling could not have drawn it, so its MIS weight is 1.
     var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
@@ -307,204 +314,231 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
-    var leaves = false;
-    var goes_on = true;
-    var light = SampledLight();
-    var seen = GuideSums();
-    var caught = CAUGHT_NOT;
-    var below = Caught();
-    // The slot of the solid that the path is in.
+    var known_miss = false;
+    var is_active = true;
+    var shadow_ray = ShadowRay();
+    var guides = GuideSums();
+    var catcher_state = CATCHER_MISS;
+    var catcher_hit = CatcherHit();
+    // The slot of the medium that the path is in.
     var medium = globals.camera_medium;
-    // Nothing but mirrors and clear glass so far.
-    var looks = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
-    for (var bounce = 0u; goes_on || light.waits; bounce++) {
+    // True while the path has met only mirrors and clear glass.
+    var records_guides = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
+    // A path that ended still has its last shadow ray to trace.
+    for (var bounce = 0u; is_active || shadow_ray.is_pending; bounce++) {
         var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
         var sky = vec3f(0.0);
-        // The light that was drawn at the last surface, then the path itself: a loop, so that the traversal and the
-        // environment's look-up are there once.
+        // Two turns: the last vertex's shadow ray, then the path's own ray. As a loop, so that the traversal and the
+        // environment's look-up are in the kernel once.
         for (var turn = select(1u, 0u, may_sample_light()); turn < 2u; turn++) {
-            let is_light = turn == 0u;
-            if !select(goes_on, light.waits, is_light) {
+            let is_shadow_ray = turn == 0u;
+            if !select(is_active, shadow_ray.is_pending, is_shadow_ray) {
                 continue;
             }
             var along = ray;
             var length = 1e30;
-            var is_free = leaves;
-            if is_light {
-                along = light.ray;
-                length = light.distance;
-                is_free = light.is_free;
+            var skips_traversal = known_miss;
+            if is_shadow_ray {
+                along = shadow_ray.ray;
+                length = shadow_ray.distance;
+                skips_traversal = shadow_ray.is_known_miss;
             }
-            var met = Met(hit, 1.0);
-            if !is_free {
+            // Rays that leave a convex body miss: no traversal needed.
+            var intersection = Intersection(hit, 1.0);
+            if !skips_traversal {
                 var xi = 0.0;
-                if PLAN_ALPHA == 1u && !is_light {
+                if PLAN_ALPHA == 1u && !is_shadow_ray {
                     xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
                 }
-                met = meet(along, length, is_light, xi, &rays);
+                intersection = intersect(along, length, is_shadow_ray, xi, &rays);
             }
-            if !is_light {
-                hit = met.hit;
+            if !is_shadow_ray {
+                hit = intersection.hit;
             }
-            var wants_sky = met.share > 0.0 && light.is_from_afar;
-            if !is_light {
-                wants_sky = hit.triangle == NO_HIT && looks_afar(bounce, was_mirror);
+            // The environment is looked up only where its light arrives: after an unoccluded shadow ray towards it, or after
+            // a miss. A blurred background is seen in a direction of its own.
+            var needs_sky = intersection.transmittance > 0.0 && shadow_ray.is_environment;
+            if !is_shadow_ray {
+                needs_sky = hit.triangle == NO_HIT && needs_environment(bounce, was_mirror);
                 if bounce == 0u && globals.background_kind == BACKGROUND_BLURRED {
                     along.direction = blurred(along.direction, random_pair(state, FIRST_DIMENSION));
                 }
             }
-            if wants_sky {
-                sky = far_radiance(along.direction);
+            if needs_sky {
+                sky = world_environment_radiance(along.direction);
             }
-            if is_light {
-                let arrives = select(vec3f(1.0), sky, light.is_from_afar) * met.share;
-                radiance += limited(light.value * arrives, bounce, &clamped);
-                light.waits = false;
+            // Direct light of the last vertex: `bounce` reflections, as that vertex was number `bounce` - 1.
+            if is_shadow_ray {
+                let arrives = select(vec3f(1.0), sky, shadow_ray.is_environment) * intersection.transmittance;
+                radiance += clamp_fireflies(shadow_ray.value * arrives, bounce, &clamped);
+                shadow_ray.is_pending = false;
             }
         }
-        if !goes_on {
+        if !is_active {
             break;
         }
+        // A miss ends the path: with the camera's background, or with the environment times its MIS weight.
         if hit.triangle == NO_HIT {
-            if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED {
-                radiance += limited(below.radiance, bounce, &clamped);
-                alpha = below.alpha;
-                caught = CAUGHT_NOT;
+            // The catcher's reflection shows the background that the camera ray would have seen without it.
+            if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_MIRRORED {
+                radiance += clamp_fireflies(catcher_hit.radiance, bounce, &clamped);
+                alpha = catcher_hit.alpha;
+                catcher_state = CATCHER_MISS;
                 break;
             }
-            var found = throughput * sky;
+            var contribution = throughput * sky;
             if bounce == 0u {
                 let background = plain_background(sky);
-                found = background.rgb;
+                contribution = background.rgb;
                 alpha = background.a;
             } else {
-                found *= far_share(ray.direction, lobe_density, was_mirror);
+                contribution *= environment_mis_weight(ray.direction, lobe_density, was_mirror);
             }
-            radiance += limited(found, bounce, &clamped);
+            radiance += clamp_fireflies(contribution, bounce, &clamped);
             break;
         }
         var slot = slot_at(hit.triangle);
-        // Here, so that it is the same as that of the surface below, and drivers make one of both.
+        // Next to the surface look-up below, so that drivers merge the loads of both.
         let place = hit_place(hit, ray.direction);
+        // A camera ray that hits the shadow catcher restarts there: with a throughput that turns the light into a share of the
+        // background, or as a mirror ray. Where the catcher is invisible, the path ends with the background.
         if PLAN_SHADOW_CATCHER == 1u {
-            if caught == CAUGHT_MIRRORED {
-                caught = CAUGHT_NOT;
+            if catcher_state == CATCHER_MIRRORED {
+                catcher_state = CATCHER_MISS;
             }
             if bounce == 0u && slot == globals.catcher_slot {
-                below = catch_shadow(place.position, ray.direction, state);
-                caught = below.kind;
-                throughput = below.throughput;
-                if caught == CAUGHT_MIRRORED {
+                catcher_hit = hit_catcher(place.position, ray.direction, state);
+                catcher_state = catcher_hit.kind;
+                throughput = catcher_hit.throughput;
+                if catcher_state == CATCHER_MIRRORED {
                     slot = globals.catcher_reflection_slot;
                 } else {
-                    radiance = limited(below.radiance, 0u, &clamped);
+                    radiance = clamp_fireflies(catcher_hit.radiance, 0u, &clamped);
                 }
-                if caught == CAUGHT_NOT {
-                    alpha = below.alpha;
+                if catcher_state == CATCHER_MISS {
+                    alpha = catcher_hit.alpha;
                     break;
                 }
             }
         }
         let material_there = material_at(slot);
         let point = surface_of(hit, ray.direction, slot, material_there);
-        let is_mirrored = PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED;
+        let is_mirrored = PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_MIRRORED;
         let material = textured_material(material_there, point.uvs, point.vertex_color);
+        // Beer-Lambert absorption along the segment that ends here, before anything at this vertex is weighted.
         if PLAN_ABSORPTION == 1u {
-            // The back of a surface that transmits tells the solid by itself.
+            // At the back of a surface that transmits, the medium is that surface's own.
             let is_within = point.surface.is_inside && material_transmits(material);
-            throughput *= kept_over(select(medium, slot, is_within), hit.t);
+            throughput *= transmittance_over(select(medium, slot, is_within), hit.t);
         }
         let layers = material_layers(material, point.surface);
-        if looks {
+        // Guides for the denoiser. Later vertices overwrite them until one is not specular; depth is always the first hit's.
+        if records_guides {
             let albedo = throughput * material_albedo(material, point.surface, layers);
-            seen.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
-            seen.normal = material_normal(material, point.surface, layers);
+            guides.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
+            guides.normal = material_normal(material, point.surface, layers);
             if bounce == 0u {
-                seen.hits = 1.0;
-                seen.depth = hit.t * dot(ray.direction, camera.forward);
+                guides.hits = 1.0;
+                guides.depth = hit.t * dot(ray.direction, camera.forward);
             }
         }
+        // Emission that the path hit by BSDF sampling, weighted against light sampling.
         if PLAN_EMISSION == 1u {
-            let found = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
-            radiance += limited(found, bounce, &clamped);
+            let contribution = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
+            radiance += clamp_fireflies(contribution, bounce, &clamped);
         }
+        // The bounce limit. In glass it loses energy visibly, so the loss is reported.
         if bounce >= globals.bounces {
             if PLAN_TRANSMISSION == 1u {
                 cut = luminance(throughput);
             }
             break;
         }
+        // Next-event estimation, first half: sample a direction towards the environment or an emitter. A mirror of the catcher
+        // has no light sampling.
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         let transmits = material_transmits(material);
-        let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
+        let needs_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var is_lit = false;
-        var lit = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+        var sampled_light = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
         if may_sample_light() && samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
-            let part = choose_afar(xi.x);
-            xi.x = part.stretched;
-            light.is_from_afar = part.is_below;
-            lit = draw_light(point, part.is_below, xi);
-            is_lit = lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits);
+            let part = choose_environment(xi.x);
+            xi.x = part.remapped;
+            shadow_ray.is_environment = part.is_below;
+            sampled_light = sample_light(point, part.is_below, xi);
+            is_lit = sampled_light.density > 0.0 && (dot(point.surface.normal, sampled_light.direction) > 0.0 || transmits);
         }
+        // The BSDF's value for that light and a sample of its own in one call, because both loop over the same layers.
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
         if passes_on(material) {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
-        let asked = MaterialLight(lit.direction, lit.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS));
+        let light_query = MaterialLight(
+            sampled_light.direction, sampled_light.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS),
+        );
         let steps = material_steps(is_lit, true);
-        let scattered = material_scatter(material, point.surface, layers, steps, numbers, wants_density, asked);
+        let scattered = material_scatter(material, point.surface, layers, steps, numbers, needs_density, light_query);
+        // The shadow ray is traced at the start of the next bounce, where the path's own ray needs the same code. Its value
+        // is the whole contribution but for visibility and the environment's radiance.
         if may_sample_light() && any(scattered.reflected > vec3f(0.0)) {
-            light.ray = Ray(ray_origin(point, lit.direction, transmits), lit.direction);
-            light.distance = lit.distance;
-            light.value = throughput * scattered.reflected / lit.density;
-            light.value *= select(lit.radiance, vec3f(1.0), light.is_from_afar);
-            if PLAN_ABSORPTION == 1u && PLAN_EMITTER_SAMPLING == 1u && !light.is_from_afar {
-                light.value *= kept_over(medium_towards(medium, point, slot, lit.direction, transmits), lit.distance);
+            shadow_ray.ray = Ray(ray_origin(point, sampled_light.direction, transmits), sampled_light.direction);
+            shadow_ray.distance = sampled_light.distance;
+            shadow_ray.value = throughput * scattered.reflected / sampled_light.density;
+            shadow_ray.value *= select(sampled_light.radiance, vec3f(1.0), shadow_ray.is_environment);
+            if PLAN_ABSORPTION == 1u && PLAN_EMITTER_SAMPLING == 1u && !shadow_ray.is_environment {
+                shadow_ray.value *= transmittance_over(
+                    medium_towards(medium, point, slot, sampled_light.direction, transmits), sampled_light.distance,
+                );
             }
-            light.is_free = meets_nothing(point, lit.direction);
-            light.waits = true;
+            shadow_ray.is_known_miss = is_known_miss(point, sampled_light.direction);
+            shadow_ray.is_pending = true;
         }
-        var drawn = scattered.drawn;
+        // The sampled direction: the medium that it enters, and whether it can hit anything.
+        var sampled = scattered.drawn;
         if PLAN_ABSORPTION == 1u {
-            medium = medium_towards(medium, point, slot, drawn.wi, transmits);
+            medium = medium_towards(medium, point, slot, sampled.wi, transmits);
         }
-        leaves = meets_nothing(point, drawn.wi);
-        looks = looks && drawn.is_mirror;
+        known_miss = is_known_miss(point, sampled.wi);
+        records_guides = records_guides && sampled.is_mirror;
         if is_mirrored {
-            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
-            leaves = leaves || !any(drawn.throughput > vec3f(0.0));
-            drawn.throughput = vec3f(1.0);
-            drawn.is_mirror = true;
+            // The catcher's mirror ray keeps its full weight, also the light that facets would block. Its light must not
+            // compete with light sampling, which the catcher does not do.
+            known_miss = known_miss || !any(sampled.throughput > vec3f(0.0));
+            sampled.throughput = vec3f(1.0);
+            sampled.is_mirror = true;
         }
-        throughput *= drawn.throughput;
+        throughput *= sampled.throughput;
+        // Russian roulette by the largest throughput component. In glass the limit is low until enough bounces were rough:
+        // long specular paths carry the caustics. NaN ends the path, too.
         let strength = max(max(throughput.x, throughput.y), throughput.z);
-        goes_on = strength > 0.0;
+        is_active = strength > 0.0;
         var limit = 1.0;
         if PLAN_TRANSMISSION == 1u {
             limit = select(globals.roulette_floor, 1.0, rough_bounces >= ROULETTE_START);
-            rough_bounces += select(1u, 0u, drawn.is_mirror);
+            rough_bounces += select(1u, 0u, sampled.is_mirror);
         }
         if bounce >= ROULETTE_START && strength < limit {
             let survival = strength / limit;
-            goes_on = goes_on && random_pair(state, dimension + 3u).y < survival;
+            is_active = is_active && random_pair(state, dimension + 3u).y < survival;
             throughput /= max(survival, 1e-37);
         }
-        lobe_density = drawn.density;
-        was_mirror = drawn.is_mirror;
-        ray = Ray(ray_origin(point, drawn.wi, transmits), drawn.wi);
+        // What the next vertex needs to weight light that the ray finds.
+        lobe_density = sampled.density;
+        was_mirror = sampled.is_mirror;
+        ray = Ray(ray_origin(point, sampled.wi, transmits), sampled.wi);
     }
-    if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_ALPHA {
-        // A part of the light alone casts no shadow.
+    // Over a transparent background, the catcher's light is its alpha. A render of a part of the light has no shadow.
+    if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_SHADOW_ALPHA {
         let covered = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
-        return PathResult(vec3f(0.0), covered, rays, clamped, cut, seen);
+        return PathResult(vec3f(0.0), covered, rays, clamped, cut, guides);
     }
-    return PathResult(radiance, alpha, rays, clamped, cut, seen);
+    return PathResult(radiance, alpha, rays, clamped, cut, guides);
 }
 
-// Finite and not negative: what may be added to the picture.
+// True for a finite, non-negative colour of at most RADIANCE_MAX: only such samples enter the sums.
 fn is_sound(color: vec3f) -> bool {
     // Infinity fails the upper bound; NaN fails both.
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
@@ -536,10 +570,10 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             sums.cut += path.cut;
             if PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES {
                 let half = 2u * index + sample % 2u;
-                guide_sums[half].albedo += path.seen.albedo;
-                guide_sums[half].hits += path.seen.hits;
-                guide_sums[half].normal += path.seen.normal;
-                guide_sums[half].depth += path.seen.depth;
+                guide_sums[half].albedo += path.guides.albedo;
+                guide_sums[half].hits += path.guides.hits;
+                guide_sums[half].normal += path.guides.normal;
+                guide_sums[half].depth += path.guides.depth;
             }
         } else {
             sums.kept_dropped.y += 1.0;

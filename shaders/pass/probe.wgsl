@@ -1,5 +1,5 @@
-// Single functions of the optics and the traversal, asked about inputs of one's own: hard cases run the very code that
-// pictures are made with. Twin of src/cpu/probe.rs; questions and answers are told in src/job/probe.rs.
+// Single functions of the optics and the traversal on given inputs: tests of hard cases run the renderer's own code. Twin of
+// src/cpu/probe.rs; src/job/probe.rs describes inputs and outputs.
 #import "optics/layer/scatter"
 #import "optics/random"
 #import "scene/traversal"

@@ -1,4 +1,4 @@
-// What drawing directions costs, with nothing around it: the paper's Fig. 8. Twin of src/cpu/sampling.rs.
+// Cost of sampling directions in isolation: the paper's Fig. 8. Twin of src/cpu/sampling.rs.
 #import "optics/frame"
 #import "optics/lobe/registry"
 #import "optics/random"
@@ -6,7 +6,7 @@
 // One lobe and curve a kernel, as a renderer would have it.
 override SAMPLED_LOBE: u32 = 0u;
 override SAMPLED_CURVE: u32 = 0u;
-// 0: random numbers alone; 1: directions, too; 2: and a triangle that they may meet.
+// 0: random numbers alone; 1: directions, too; 2: and a test against a triangle.
 override SAMPLED_STAGE: u32 = 0u;
 
 struct Sampling {
@@ -24,14 +24,14 @@ struct Sampling {
 }
 
 @group(1) @binding(0) var<uniform> sampling: Sampling;
-// A sum for each pixel, so that nothing is left out as unused.
+// A sum per pixel, so that the compiler removes nothing as unused.
 @group(1) @binding(1) var<storage, read_write> sampled: array<f32>;
 
 // The corner of the shining triangle and two of its sides, seen from the quad.
 const LIGHT_CORNER: vec3f = vec3f(-0.5, -0.5, 1.0);
 const LIGHT_SIDES: mat2x3f = mat2x3f(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0));
 
-fn meets_light(direction: vec3f) -> bool {
+fn hits_light(direction: vec3f) -> bool {
     let across = cross(direction, LIGHT_SIDES[1]);
     let determinant = dot(LIGHT_SIDES[0], across);
     let from_corner = -LIGHT_CORNER;
@@ -60,7 +60,7 @@ fn measure(@builtin(global_invocation_id) id: vec3u) {
             continue;
         }
         let wi = raw_sample(shape, frame, wo, xi);
-        if SAMPLED_STAGE == 1u || meets_light(wi) {
+        if SAMPLED_STAGE == 1u || hits_light(wi) {
             sum += wi;
         }
     }

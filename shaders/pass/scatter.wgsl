@@ -9,7 +9,7 @@ struct Scatter {
     wo: vec3f,
     roughness: f32,
     anisotropy: f32,
-    // 0 where the lobe reflects.
+    // Relative index of refraction; 0 for reflection.
     eta: f32,
     lobe: u32,
     curve: u32,

@@ -3,7 +3,7 @@
 struct GridPlace {
     // Row times columns plus column.
     index: u32,
-    // In the cell, in [0, 1]^2.
+    // Position in the cell, in [0, 1]^2.
     place: vec2f,
 }
 

@@ -1,26 +1,26 @@
-// Rays against the geometry: the compressed wide hierarchy of obvhs (Ylitie, Karras, Laine 2017).
+// Traversal of the compressed wide BVH of obvhs (Ylitie, Karras, Laine 2017).
 #import "scene/intersect"
 #import "scene/layout"
 
-// Hierarchies are built no deeper than 32 levels (DEPTH_MAX in src/scene/hierarchy/mod.rs), each of which adds one entry at
-// most; one more waits for what is around the model.
+// Hierarchies have at most 32 levels (DEPTH_MAX in src/scene/hierarchy/mod.rs), each of which adds one entry at most. One
+// more entry is for the surroundings of the model.
 const STACK_SIZE: u32 = 33u;
 
-// Makes up for the rounding of a box's far side (1 + 2 gamma_3 of Ize, "Robust BVH Ray Traversal", JCGT 2013).
+// Covers the rounding of a box's far side (1 + 2 gamma_3 of Ize, "Robust BVH Ray Traversal", JCGT 2013).
 const FAR_MARGIN: f32 = 1.0000005;
-// Places relative to the ray's origin are off by at most this part of both: ten roundings, four of a box's plane and six
-// of a triangle's projected corner.
-const PLACE_ERROR: f32 = 6e-7;
-// Inverse directions are at most this, so that their products with distances stay finite.
+// Relative error bound of a position from the ray's origin: ten roundings, four of a box's plane and six of a triangle's
+// projected corner.
+const RELATIVE_ERROR: f32 = 6e-7;
+// Bound of inverse directions. It keeps their products with distances finite.
 const INVERSE_MAX: f32 = 1e18;
 
-// -0 is positive, as where planes are picked.
+// -0 is positive, as in the choice of near and far planes.
 fn bounded_inverse(x: f32) -> f32 {
     let size = min(1.0 / max(abs(x), 1e-18), INVERSE_MAX);
     return select(size, -size, x < 0.0);
 }
 
-// Four children of a node: which the ray meets, as bits to be or-ed into the node's hit mask.
+// Tests four children of a node. Returns the hit ones as bits of the node's hit mask.
 fn intersect_children(
     meta_bytes: u32, low: array<u32, 3>, high: array<u32, 3>, scale: vec3f, shift: vec3f, margin: vec3f,
     octant_inverse: u32, t_max: f32,
@@ -40,8 +40,8 @@ fn intersect_children(
     let inner_mask = (is_inner >> 4u) * 0xffu;
     let bit_index = unpack4xU8((meta_bytes ^ (octant_inverse & inner_mask)) & 0x1f1f1f1fu);
     let child_bits = unpack4xU8((meta_bytes >> 5u) & 0x07070707u);
-    let met = select(vec4u(0u), child_bits << bit_index, near <= far * FAR_MARGIN);
-    return met.x | met.y | met.z | met.w;
+    let hit_bits = select(vec4u(0u), child_bits << bit_index, near <= far * FAR_MARGIN);
+    return hit_bits.x | hit_bits.y | hit_bits.z | hit_bits.w;
 }
 
 fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32, t_max: f32) -> u32 {
@@ -54,7 +54,7 @@ fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32,
     let scale = bitcast<vec3f>(exponents << vec3u(23u)) * inverse;
     let corner = bitcast<vec3f>(first.xyz);
     let shift = (corner - ray.origin) * inverse;
-    let margin = (abs(corner) + abs(ray.origin)) * abs(inverse) * PLACE_ERROR;
+    let margin = (abs(corner) + abs(ray.origin)) * abs(inverse) * RELATIVE_ERROR;
     let backward = ray.direction < vec3f(0.0);
     let x_low = select(x.xy, x.zw, backward.x);
     let x_high = select(x.zw, x.xy, backward.x);
@@ -71,7 +71,7 @@ fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32,
     );
 }
 
-// The nearest triangle with 0 < t < t_max; any triangle if `any_hit`.
+// The closest hit with 0 < t < t_max, or any hit.
 fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
     var nearest = Hit(t_max, NO_HIT, 0.0, 0.0);
     if globals.node_count == 0u {
@@ -84,7 +84,7 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
         | select(0x01010101u, 0u, direction.z < 0.0);
     var stack: array<vec2u, STACK_SIZE>;
     var stack_height = 0u;
-    // x: where the children begin; y: hit mask in the high byte, which children are inner in the low one.
+    // x: first child; y: hit mask in the high byte, which children are inner in the low one.
     var node_group = vec2u(0u, 0x80000000u);
     var triangle_group = vec2u(0u);
     if globals.around_root != 0u {
@@ -97,12 +97,12 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
             triangle_group.y &= ~(1u << local);
             let index = triangle_group.x + local;
             let triangle = triangle_at(index);
-            let met = intersect_triangle(
+            let hit = intersect_triangle(
                 ray, bitcast<vec3f>(triangle.corners[0].xyz), bitcast<vec3f>(triangle.corners[1].xyz),
                 bitcast<vec3f>(triangle.corners[2].xyz), nearest.t,
             );
-            if met.x > 0.0 {
-                nearest = Hit(met.x, index, met.y, met.z);
+            if hit.x > 0.0 {
+                nearest = Hit(hit.x, index, hit.y, hit.z);
                 if any_hit {
                     return nearest;
                 }

@@ -1,5 +1,4 @@
-// What a shadow catcher compares with: the light that reaches its plane where nothing stands on it.
-// Twin of src/scene/catcher.rs.
+// Reference light of the shadow catcher: the light on its plane without objects. Twin of src/scene/catcher.rs.
 #import "scene/choices"
 #import "scene/layout"
 
@@ -21,12 +20,12 @@ fn catcher_radiance(table: u32, side: u32, row: u32, column: u32) -> vec3f {
     return table_numbers(table, 1u + min(row, side - 1u) * side + min(column, side - 1u)).xyz;
 }
 
-// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way.
+// Radiance of a white diffuse plane at a position, lit by all lights without occluders.
 fn catcher_light(table: u32, position: vec3f) -> vec3f {
     let side = u32(table_numbers(table, 0u).x);
     let across = catcher_node(position.x, side);
     let down = catcher_node(position.z, side);
-    // A loop over the nodes around that have weight, so that the code that loads one is there once.
+    // A loop over the surrounding nodes with weight, so that the code to load one is in the kernel once.
     var sum = vec3f(0.0);
     for (var node = 0u; node < select(2u, 4u, down.behind > 0.0); node++) {
         let is_right = (node & 1u) != 0u;
@@ -38,7 +37,7 @@ fn catcher_light(table: u32, position: vec3f) -> vec3f {
     return sum;
 }
 
-// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).
+// Reflectance of the plane at a cosine, in [0, 1] (Schlick 1994, eq. 15).
 fn catcher_reflectance(table: u32, cosine: f32) -> f32 {
     let away = clamp(1.0 - cosine, 0.0, 1.0);
     let squared = away * away;

@@ -1,6 +1,6 @@
-// Light from far away: a lat-long map, looked up bilinearly and sampled in proportion to its luminance.
-// Twin of src/scene/environment/mod.rs, which tells the conventions. The map is rgba32float and read by textureLoad, the
-// cells come from src/scene/environment/distribution.rs.
+// The environment light: a latitude-longitude map, filtered bilinearly and sampled in proportion to its luminance. Twin of
+// src/scene/environment/mod.rs, which describes the conventions. The map is rgba32float and read by textureLoad; the cells
+// come from src/scene/environment/distribution.rs.
 #import "optics/numeric"
 #import "scene/alias"
 #import "scene/inversion"
@@ -10,9 +10,9 @@
 struct EnvironmentCell {
     // The first of the numbers that draw it, and the number after the last.
     bounds: vec2u,
-    // Of the slot of its index, the first entry that its numbers may draw, and the last.
+    // First and last entry that numbers of this guide slot may select.
     guide: vec2u,
-    // Per steradian.
+    // Density per steradian.
     density: f32,
 }
 
@@ -24,14 +24,14 @@ fn environment_cell(index: u32) -> EnvironmentCell {
 }
 
 struct EnvironmentSample {
-    // In the map's frame.
+    // Direction in the map's frame.
     direction: vec3f,
     // Per steradian; 0 if the map is black.
     density: f32,
 }
 
-// The direction in the map's frame that a direction in the world meets when the map is turned about +Y, anticlockwise
-// seen from above. rotation: cosine and sine of the angle.
+// Converts a world direction to the frame of the map, which is rotated about +Y, anticlockwise from above. rotation: cosine
+// and sine of the angle.
 fn environment_local_from_world(direction_world: vec3f, rotation: vec2f) -> vec3f {
     let d = direction_world;
     return vec3f(d.x * rotation.x - d.z * rotation.y, d.y, d.x * rotation.y + d.z * rotation.x);
@@ -43,7 +43,7 @@ fn environment_world_from_local(direction_local: vec3f, rotation: vec2f) -> vec3
 }
 
 fn environment_uv(direction: vec3f) -> vec2f {
-    // An arctangent instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
+    // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
     let horizontal = sqrt(direction.x * direction.x + direction.z * direction.z);
     let v = arctan2(horizontal, direction.y) / PI;
     // The null vector has no angle.
@@ -85,8 +85,8 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
     return mix(upper, lower, share.y);
 }
 
-// A direction drawn with the density that is returned with it. xi.y draws the row of a cell, xi.x the column, xi.z is
-// what they have too few bits for. cells_size: columns and rows of cells.
+// Samples a direction and its density. xi.y selects the row of a cell, xi.x the column; xi.z supplies the bits that they
+// lack. cells_size: columns and rows of cells.
 fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
     let jitters = xi.z * 4096.0;
     var chosen = vec2u(0u);

@@ -5,12 +5,12 @@ const NO_HIT: u32 = 0xffffffffu;
 struct Hit {
     t: f32,
     triangle: u32,
-    // Weights of the second and third corner.
+    // Barycentric weights of the second and third corner.
     u: f32,
     v: f32,
 }
 
-// A ray and the plane that triangles are projected to along it (Woop, Benthin and Wald 2013).
+// A ray and its projection plane for triangles (Woop, Benthin and Wald 2013).
 struct RayFrame {
     origin: vec3f,
     direction: vec3f,
@@ -30,9 +30,8 @@ fn ray_frame(origin: vec3f, direction: vec3f) -> RayFrame {
     return RayFrame(origin, d, vec3f(-d.y / d.x, 1.0, 0.0), vec3f(-d.z / d.x, 0.0, 1.0));
 }
 
-// A vector along a triangle's normal, by the right hand: the product of its two shorter edges over the square of the
-// longest. The product of two long edges of a needle would be rounding noise, and that of two tiny ones underflow where it
-// is squared.
+// A vector along a triangle's normal (right hand rule): the product of its two shorter edges over the squared longest edge.
+// The product of a needle's two long edges would be rounding noise, and that of two tiny edges would underflow when squared.
 fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
     let a = p1 - p0;
     let b = p2 - p1;
@@ -47,17 +46,17 @@ fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
     return cross(left, right) / max(max(max(aa, bb), cc), 1e-37);
 }
 
-// (t, u, v) where the ray meets the triangle with 0 < t < t_max, from either side; t = -1 where it does not.
+// The hit (t, u, v) with 0 < t < t_max, from either side; t = -1 for a miss.
 fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32) -> vec3f {
     let a = v0 - ray.origin;
-    // The projected corners, one a lane: all three by the same instructions.
+    // The projected corners, one per lane: all three by the same instructions.
     let x = vec3f(v0.x, v1.x, v2.x) - ray.origin.x;
     let y = vec3f(v0.y, v1.y, v2.y) - ray.origin.y;
     let z = vec3f(v0.z, v1.z, v2.z) - ray.origin.z;
     let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
     let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
-    // An edge's area from its corners in an order of their own: the same number for both triangles that share it,
-    // whether or not a driver fuses the products.
+    // An edge's area with its corners in a canonical order: the same number for both triangles that share it, whether or not
+    // a driver fuses the products.
     let is_turned = (px.zxy > px.yzx) | ((px.zxy == px.yzx) & (py.zxy > py.yzx));
     let low_x = select(px.zxy, px.yzx, is_turned);
     let low_y = select(py.zxy, py.yzx, is_turned);

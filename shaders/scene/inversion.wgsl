@@ -1,4 +1,4 @@
-// Draws from weights by inverting their cumulative sum. Twin of src/scene/inversion.rs, which tells how.
+// Samples discrete weights by inverting their cumulative sum. Twin of src/scene/inversion.rs, which explains the method.
 
 // Random numbers have so many bits.
 const DRAW_BITS: u32 = 24u;
@@ -13,8 +13,8 @@ fn draw_number(xi: f32) -> u32 {
     return u32(xi * f32(1u << DRAW_BITS));
 }
 
-// How far into what draws an entry a number is, in [0, 1]. bounds: the first of the numbers that draw it, and the number
-// after the last. jitter is added to the number.
+// Relative position in [0, 1] of a number within the range that selects an entry. bounds: first number of the range, and the
+// number after its last. jitter is added to the number.
 fn place_in(bounds: vec2u, number: u32, jitter: f32) -> f32 {
     return min((f32(number - bounds.x) + jitter) / f32(max(bounds.y - bounds.x, 1u)), 1.0);
 }

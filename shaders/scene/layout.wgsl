@@ -1,4 +1,4 @@
-// What the passes read: the twins of the structures in src/gpu/layout.rs, and the bindings. Material is generated from
+// Inputs of the passes: twins of the structures in src/gpu/layout.rs, and the bindings. Material is generated from
 // src/optics/material.rs.
 #import "scene/material"
 #import "scene/texels"
@@ -10,7 +10,7 @@ struct Camera {
     lens_radius: f32,
     forward: vec3f,
     focus_distance: f32,
-    // Half the picture's width and height at distance 1.
+    // Half the image's width and height at distance 1.
     right: vec3f,
     filter_kind: u32,
     up: vec3f,
@@ -22,10 +22,10 @@ struct Globals {
     image_size: vec2u,
     bounces: u32,
     sequence: u32,
-    // Its colour; where the environment is blurred, the sine of the angle.
+    // Background colour; for a blurred environment, x is the sine of the blur angle.
     background: vec3f,
     background_kind: u32,
-    // Cosine and sine.
+    // Cosine and sine of the rotation.
     environment_rotation: vec2f,
     environment_cells_size: vec2u,
     environment_strength: f32,
@@ -40,27 +40,27 @@ struct Globals {
     density_per_luminance: f32,
     // The largest radiance of an indirect contribution.
     firefly_clamp: f32,
-    // The slots of the shadow catcher and of what it reflects with, and where its table begins.
+    // Slots of the shadow catcher and of its reflection, and the start of its table.
     catcher_slot: u32,
     catcher_reflection_slot: u32,
     catcher_table: u32,
     // Light that was reflected less often does not count.
     least_reflections: u32,
-    // Where the hierarchy of what is around the model begins; 0 where there is no second one.
+    // First node of the surroundings' hierarchy; 0 without one.
     around_root: u32,
-    // Where the triangles of what is around the model begin.
+    // First triangle of the surroundings.
     around_triangle: u32,
     // The slot of the solid around the camera.
     camera_medium: u32,
     // To a multiple of 16 bytes.
     unused: vec2u,
-    // 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    // 1: coarse triangles are rounded according to their normals.
     rounds_surfaces: u32,
-    // Paths of few bounces at what is no mirror or clear glass play roulette below this throughput alone.
+    // Throughput limit of Russian roulette for paths with few rough bounces.
     roulette_floor: f32,
 }
 
-// Bits of a material's flags: what vertices say, and whether weight and tint of the reflection leave metals alone.
+// Bits of a material's flags: vertex attributes, and whether the reflection's weight and tint spare metals.
 const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
@@ -71,7 +71,7 @@ struct Triangle {
     corners: array<vec4u, 3>,
 }
 
-// What shading needs of a vertex besides its position.
+// Shading attributes of a vertex.
 struct Vertex {
     normal: vec3f,
     // Linear red and green, as 16-bit fractions.
@@ -83,15 +83,15 @@ struct Vertex {
     uvs: vec4f,
 }
 
-// Everything that a pass reads of a scene: three storage buffers, which leaves five of WebGPU's eight for what it writes.
-// What is loaded together is a vector: some drivers make a branch of each lane's load from a buffer, and of each of its words.
+// The scene's bindings. Three storage buffers leave five of WebGPU's eight for the pass's outputs. Data that is loaded
+// together is a vector, because some drivers branch per lane and per word of a buffer load.
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
 @group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read> materials: array<Material>;
 @group(0) @binding(4) var environment_map: texture_2d<f32>;
-// From here on arrays whose elements lie at texel_place: first the materials' tables, four numbers a texel as bits
+// From here on, arrays with elements at texel_place. First the materials' tables, four numbers per texel as bits
 // (src/optics/table.rs).
 @group(0) @binding(5) var table_texels: texture_2d_array<u32>;
 @group(0) @binding(6) var environment_cells: texture_2d_array<u32>;
@@ -100,13 +100,13 @@ struct Vertex {
 @group(0) @binding(9) var texture_records: texture_2d_array<u32>;
 // The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits, or two words each of 4 x 16.
 @group(0) @binding(10) var texture_words: texture_2d_array<u32>;
-// What the buffers of the same names hold, where one of them would be larger than a binding may be.
+// The buffers of the same names, if too large for a buffer binding.
 @group(0) @binding(11) var node_texels: texture_2d_array<u32>;
 @group(0) @binding(12) var triangle_texels: texture_2d_array<u32>;
 // Three texels a vertex.
 @group(0) @binding(13) var vertex_texels: texture_2d_array<u32>;
 
-// The materials where there are no more than these: no driver tests every lane's load from here.
+// The materials if there are few: no driver checks bounds per lane here.
 @group(0) @binding(14) var<uniform> few_materials: array<Material, FEW_MATERIALS>;
 
 // 1: nodes and triangles are in the textures.

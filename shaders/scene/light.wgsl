@@ -3,12 +3,12 @@
 #import "scene/surface"
 
 struct LightSample {
-    // Towards the place.
+    // Unit direction to the sampled position.
     direction: vec3f,
-    // Per steradian.
+    // Density per steradian.
     density: f32,
     radiance: vec3f,
-    // The way that must be free: it ends so far before the place that the triangle itself is not met.
+    // Length of the shadow ray: it ends just before the position, so that the triangle itself is not hit.
     distance: f32,
 }
 
@@ -28,8 +28,8 @@ fn light_cell(index: u32) -> LightCell {
     return LightCell(bitcast<f32>(words.x), words.y, words.z);
 }
 
-// A place on an emitting triangle, seen from `origin`. xi.xy choose an entry of the table and the place, xi.z whether the
-// entry or its alias is taken. There must be such a triangle. The ray may start up to origin_error off `origin`.
+// Samples a position on an emitting triangle for `origin`. xi.xy select an entry of the table and the position, xi.z the
+// entry or its alias. There must be such a triangle. The ray may start up to origin_error off `origin`.
 fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let drawn = grid_place(xi.xy, globals.light_cells_size);
     let cell = light_cell(drawn.index);
@@ -63,14 +63,13 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     );
 }
 
-// The share of its radiance that a spot sends in a direction under this cosine to the way it faces.
+// Share in [0, 1] of its radiance that a spot emits at this cosine to its axis.
 fn spot_share(material: Material, cosine: f32) -> f32 {
     let ramp = clamp(cosine * material.spot_scale + material.spot_offset, 0.0, 1.0);
     return ramp * ramp;
 }
 
-// The density, per steradian, with which light_sample draws the direction to a place of a material with this
-// luminance that is seen under this cosine from this distance.
+// Density per steradian of light_sample for a position on a material of this luminance, at this cosine and distance.
 fn light_density(light_luminance: f32, cosine: f32, distance: f32) -> f32 {
     let per_area = globals.density_per_luminance * light_luminance;
     return per_area * distance * distance / max(cosine, COSINE_MIN);

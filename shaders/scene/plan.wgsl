@@ -1,5 +1,5 @@
-// What the plan fixes for all materials of a scene when the pipeline is made; ANY where materials differ or the general
-// pipeline is wanted. Fixed values let the driver drop what the scene does not call for.
+// Specialisation constants of the plan; ANY if materials differ or the über-shader is requested. Fixed values let the driver
+// remove unused code.
 
 #import "scene/plan_constants"
 

@@ -6,21 +6,21 @@
 struct SurfacePoint {
     surface: Surface,
     position: vec3f,
-    // How far off the true place `position` may be, along the normal.
+    // Error bound of `position` along the normal.
     error: f32,
     slot: u32,
     uvs: Uvs,
-    // The colour between the vertices; white where the material takes none.
+    // Interpolated vertex colour; white if unused.
     vertex_color: vec3f,
     // The normal of the triangle itself, on the side of the viewer.
     flat: vec3f,
-    // From the triangle to the round surface that its normals tell of.
+    // Offset from the triangle to the rounded surface.
     rise: vec3f,
 }
 
-// Rounding of the position's three products and sums, with what the box test and the transforms add.
+// Relative rounding error of a position: three products and sums, plus the box test and the transforms.
 const POSITION_ERROR: f32 = 1e-6;
-// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
+// Smallest cosine between shading normal and view. A normal that leans further away is bent back.
 const VIEW_COSINE_MIN: f32 = 1e-3;
 
 // Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
@@ -40,10 +40,10 @@ fn lifted_normal(shading: vec3f, geometric: vec3f, wo: vec3f) -> vec3f {
     return select(shading, normalize_or(wo + lifted, geometric), height < MIRROR_HEIGHT_MIN);
 }
 
-// Where a ray met the geometry.
+// Position of a hit.
 struct HitPlace {
     position: vec3f,
-    // How far off the true place `position` may be, along the normal.
+    // Error bound of `position` along the normal.
     error: f32,
     // The geometric normal, on the side of the ray's origin.
     normal: vec3f,
@@ -63,7 +63,7 @@ fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
     return HitPlace(position, position_error(p0, p1, p2, weights, normal), normal, is_back);
 }
 
-// Where a ray goes on that a surface did not stop.
+// Origin of a ray that continues through a surface.
 fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
     let place = hit_place(hit, direction);
     return place.position - place.normal * place.error;
@@ -74,7 +74,7 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     return surface_of(hit, direction, slot, material_at(slot));
 }
 
-// The same of a material that is known.
+// The same for a known material.
 fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> SurfacePoint {
     let triangle = triangle_at(hit.triangle);
     let w = 1.0 - hit.u - hit.v;
@@ -104,7 +104,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && material.anisotropy != 0.0 {
-        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
         let is_mirrored = side * tangent.w < 0.0;
         frame = frame_from_tangent(shading, tangent.xyz, select(1.0, -1.0, is_mirrored) * material.rotation_rad);
     }
@@ -128,14 +128,14 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
 }
 
-// Whether light goes through where textures make the material the least metallic.
+// Whether the material transmits where its textures make it least metallic.
 fn transmits_anywhere(material: Material) -> bool {
     let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
     return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && !is_metal;
 }
 
-// From a position in a triangle to the tangent plane at one of its corners, where the position lies below that; times the
-// corner's weight (Hanika 2021). Where is_turned, the normal points away from the viewer.
+// Offset from a position in a triangle up to the tangent plane at a corner, if the position lies below it; times the
+// corner's weight (Hanika 2021). is_turned: the normal points away from the viewer.
 fn rise_to_plane(position: vec3f, corner: vec3f, normal: vec3f, weight: f32, is_turned: bool) -> vec3f {
     let depth = dot(corner - position, normal);
     return normal * (select(max(depth, 0.0), min(depth, 0.0), is_turned) * weight);
@@ -156,7 +156,7 @@ fn hit_uvs(hit: Hit, material: Material) -> Uvs {
     return uvs_at(triangle_at(hit.triangle), weights, material.has_box_projection == 1u);
 }
 
-// The share of light that is stopped where a ray met the geometry.
+// Opacity at a hit, in [0, 1].
 fn hit_opacity(hit: Hit) -> f32 {
     let slot = slot_at(hit.triangle);
     let material = material_at(slot);
@@ -168,14 +168,14 @@ fn hit_opacity(hit: Hit) -> f32 {
     return opacity_at(material, hit_uvs(hit, material), of_vertices.w);
 }
 
-// How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.
+// Error bound along the normal of a position interpolated between a triangle's corners.
 fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f) -> f32 {
     let w = abs(weights);
     return POSITION_ERROR * dot(abs(normal), abs(p0) * w.x + abs(p1) * w.y + abs(p2) * w.z + vec3f(0.05));
 }
 
-// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
-// transmits lets it start behind. A ray between the triangle's horizon and that of the round surface starts there.
+// Origin of a ray from the surface towards `wi`: outside the position's error bound, behind the surface only if it
+// transmits. A ray between the triangle's and the rounded surface's horizon starts on the latter.
 fn ray_origin(point: SurfacePoint, wi: vec3f, transmits: bool) -> vec3f {
     let is_below = dot(point.flat, wi) < 0.0;
     let origin = point.position + point.flat * select(point.error, -point.error, transmits && is_below);

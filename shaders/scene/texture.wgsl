@@ -1,4 +1,4 @@
-// The pictures of a model: filtered by hand, so that both engines find the same numbers. Twin of src/scene/texture/mod.rs.
+// Texture maps: filtered in software, so that both engines get the same numbers. Twin of src/scene/texture/mod.rs.
 #import "optics/frame"
 #import "optics/albedo"
 #import "optics/material"
@@ -17,7 +17,7 @@ const TURNS_NORMALS: u32 = 32u;
 const CHANNEL_SHIFT: u32 = 8u;
 const WRAP_SHIFT: u32 = 16u;
 
-// One use of a picture.
+// One use of a texture map.
 struct TextureRecord {
     u_from_uv: vec3f,
     first_texel: u32,
@@ -29,11 +29,11 @@ struct TextureRecord {
     offset: f32,
 }
 
-// Places on a surface by which pictures are looked up.
+// Texture coordinates of a surface point.
 struct Uvs {
     // Both sets of texture coordinates.
     sets: vec4f,
-    // Where the place is on a box around the model.
+    // Coordinates by box projection.
     on_box: vec2f,
 }
 
@@ -54,7 +54,7 @@ fn texture_word(index: u32) -> u32 {
     return textureLoad(texture_words, place.xy, place.z, 0).x;
 }
 
-// Red, green, blue (linear) and alpha that a use of a picture gives; the same four times where one channel counts.
+// Value of a texture use: linear RGB and alpha; one channel is repeated four times.
 fn texture_lookup(index: u32, uvs: Uvs) -> vec4f {
     let record = texture_record(index);
     let found = filtered(record, uvs);
@@ -63,7 +63,7 @@ fn texture_lookup(index: u32, uvs: Uvs) -> vec4f {
     return chosen * record.scale + vec4f(record.offset);
 }
 
-// A picture as it is: red, green, blue (linear) and alpha.
+// Filtered texture map: linear RGB and alpha.
 fn filtered(record: TextureRecord, uvs: Uvs) -> vec4f {
     var uv = select(uvs.sets.xy, uvs.sets.zw, (record.flags & IS_SECOND_SET) != 0u);
     if PLAN_BOX_PROJECTION == 1u && (record.flags & IS_BOX) != 0u {
@@ -150,7 +150,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     if pictures + PLAN_VERTEX_COLORS == 0u {
         return material;
     }
-    // A picture that has both roughness and metalness is looked up once.
+    // A map with both roughness and metalness is looked up once.
     let has_both = material.metalness_texture == material.textures.y;
     // A loop, so that the look-up's code is there once.
     var found = array<vec4f, 5>(vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0));
@@ -158,7 +158,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         material.textures.x, material.textures.y, material.textures.w,
         select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture,
     );
-    // Bit by bit of those that there are: a loop whose length is known beforehand would be unrolled.
+    // Over the set bits, because drivers unroll a loop of known length.
     var wanted = 0u;
     for (var kind = 0u; kind < 5u; kind++) {
         wanted |= select(0u, 1u << kind, indices[kind] != NO_TEXTURE);
@@ -224,9 +224,9 @@ fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec
     return vec4f(color, select(1.0, sum.w, has_flag(material, VERTEX_OPACITY)));
 }
 
-// What a surface point emits, its holes left out; `of_vertices` from vertex_factors.
+// Emission at a surface point times its opacity; `of_vertices` from vertex_factors.
 fn emission_at(material: Material, uvs: Uvs, of_vertices: vec4f) -> vec3f {
-    // The picture of what is emitted, and that of the holes: a loop, so that the look-up's code is there once.
+    // The emission map and the opacity map in a loop, so that the look-up's code is in the kernel once.
     var emission = material.emission * of_vertices.xyz;
     var opacity = material.opacity * of_vertices.w;
     let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.textures.w != NO_TEXTURE;
@@ -255,7 +255,7 @@ fn opacity_at(material: Material, uvs: Uvs, alpha: f32) -> f32 {
     return stopped_share(material, opacity);
 }
 
-// The same where the opacity is known.
+// The same for a known opacity.
 fn stopped_share(material: Material, opacity: f32) -> f32 {
     let masked = select(1.0, 0.0, opacity < material.alpha_cutoff);
     return select(masked, opacity, material.alpha_cutoff < 0.0);
@@ -277,11 +277,11 @@ fn mapped_normal(material: Material, uvs: Uvs, normal: vec3f, tangent: vec4f, ou
     }
     let along = frame_from_tangent(normal, right.xyz, 0.0);
     let bitangent = along.bitangent * select(1.0, -1.0, right.w < 0.0);
-    // What points into the surface is laid down on it.
+    // A normal that points into the surface is bent onto it.
     return normalize_or(along.tangent * slope.x + bitangent * slope.y + normal * max(decoded.z, 0.0), normal);
 }
 
-// The texture coordinates at a place of a triangle; those of the box where `has_box` says that they are needed.
+// Texture coordinates at a position in a triangle; box projection only if `has_box`.
 fn uvs_at(triangle: Triangle, weights: vec3f, has_box: bool) -> Uvs {
     var corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
     var weight = weights;
@@ -306,7 +306,7 @@ fn uvs_at(triangle: Triangle, weights: vec3f, has_box: bool) -> Uvs {
     return Uvs(sets, on_box);
 }
 
-// The axis along which a picture lies to the right on the side of a box that a surface with this normal faces.
+// Horizontal axis of the box side that a surface with this normal faces.
 fn box_right(normal: vec3f) -> vec3f {
     let size = abs(normal);
     if size.x >= size.y && size.x >= size.z {
@@ -318,7 +318,7 @@ fn box_right(normal: vec3f) -> vec3f {
     return vec3f(select(1.0, -1.0, normal.z < 0.0), 0.0, 0.0);
 }
 
-// Where a place with this normal is on the side of the box around the model that it faces, v downwards.
+// Coordinates of a position on the box side that it faces, v downwards.
 fn box_uv(position: vec3f, normal: vec3f) -> vec2f {
     let size = abs(normal);
     var down = -position.y;

@@ -1,58 +1,58 @@
-// What stops a ray, and what lets it pass. Twin of Integrator::stop and Integrator::transmittance in
-// src/cpu/integrator/rays.rs: one function, so that the traversal stands once in a kernel.
+// Intersection and transmittance of rays. Twin of Integrator::intersect and Integrator::transmittance in
+// src/cpu/integrator/rays.rs. One function for both, so that a kernel has the traversal once.
 #import "optics/random"
 #import "scene/camera"
 #import "scene/plan"
 #import "scene/surface"
 #import "scene/traversal"
 
-// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
+// First dimension of the opacity tests, one pair per bounce.
 const OPACITY_DIMENSION: u32 = 8192u;
-// Surfaces that a ray may go straight on through.
+// Transparent hits per ray at most. Beyond them a path's ray counts as a miss, and a shadow ray as blocked.
 const PASSES_MAX: u32 = 256u;
 
-// What a ray met: its t the distance from the ray's origin, and the share of the light from its end that got through.
-struct Met {
+// Closest hit of a path's ray (t from the ray's origin), and transmittance of a shadow ray in [0, 1].
+struct Intersection {
     hit: Hit,
-    share: f32,
+    transmittance: f32,
 }
 
-// What stops a ray; or, of the way to a light, what share of it gets through.
-fn meet(ray: Ray, length: f32, is_to_light: bool, opacity_number: f32, rays: ptr<function, u32>) -> Met {
+// The closest hit of a ray, which passes surfaces at random by their opacity; or the transmittance of a shadow ray.
+fn intersect(ray: Ray, length: f32, is_shadow_ray: bool, opacity_number: f32, rays: ptr<function, u32>) -> Intersection {
     if PLAN_ALPHA == 0u {
         *rays += 1u;
-        let hit = trace(ray.origin, ray.direction, length, is_to_light);
-        return Met(hit, select(0.0, 1.0, hit.triangle == NO_HIT));
+        let hit = trace(ray.origin, ray.direction, length, is_shadow_ray);
+        return Intersection(hit, select(0.0, 1.0, hit.triangle == NO_HIT));
     }
     var origin = ray.origin;
     var xi = opacity_number;
     var distance = 0.0;
-    var left = length;
-    var met = Met(Hit(0.0, NO_HIT, 0.0, 0.0), 1.0);
+    var remaining = length;
+    var intersection = Intersection(Hit(0.0, NO_HIT, 0.0, 0.0), 1.0);
     for (var i = 0u; i < PASSES_MAX; i++) {
         *rays += 1u;
-        let hit = trace(origin, ray.direction, left, false);
+        let hit = trace(origin, ray.direction, remaining, false);
         if hit.triangle == NO_HIT {
-            return met;
+            return intersection;
         }
-        // Before the opacity, which looks at the same triangle: drivers load it once.
+        // Before the opacity, which reads the same triangle: drivers load it once.
         let passed = passed_origin(hit, ray.direction);
         let opacity = hit_opacity(hit);
         distance += hit.t;
-        if is_to_light {
-            met.share *= 1.0 - opacity;
-            left -= hit.t;
-            if met.share <= 0.0 {
-                return met;
+        if is_shadow_ray {
+            intersection.transmittance *= 1.0 - opacity;
+            remaining -= hit.t;
+            if intersection.transmittance <= 0.0 {
+                return intersection;
             }
         } else if xi < opacity {
-            met.hit = Hit(distance, hit.triangle, hit.u, hit.v);
-            return met;
+            intersection.hit = Hit(distance, hit.triangle, hit.u, hit.v);
+            return intersection;
         }
         // Uniform again, given that the surface did not stop the ray.
         xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
         origin = passed;
     }
-    met.share = 0.0;
-    return met;
+    intersection.transmittance = 0.0;
+    return intersection;
 }

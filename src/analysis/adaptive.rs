@@ -1,8 +1,9 @@
-//! Where further samples help most.
+//! Adaptive sampling: which tiles get further samples.
 //!
-//! For a given time the squared error of a picture, Σ σ²/n over its tiles, is least where n ∝ σ/√cost (Neyman 1934):
-//! σ² the variance of one sample, cost its rays. So a tile rests while it has more than its part, not when some error of
-//! its own is reached: that would give dark smooth tiles as few samples as they need, but noisy ones too many.
+//! For a given time, the squared error of an image is Σ σ²/n over its tiles, with the variance σ² of one sample. It is least
+//! if n ∝ σ/√cost, with the cost of a sample in rays (Neyman 1934). So a tile pauses while it has more than its share of
+//! samples, not when its own error reaches a goal: that would give dark smooth tiles enough samples, but noisy ones too
+//! many.
 
 use super::noise::{TileError, finite_sum, half_difference_variance, tile_errors};
 use crate::job::film::Film;
@@ -10,37 +11,37 @@ use crate::job::tiles::TileGrid;
 
 /// A tile counts with at least this part of a neighbour's variance: the edge of a small bright feature does not starve.
 const NEIGHBOUR_SHARE: f64 = 0.25;
-/// No tile gets less than this part of the samples that it would get if all were equal.
+/// Smallest share of samples per tile, relative to an even distribution.
 const LEAST_SHARE: f64 = 1.0 / 32.0;
-/// By how much a camera ray that meets nothing is cheaper than a ray with the shading where it starts.
+/// Relative saving of a camera ray that misses over a ray with shading.
 const CHEAPNESS: f64 = 0.8;
 /// A tile's samples grow at most by this factor before its error is looked at again.
 const GROWTH_MAX: f64 = 2.0;
 /// Bisections of a factor: more than the bits of its mantissa.
 const BISECTIONS: usize = 64;
 
-/// How far the next round goes.
+/// Goal of the next round.
 #[derive(Clone, Copy, Debug)]
 pub struct Round {
     /// The samples of all pixels grow at least and at most by these factors, above 1.
     pub growth: [f64; 2],
     /// The relative error to reach, above 0; no more samples are asked for than it should need.
     pub noise: Option<f64>,
-    /// The most samples that a pixel gets.
+    /// Maximum samples per pixel.
     pub samples_max: u32,
-    /// The part of the picture that is rendered, as [`TileGrid::is_rendered`] takes it; the rest keeps what it has.
+    /// The rendered part, as in [`TileGrid::is_rendered`]; the rest keeps its samples.
     pub region: Option<[f64; 4]>,
 }
 
-/// The samples a pixel that each tile is to have next, from what it has: never less, and somewhere more unless that tile
-/// has `samples_max`.
+/// Samples per pixel that each tile shall have next: never fewer than now, and more for some tile unless all have
+/// `samples_max`.
 pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
     let grid = film.grid();
     let errors = tile_errors(film);
     let is_rendered = |tile: usize| grid.is_rendered(tile, round.region);
     let tiles: Vec<Tile> = (0..grid.tiles())
         .map(|tile| Tile {
-            // What is not rendered takes no part.
+            // Tiles that are not rendered do not count.
             pixels: if is_rendered(tile) {
                 grid.pixels(tile) as f64
             } else {
@@ -71,10 +72,10 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         let rendered: Vec<usize> = rendered.flat_map(|tile| grid.pixels_of(tile)).collect();
         let sum = |of: &dyn Fn(usize) -> f64| finite_sum(rendered.iter().map(|pixel| of(*pixel)));
         let luminance = sum(&|pixel| film.luminance_of(pixel)) / pixels;
-        // The tiles' variances, averaged as they are, need not add up to what decides about the end.
+        // The tiles' smoothed variances need not add up to the estimate that decides the end.
         let seen = sum(&|pixel| half_difference_variance(&film.halves(pixel)));
-        let told = all(&|tile| tile.variance / tile.samples);
-        let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { told / seen } else { 1.0 };
+        let estimate = all(&|tile| tile.variance / tile.samples);
+        let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { estimate / seen } else { 1.0 };
         let enough = bisect(bracket, |factor| {
             all(&|tile| tile.variance / tile.goal(factor)) <= allowed
         });
@@ -94,7 +95,7 @@ struct Tile {
     pixels: f64,
     samples: f64,
     variance: f64,
-    /// What its samples are to be in proportion to.
+    /// Weight to which its samples are proportional.
     weight: f64,
 }
 
@@ -114,13 +115,13 @@ fn weight(errors: &[TileError], grid: TileGrid, tile: usize) -> f64 {
 fn with_least_weight(mut tiles: Vec<Tile>) -> Vec<Tile> {
     let pixels: f64 = tiles.iter().map(|tile| tile.pixels).sum();
     let mean = tiles.iter().map(|tile| tile.pixels * tile.weight).sum::<f64>() / pixels.max(1.0);
-    // Without any error all are alike.
+    // Without any error all are equal.
     let least = if mean > 0.0 { LEAST_SHARE * mean } else { 1.0 };
     tiles.iter_mut().for_each(|tile| tile.weight = tile.weight.max(least));
     tiles
 }
 
-/// The least number in a range of positive numbers from which on `is_enough` holds, its upper end where it never does.
+/// The smallest number in a positive range from which on `is_enough` holds; the upper end if it never does.
 fn bisect([mut low, mut high]: [f64; 2], is_enough: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = (low * high).sqrt();
@@ -195,12 +196,12 @@ mod tests {
         );
         assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
         assert!(far.iter().sum::<u32>() > 36 * 16 * 3 / 2, "{far:?}");
-        let told = crate::analysis::noise::noise(&film).unwrap().relative;
+        let estimate = crate::analysis::noise::noise(&film).unwrap().relative;
         let near = goals(
             &film,
             Round {
                 growth: [1.02, 1e3],
-                noise: Some(0.98 * told),
+                noise: Some(0.98 * estimate),
                 ..ROUND
             },
         );

@@ -1,8 +1,8 @@
-//! Pearson's χ² test: are these directions drawn from this density?
+//! Pearson's χ² test of sampled directions against a density.
 //!
-//! The cells lie in polar coordinates around an axis, and their rings are spaced by the samples' own quantiles, so that
-//! a lobe of a hundredth of a degree is resolved as well as a diffuse one. A sample that was absorbed is an outcome like
-//! any other: what the density lacks to 1 is its expectation.
+//! The cells are in polar coordinates around an axis. Their rings follow the samples' own quantiles, so that a lobe of a
+//! hundredth of a degree is resolved as well as a diffuse one. An absorbed sample is an outcome like any other: its
+//! expectation is 1 minus the density's integral.
 
 use std::f64::consts::{PI, TAU};
 
@@ -28,8 +28,8 @@ pub struct PolarGrid {
 }
 
 impl PolarGrid {
-    /// Rings that hold equal numbers of the `pilot` samples. The axis (the frame's normal) should be the mirror
-    /// direction where the lobe is narrow.
+    /// Rings with equal numbers of the `pilot` samples. For narrow lobes the axis (the frame's normal) should be the mirror
+    /// direction.
     pub fn following(
         frame: Frame<f64>,
         rings: usize,
@@ -140,8 +140,8 @@ pub struct ChiSquare {
     pub p_value: f64,
 }
 
-/// Directions against a density. `samples` holds `None` where a sample was absorbed; all of them together should
-/// number some twenty a cell or more. `cuts` as for [`PolarGrid::probabilities`].
+/// Tests directions against a density. `samples` has `None` for an absorbed sample; there should be about twenty or more per
+/// cell. `cuts` as for [`PolarGrid::probabilities`].
 pub fn test_samples(
     grid: &PolarGrid,
     samples: &[Option<Vec3<f64>>],
@@ -159,8 +159,8 @@ pub fn test_samples(
     test_counts(&observed, &expected)
 }
 
-/// Counts against their expectations (as many). Cells expected to hold fewer than [`EXPECTATION_MIN`] are pooled.
-/// Expectations that are not finite, or counts where nothing is expected at all, give the p-value 0.
+/// Tests counts against their expectations. Cells expected to have fewer than [`EXPECTATION_MIN`] are pooled. Non-finite
+/// expectations, or counts where the expectation is 0, give a p-value of 0.
 pub fn test_counts(observed: &[u64], expected: &[f64]) -> ChiSquare {
     let mut cells: Vec<(f64, f64)> = observed.iter().zip(expected).map(|(o, e)| (*e, *o as f64)).collect();
     cells.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -174,7 +174,7 @@ pub fn test_counts(observed: &[u64], expected: &[f64]) -> ChiSquare {
             pool = (0.0, 0.0);
         }
     }
-    // What is left over when everything together expects too little to be tested.
+    // The rest, if all cells together expect too little for a test.
     let impossible = used == 0 && pool.1 > 0.0 && pool.0 < 1e-9;
     let degrees_of_freedom = used.saturating_sub(1);
     let p_value = if !statistic.is_finite() || impossible {

@@ -1,16 +1,15 @@
-//! How far a denoised picture is from the one that it converges to, told from the samples that it was made of.
+//! Error estimate of a denoised image, from the samples that it was made of.
 //!
-//! The two halves A and B of a film's samples are independent. Each is denoised by itself, to D and E, and the denoised
-//! picture is their mean M = (D + E)/2. With T the truth, a = A − T, d = D − T and so on:
+//! The two halves A and B of a film's samples are independent. Each is denoised separately, to D and E; the denoised image
+//! is their mean M = (D + E)/2. With T the truth, let a = A − T, d = D − T and so on:
 //!
-//! - (D − A)(E − B) = de + ab − db − ea. All but de have the expectation 0, as the halves are independent: what
-//!   remains is the square of the filter's bias.
+//! - (D − A)(E − B) = de + ab − db − ea. All terms but de have expectation 0, because the halves are independent. The rest
+//!   is the square of the filter's bias.
 //! - (D − E)²/4 = (d² + e²)/4 − de/2 is known without noise.
 //!
-//! Their sum is ((d + e)/2)² = (M − T)², the squared error of this very picture, its bias included, plus noise of mean 0:
-//! ab − db − ea. Likewise (A − B)²/4 tells the squared error of the samples' own mean X, and (D − E)(A − B)/4 the product
-//! of both errors. From the three follows which mixture of M and X is nearest to the truth. docs/MATHEMATICS.md,
-//! section 8.
+//! Their sum is ((d + e)/2)² = (M − T)², the squared error of this very image, bias included, plus noise of mean 0: ab − db
+//! − ea. Likewise (A − B)²/4 estimates the squared error of the samples' mean X, and (D − E)(A − B)/4 the product of both
+//! errors. The three give the blend of M and X with the least error. See docs/MATHEMATICS.md, section 8.
 
 use std::ops::Range;
 
@@ -21,53 +20,53 @@ use super::noise::{BAND, KURTOSIS, MAP_RADIUS, bands, box_sums};
 use crate::job::film::luminance;
 use crate::job::tiles::{TILE_SIDE, TileGrid};
 
-/// Tiles to each side over which a tile's errors are averaged before it is decided what it shows.
+/// Radius in tiles over which a tile's errors are averaged to choose its blend.
 const RADIUS: usize = 2;
-/// Standard errors by which the denoised picture's error must be beyond doubt before samples are preferred.
-const DOUBT: f64 = 1.0;
+/// Standard errors that the denoised image's error must exceed before samples are blended in.
+const DOUBT_SIGMAS: f64 = 1.0;
 
-/// Fewest tiles that a standard error is taken to rest on: with fewer, the expansion of Student's quantile fails.
+/// Smallest effective number of tiles behind a standard error. With fewer, the expansion of Student's quantile fails.
 const TILES_MIN: f64 = 3.0;
 
-/// A linear picture without opacity, row by row.
+/// A linear RGB image, row by row.
 pub type Colors = Vec<[f32; 3]>;
 
-/// Two independent halves of a picture, and what a denoiser made of each.
+/// Two independent halves of a render, and each of them denoised.
 #[derive(Clone, Copy, Debug)]
 pub struct DenoisedHalves<'a> {
     /// The means of the halves' samples.
     pub noisy: [&'a [[f32; 3]]; 2],
     /// The same, denoised.
     pub denoised: [&'a [[f32; 3]]; 2],
-    /// Width of the pictures, pixels.
+    /// Width of the images in pixels.
     pub width: usize,
 }
 
-/// Unbiased estimates of what a pixel's errors are; sums of them over pixels.
+/// Unbiased estimates of a pixel's squared errors, or sums of these over pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Moments {
-    /// Squared error of the denoised picture.
+    /// Squared error of the denoised image.
     denoised: f64,
-    /// Of it what is known without noise.
+    /// The part of `denoised` that is known without noise.
     known: f64,
     /// Squared error of the samples' mean.
     noisy: f64,
     /// Product of both errors.
     product: f64,
-    /// Variance of the first, from what is seen around each pixel: too little where noise differs from pixel to pixel, or most
-    /// have not yet met what theirs comes from.
+    /// Variance of `denoised`, from the neighbourhood of each pixel. Too small if the noise differs between pixels, or comes
+    /// from rare samples.
     variance: f64,
-    /// The same from tiles as wholes, by the differences of the halves' squares: too much where noise has long tails, of which
-    /// there the error is in doubt, too.
+    /// The same from whole tiles, by the differences of the halves' squares. Too large for noise with long tails, where the
+    /// error is uncertain anyway.
     by_squares: f64,
-    /// The same from how far the two denoised halves are apart in each pixel: where the filter leaves noise as it is, and that
-    /// differs from pixel to pixel, the two above see too little of it.
+    /// The same from the difference of the denoised halves in each pixel. Needed if the filter leaves noise that differs
+    /// between pixels, of which the other two see too little.
     by_pixels: f64,
-    /// Squares of the variance from tiles, of each tile.
+    /// Sum over tiles of `by_squares` squared.
     fourth_powers: f64,
-    /// Squared difference of the two pictures.
+    /// Squared difference of the denoised image and the samples' mean.
     difference: f64,
-    /// Pixels.
+    /// Number of pixels.
     pixels: f64,
 }
 
@@ -87,19 +86,19 @@ impl std::ops::AddAssign for Moments {
 }
 
 impl Moments {
-    /// The squared error of the denoised picture, no less than what is known of it for certain.
+    /// Squared error of the denoised image, at least its certain part.
     fn denoised(&self) -> f64 {
         self.denoised.max(self.known)
     }
 
-    /// Standard error of the first.
+    /// Standard error of `denoised`.
     fn deviation(&self) -> f64 {
         self.variance.max(self.by_squares).max(self.by_pixels).sqrt()
     }
 
-    /// How many standard errors make the band: Student's quantile, as the standard error is itself an estimate, from the few
-    /// tiles that make up most of it. Their number follows from the kurtosis; Cornish and Fisher's expansion.
-    fn deviations_within(&self) -> f64 {
+    /// Half width of the 95 % interval in standard errors: Student's quantile (expansion of Cornish and Fisher). The
+    /// standard error is itself an estimate, mostly from few tiles. Their number follows from the kurtosis.
+    fn band_factor(&self) -> f64 {
         let tiles = (3.0 * self.by_squares * self.by_squares / self.fourth_powers).max(TILES_MIN);
         let square = BAND * BAND;
         let terms = [
@@ -109,15 +108,15 @@ impl Moments {
         BAND * (1.0 + terms[0] + terms[1])
     }
 
-    /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
+    /// The share in [0, 1] of the samples' mean in the blend of least error, lowered by [`DOUBT_SIGMAS`].
     fn share(&self) -> f64 {
-        let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
+        let denoised = (self.denoised - DOUBT_SIGMAS * self.deviation()).max(self.known);
         let share = (denoised - self.product) / self.difference;
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
     }
 }
 
-/// Luminances of a pixel: A, B, D, E.
+/// Luminances A, B, D and E of a pixel.
 #[derive(Clone, Copy, Debug)]
 struct Luminances([f32; 4]);
 
@@ -131,7 +130,7 @@ impl Luminances {
     }
 }
 
-/// What is known of a pixel's errors.
+/// Differences of a pixel's luminances.
 struct Differences {
     /// A − D and B − E.
     noisy: [f64; 2],
@@ -145,24 +144,24 @@ impl Differences {
         self.noisy[0] * self.noisy[1]
     }
 
-    /// As noisy as that for normal noise, but of mean 0.
+    /// An estimate of mean 0 that for normal noise has the variance of [`Self::squared_bias`].
     fn square(&self) -> f64 {
         (self.noisy[0] + self.noisy[1]) * (self.noisy[0] - self.noisy[1]) / 2.0
     }
 }
 
-/// What is known of a denoised picture's error.
+/// Error estimates of a denoised image.
 #[derive(Clone, Debug)]
 pub struct Errors {
     luminances: Vec<Luminances>,
-    /// Variances of the told squared errors, from what is seen around each pixel.
+    /// Variance of each pixel's estimated squared error, from its neighbourhood.
     variances: Vec<f64>,
     grid: TileGrid,
     mean_luminance: f64,
 }
 
 impl Errors {
-    /// Reads them off; pictures of no pixels have none.
+    /// The estimates from two halves.
     pub fn of(halves: &DenoisedHalves<'_>) -> Self {
         let bright = |color: [f32; 3]| luminance(color.map(f64::from)) as f32;
         let [[a, b], [d, e]] = [halves.noisy, halves.denoised];
@@ -204,16 +203,16 @@ impl Errors {
         }
     }
 
-    /// The share of the samples' mean at each pixel with which a mixture with the denoised picture is nearest to the
-    /// truth: decided by tiles, without seams between them.
+    /// Per pixel the share in [0, 1] of the samples' mean in the blend of least error. Chosen per tile and interpolated, so
+    /// that there are no seams.
     pub fn shares(&self) -> Vec<f32> {
         let tiles = self.around_tiles(RADIUS);
         let of_tiles: Vec<f64> = tiles.iter().map(Moments::share).collect();
         interpolated(self.grid, &of_tiles)
     }
 
-    /// The error of the mixture with these shares of the samples' mean, its bias included; none is the denoised picture
-    /// itself.
+    /// Estimated error of the blend with these shares, bias included, relative to the mean luminance; `None` is the denoised
+    /// image itself.
     pub fn error(&self, shares: Option<&[f32]>) -> Distance {
         let sum = self.sum(shares, |moments, denoised, samples| {
             let rest = 2.0 * samples * denoised * moments.product + samples * samples * moments.noisy;
@@ -225,8 +224,7 @@ impl Errors {
         self.distance(&sum)
     }
 
-    /// Of that error the filter's bias: what would stay if the picture were rendered and denoised again and again, and
-    /// averaged.
+    /// The filter's bias as part of that error: the error that would remain in the mean of many renders, each denoised.
     pub fn bias(&self, shares: Option<&[f32]>) -> Distance {
         let sum = self.sum(shares, |moments, denoised, _| {
             (denoised * denoised * (moments.denoised - moments.known), 0.0)
@@ -234,8 +232,8 @@ impl Errors {
         self.distance(&sum)
     }
 
-    /// Sums over the pixels; `squares` gives a squared error and what of it is known for certain, for the shares of the
-    /// denoised picture and of the samples' mean.
+    /// Sums over all pixels. `squares` returns a squared error and its certain part from the shares of the denoised image
+    /// and of the samples' mean.
     fn sum(&self, shares: Option<&[f32]>, squares: impl Fn(&Moments, f64, f64) -> (f64, f64)) -> Moments {
         let of_pixel = |pixel: usize| {
             let moments = self.moments(pixel);
@@ -243,7 +241,7 @@ impl Errors {
             let clean = 1.0 - samples;
             let (denoised, known) = squares(&moments, clean, samples);
             let spread = clean.powi(4) + samples.powi(4);
-            // Of the mixture's own halves.
+            // A quarter of the squared difference of the blend's halves.
             let apart = clean * clean * moments.known
                 + 2.0 * clean * samples * moments.product
                 + samples * samples * moments.noisy;
@@ -263,7 +261,8 @@ impl Errors {
         sum
     }
 
-    /// Sums over the pixels of each tile, which have noise in common: what its pixels add, squared.
+    /// Sums over the pixels of each tile. The squares are summed first and squared then, because pixels of a tile share
+    /// noise.
     fn of_tiles(&self, of_pixel: impl Fn(usize) -> Moments) -> Vec<Moments> {
         let mut tiles = vec![Moments::default(); self.grid.tiles()];
         for pixel in 0..self.luminances.len() {
@@ -281,7 +280,7 @@ impl Errors {
             let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
             (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
         };
-        let band = sum.deviations_within() * sum.deviation();
+        let band = sum.band_factor() * sum.deviation();
         Distance {
             value: relative(sum.denoised()),
             low: relative((sum.denoised - band).max(sum.known)),
@@ -289,8 +288,7 @@ impl Errors {
         }
     }
 
-    /// The error around each pixel of the mixture with these shares of the samples' mean, over the mean luminance: for a
-    /// map.
+    /// Estimated error per pixel of the blend with these shares, relative to the mean luminance: for a map.
     pub fn map(&self, shares: Option<&[f32]>) -> Vec<f32> {
         let tiles = self.around_tiles(1);
         let squared: Vec<f64> = tiles
@@ -307,7 +305,7 @@ impl Errors {
         (0..self.luminances.len()).map(error).collect()
     }
 
-    /// Sums over the tiles around each tile.
+    /// Sums over the tiles within `radius` of each tile.
     fn around_tiles(&self, radius: usize) -> Vec<Moments> {
         let tiles = self.of_tiles(|pixel| self.moments(pixel));
         let around = |tile: usize| {
@@ -321,13 +319,13 @@ impl Errors {
     }
 }
 
-/// The square of a half's variance, from a quarter of the squared difference of the two: at least so much for any noise whose
+/// The square of a half's variance, from a quarter of the squared difference of the halves. A lower bound for noise whose
 /// half differences have a kurtosis up to [`KURTOSIS`].
 fn squared_variance(apart: f64) -> f64 {
     (2.0 * apart).powi(2) / KURTOSIS
 }
 
-/// The numbers of the tiles around a tile, itself included.
+/// Indices of the tiles within `radius` of a tile, itself included.
 fn tiles_around(grid: TileGrid, tile: usize, radius: usize) -> impl Iterator<Item = usize> {
     let (columns, rows) = (grid.columns(), grid.rows());
     let (x, y) = (tile % columns, tile / columns);
@@ -335,15 +333,15 @@ fn tiles_around(grid: TileGrid, tile: usize, radius: usize) -> impl Iterator<Ite
     near(y, rows).flat_map(move |y| near(x, columns).map(move |x| y * columns + x))
 }
 
-/// The variances of the told squared errors of some rows' pixels, from what is seen around them.
+/// Variances of the estimated squared errors of some rows' pixels, from their neighbourhoods.
 ///
-/// What is told is wrong by ab − db − ea = (a − d)(b − e) − de. As the halves are independent, its variance is
-/// E(a − d)² E(b − e)² − 2 E(a − d)d E(b − e)e + Ed² Ee². With β the filter's bias and δ what is left of the noise,
-/// d = β + δ, means of (A − D)(E − B), (D − E)²/2 and (A − B)(D − E)/2 around the pixel tell β², Eδ² and Eaδ.
+/// The estimate's noise is ab − db − ea = (a − d)(b − e) − de. As the halves are independent, its variance is E(a − d)² E(b
+/// − e)² − 2 E(a − d)d E(b − e)e + Ed² Ee². Let d = β + δ, with the filter's bias β and the residual noise δ. Means of (A −
+/// D)(E − B), (D − E)²/2 and (A − B)(D − E)/2 around the pixel estimate β², Eδ² and Eaδ.
 ///
-/// The filter spreads a pixel's noise over those around it, so that db of one and ea of another have noise in common:
-/// 2 E(ad') E(be') summed over the others. Where the filter is linear nearby, with weights w that δ = Σ wa, and the noise
-/// is as strong there, that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), σ² told by (A − B)²/2.
+/// The filter spreads a pixel's noise to its neighbours, so that db of one and ea of another are correlated: the sum over
+/// the others of 2 E(ad') E(be'). If the filter is locally linear with weights w (δ = Σ wa) and the noise locally uniform,
+/// that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), with σ² estimated by (A − B)²/2.
 fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = f64> {
     let height = luminances.len() / width.max(1);
     let first = rows.start.saturating_sub(MAP_RADIUS);
@@ -372,7 +370,7 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> imp
     ((rows.start - first) * width..(rows.end - first) * width).map(of_pixel)
 }
 
-/// Bilinear between the tiles' centres.
+/// Interpolates tile values bilinearly between the tiles' centres.
 fn interpolated(grid: TileGrid, tiles: &[f64]) -> Vec<f32> {
     let (columns, rows) = (grid.columns(), grid.rows());
     let place = |pixel: u32, count: usize| {
@@ -432,8 +430,8 @@ mod tests {
         assert_eq!(fields(&sum), std::array::from_fn(|i| 101.0 * (i as f64 + 1.0)));
     }
 
-    /// Two halves of a picture of luminance 1 whose noise is `noise(pixel)`, and what a filter makes of them that averages
-    /// 3 × 3 pixels and adds `bias(pixel)`.
+    /// Two halves of an image of luminance 1 with noise `noise(pixel)`, and both filtered by the mean of 3 × 3 pixels plus
+    /// `bias(pixel)`.
     fn halves(noise: &dyn Fn(usize) -> f64, bias: &dyn Fn(usize) -> f64, seed: u32) -> [[Colors; 2]; 2] {
         let half = |number: u32| -> Vec<f64> {
             let value = |pixel: usize| {
@@ -468,7 +466,7 @@ mod tests {
         })
     }
 
-    /// The squared error of the mean of two pictures, mixed with that of two others.
+    /// Mean squared error of the blend of the denoised halves' mean with the noisy halves' mean.
     fn squared_error(halves: &[[Colors; 2]; 2], shares: &[f32]) -> f64 {
         let [noisy, denoised] = halves;
         let of_pixel = |pixel: usize| {
@@ -481,7 +479,7 @@ mod tests {
 
     #[test]
     fn error_and_bias_are_the_true_ones() {
-        let (mut inside, mut told, mut truth, mut biases) = (0, 0.0, 0.0, Vec::new());
+        let (mut inside, mut estimated, mut truth, mut biases) = (0, 0.0, 0.0, Vec::new());
         const RENDERS: u32 = 960;
         for seed in 0..RENDERS {
             let halves = halves(&|pixel| if pixel % SIDE < 32 { 0.1 } else { 0.6 }, &|_| 0.05, seed);
@@ -489,13 +487,13 @@ mod tests {
             let found = errors.error(None);
             let true_error = squared_error(&halves, &vec![0.0; SIDE * SIDE]).sqrt() / 1.05;
             inside += u32::from((found.low..=found.high).contains(&true_error));
-            told += found.value.powi(2);
+            estimated += found.value.powi(2);
             truth += true_error.powi(2);
-            // Before it is told as at least 0.
+            // Before it is clamped to at least 0.
             let sum = errors.sum(None, |moments, _, _| (moments.denoised - moments.known, 0.0));
             biases.push(sum.denoised / sum.pixels);
         }
-        assert!((told / truth - 1.0).abs() < 0.1, "{told} {truth}");
+        assert!((estimated / truth - 1.0).abs() < 0.1, "{estimated} {truth}");
         // Errors are not quite normal: 93 % in the mean, and the standard deviation of such a count is 0.8 %.
         assert!(f64::from(inside) >= 0.91 * f64::from(RENDERS), "{inside} of {RENDERS}");
         let mean = biases.iter().sum::<f64>() / f64::from(RENDERS);
@@ -503,7 +501,7 @@ mod tests {
         let deviation = (squares / f64::from(RENDERS * (RENDERS - 1))).sqrt();
         let truth = 0.05_f64.powi(2);
         assert!((mean - truth).abs() < 4.0 * deviation, "{mean} {deviation}");
-        assert!(deviation < 0.15 * truth, "it tells something: {deviation}");
+        assert!(deviation < 0.15 * truth, "the estimate is precise enough: {deviation}");
     }
 
     #[test]

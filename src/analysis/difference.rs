@@ -1,18 +1,18 @@
-//! How one picture differs from another: signed, in linear light.
+//! Signed difference of two images, in linear light.
 
 use super::error::relative_mean_squared_error;
 use crate::job::film::Image;
 
-/// The share of the pixels that the automatic scale leaves within its range.
+/// Share of the pixels within the automatic scale.
 const SHARE_WITHIN: f64 = 0.99;
-/// The least automatic scale: what lies below is rounding.
+/// Smallest automatic scale: below is rounding.
 const SCALE_MIN: f32 = 1e-4;
-/// The colour of no difference, and those of the largest where A and where B is brighter; sRGB.
+/// Colours of no difference and of the largest ones, where A or B is brighter; sRGB.
 const NEUTRAL: [f32; 3] = [44.0, 44.0, 44.0];
 const A_BRIGHTER: [f32; 3] = [84.0, 170.0, 255.0];
 const B_BRIGHTER: [f32; 3] = [255.0, 150.0, 48.0];
 
-/// What separates two pictures.
+/// The difference of two images.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
     /// Width in pixels.
@@ -25,7 +25,7 @@ pub struct Difference {
     pub rms_relative: f64,
 }
 
-/// The difference of two pictures; `None` where their sizes differ.
+/// The difference of two images; `None` if their sizes differ.
 pub fn difference(a: &Image, b: &Image) -> Option<Difference> {
     if (a.width, a.height) != (b.width, b.height) {
         return None;
@@ -53,8 +53,7 @@ impl Difference {
         size.max(SCALE_MIN)
     }
 
-    /// The picture of the difference: red, green, blue and opacity of 8 bits a pixel; differences of `scale` and more
-    /// have the full colour.
+    /// An image of the difference, RGBA of 8 bits each; differences of `scale` and more have the full colour.
     pub fn rgba(&self, scale: f32) -> Vec<u8> {
         let color = |x: &f32| {
             let [r, g, b] = diverging(x / scale);

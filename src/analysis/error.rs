@@ -1,4 +1,4 @@
-//! How far an image is from another: relative mean squared error, and a test whether only noise separates them.
+//! Distance of two images: relative mean squared error, and a test whether only noise separates them.
 
 use super::chi_square::upper_tail;
 
@@ -15,12 +15,12 @@ pub fn relative_mean_squared_error(image: &[f32], reference: &[f32]) -> f64 {
     terms.sum::<f64>() / image.len().max(1) as f64
 }
 
-/// Estimates with their uncertainty, one a pixel and channel.
+/// Estimates with their uncertainty, one per pixel and channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimates<'a> {
-    /// The means.
+    /// Means, one per pixel and channel.
     pub mean: &'a [f64],
-    /// The variances of these means: the samples' variance over their number.
+    /// Variances of these means: the samples' variance over their number.
     pub variance: &'a [f64],
 }
 
@@ -29,7 +29,7 @@ pub struct Estimates<'a> {
 pub struct ZTest {
     /// Share of the numbers that differ by more than three standard deviations; by chance 0.0027.
     pub beyond_three_sigma: f64,
-    /// Largest difference in standard deviations; infinite where two exact numbers differ.
+    /// Largest difference in standard deviations; infinite if two exact numbers differ.
     pub max_z: f64,
     /// Probability that chance alone gives a sum of squares at least this large: small where the images differ.
     pub p_value: f64,

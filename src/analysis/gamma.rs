@@ -3,7 +3,8 @@
 /// Terms beyond which a sum or a fraction ends: some ten times the root of the largest parameter that is asked for.
 const TERMS: usize = 100_000;
 
-/// The share of Γ(a) = ∫ t^(a−1) e^−t dt from 0 to ∞ that lies above x; a > 0, x ≥ 0.
+/// Regularised upper incomplete gamma function Q(a, x): the share of Γ(a) = ∫ t^(a−1) e^−t dt from 0 to ∞ above x; a > 0, x
+/// ≥ 0.
 pub(super) fn upper_share(a: f64, x: f64) -> f64 {
     let factor = (a * x.ln() - x - ln_gamma(a)).exp();
     if factor == 0.0 {

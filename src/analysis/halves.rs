@@ -1,16 +1,16 @@
-//! How far pictures are apart, their noise taken out.
+//! Distance of two renders without their noise.
 //!
-//! A film has two halves of samples that are independent of each other (see [`super::noise`]). With d₁ and d₂ the
-//! differences of two pictures in either half, d₁d₂ estimates the squared difference of what they converge to without
-//! bias: their noise has no mean in common. That holds even where both pictures draw the same random numbers, which
-//! makes small differences visible long before either picture is smooth.
+//! A film has two independent halves of samples (see [`super::noise`]). With the differences d₁ and d₂ of two renders in
+//! either half, d₁d₂ estimates the squared difference of their limits without bias: their noise has no common mean. That
+//! holds even if both renders use the same random numbers, which makes small differences visible long before either image is
+//! smooth.
 
 use crate::job::film::Film;
 
-/// Standard deviations of a normal distribution that hold 95 %.
+/// Half width of a normal distribution's 95 % interval, in standard deviations.
 const BAND: f64 = 1.959_964;
 
-/// Mean luminance of each pixel in either half of its samples; NaN where a half has none.
+/// Mean luminance per pixel in either half of its samples; NaN without samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Halves {
     /// Of the even samples.
@@ -19,19 +19,19 @@ pub struct Halves {
     pub odd: Vec<f64>,
 }
 
-/// A root mean square difference over the mean luminance, with the range in which it lies with a probability of 95 %.
+/// A root mean square difference relative to the mean luminance, with its 95 % interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Distance {
-    /// 0.01 is 1 %; 0 where the noise hides whatever there is.
+    /// Estimate: 0.01 is 1 %; 0 if it is not resolved from noise.
     pub value: f64,
-    /// The lower end.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// The upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
 }
 
 impl Distance {
-    /// Whether chance alone would hardly give it.
+    /// Whether it is significantly above 0.
     pub fn is_resolved(&self) -> bool {
         self.low > 0.0
     }
@@ -45,21 +45,21 @@ impl Halves {
         Self { even, odd }
     }
 
-    /// Mean luminance of the picture.
+    /// Mean luminance of the image.
     pub fn mean_luminance(&self) -> f64 {
         let both = std::iter::zip(&self.even, &self.odd).map(|(even, odd)| 0.5 * (even + odd));
         mean(both.filter(|y| y.is_finite()))[0]
     }
 
-    /// How far the picture that this one converges to is from that of `other`, over the mean luminance of `other`.
+    /// Distance of this render's limit from that of `other`, relative to the mean luminance of `other`.
     pub fn distance(&self, other: &Halves) -> Distance {
         let even = std::iter::zip(&self.even, &other.even).map(|(a, b)| a - b);
         let odd = std::iter::zip(&self.odd, &other.odd).map(|(a, b)| a - b);
         distance(even.zip(odd), other.mean_luminance())
     }
 
-    /// How far a picture, given by its luminances, is from the one that this one converges to: its error, where both
-    /// are of the same scene and independent.
+    /// Distance of an image, given by its luminances, from this render's limit. That is the image's error if both are of the
+    /// same scene and independent.
     pub fn error_of(&self, luminances: &[f64]) -> Distance {
         let even = std::iter::zip(luminances, &self.even).map(|(x, y)| x - y);
         let odd = std::iter::zip(luminances, &self.odd).map(|(x, y)| x - y);
@@ -104,7 +104,7 @@ mod tests {
 
     const PIXELS: u32 = 10_000;
 
-    /// A grey picture of this luminance with noise of this size in either half.
+    /// A grey image of a luminance with noise of a standard deviation in either half.
     fn halves(luminance: f64, noise: f64, seed: u32) -> Halves {
         let number = |pixel: u32| -> [f64; 2] {
             random_pair(

@@ -67,8 +67,7 @@ pub fn angle_histogram(directions: impl IntoIterator<Item = Vec3<f64>>, axis: Ve
     histogram
 }
 
-/// What [`angle_histogram`] converges to at an angle: ∫ density dφ sin α, per radian. `frame`'s normal is the axis;
-/// `steps` azimuths.
+/// Limit of [`angle_histogram`] at an angle: ∫ density dφ sin α, per radian. `frame`'s normal is the axis; `steps` azimuths.
 pub fn angle_density(frame: &Frame<f64>, alpha_rad: f64, steps: u32, density: impl Fn(Vec3<f64>) -> f64) -> f64 {
     let (sine, cosine) = alpha_rad.sin_cos();
     let sum: f64 = (0..steps)

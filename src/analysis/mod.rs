@@ -1,5 +1,5 @@
-//! Proof by numbers: quadrature, χ² tests of samples against densities, histograms, errors of images; and what is read
-//! off films and clouds of samples.
+//! Numerical analysis: quadrature, χ² tests of samples against densities, histograms, errors of images, and estimates from
+//! films and samples.
 //!
 //! The tests are f64 and take plain directions and slices, so that samples of either engine can be tested.
 

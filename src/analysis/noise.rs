@@ -1,11 +1,10 @@
-//! How far a picture is from the one that it converges to, estimated from its own sums.
+//! Error estimate of a render, from its own sums.
 //!
-//! The samples of a pixel come in two halves that are independent of each other, whatever the sequence
-//! ([`crate::optics::random::path_state`]). With a and b the errors of the halves' means, ((a − b)/2)² estimates the
-//! squared error ((a + b)/2)² of the pixel without bias: they differ by −ab, whose expectation is 0. Summed over the
-//! pixels this is precise, and the spread of the sum of ab gives the band. The samples' own spread, as of independent
-//! numbers, is the cross-check: it agrees for independent numbers and overstates the error of Sobol's.
-//! docs/MATHEMATICS.md, section 8, tells the whole.
+//! The samples of a pixel come in two independent halves, for every sequence ([`crate::optics::random::path_state`]). With
+//! the errors a and b of the halves' means, ((a − b)/2)² estimates the pixel's squared error ((a + b)/2)² without bias: they
+//! differ by −ab, of expectation 0. Summed over the pixels this is precise, and the spread of the sum of ab gives the
+//! interval. The spread of the samples, as if they were independent, is the cross-check: it agrees for independent numbers
+//! and overestimates the error of the Sobol sequence. See docs/MATHEMATICS.md, section 8.
 
 use std::ops::Range;
 
@@ -14,33 +13,33 @@ use rayon::prelude::*;
 use crate::job::film::{Film, HalfSums};
 use crate::job::tiles::TileGrid;
 
-/// Standard deviations of a normal distribution that hold 95 %.
+/// Half width of a normal distribution's 95 % interval, in standard deviations.
 pub(super) const BAND: f64 = 1.959_964;
 /// Share of the pixels that must have samples in both halves.
 const MEASURED_SHARE: f64 = 0.99;
-/// Fourth moment of a pixel's half difference over its squared variance, where it is skewed: between a normal
-/// distribution's 3 and the 6 of the difference of two exponential ones.
+/// Kurtosis of a pixel's half difference for skewed samples: between a normal distribution's 3 and the 6 of the difference
+/// of two exponential ones.
 pub(super) const KURTOSIS: f64 = 4.5;
-/// Pixels to each side over which the gain of the sequence is averaged for a map.
+/// Radius in pixels over which the sequence's gain is averaged for a map.
 pub(super) const MAP_RADIUS: usize = 3;
 
-/// The estimated error of a picture.
+/// The estimated error of a render.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Noise {
     /// Relative error: root mean square over the pixels of the standard error of luminance, over the mean luminance.
     pub relative: f64,
-    /// The band in which the true relative error of this very picture lies with a probability of 95 %.
+    /// Lower end of the 95 % interval of the true relative error of this very image.
     pub low: f64,
-    /// Its upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
-    /// The relative error that the samples' own spread tells, as if all were independent: the cross-check.
+    /// Relative error by the samples' spread, as if they were independent: the cross-check.
     pub from_spread: f64,
-    /// Mean luminance of the picture.
+    /// Mean luminance of the image.
     pub mean_luminance: f64,
 }
 
-/// Variance of the mean luminance of a pixel from the difference of its halves: unbiased, with one degree of freedom. NaN
-/// where a half has no sample.
+/// Variance of a pixel's mean luminance from the difference of its halves: unbiased, with one degree of freedom. NaN if a
+/// half has no sample.
 pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
     if odd.samples < 1.0 || even.samples < 1.0 {
         return f64::NAN;
@@ -49,7 +48,7 @@ pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
     difference * difference * even.samples * odd.samples / (even.samples + odd.samples).powi(2)
 }
 
-/// The relative error of a picture; `None` before there are samples in both halves. A picture without light has none.
+/// The relative error of a render; `None` without samples in both halves. A black image has no error.
 pub fn noise(film: &Film) -> Option<Noise> {
     let bands: Vec<Sums> = bands(film.grid())
         .into_par_iter()
@@ -80,25 +79,25 @@ pub fn noise(film: &Film) -> Option<Noise> {
     })
 }
 
-/// Some rows of a picture. Pictures are gone through in these, so that what is kept of each pixel is bounded.
+/// Some rows of an image. Images are processed in bands to bound memory.
 struct Band<'a> {
     film: &'a Film,
     /// The pixels of the band.
     pixels: Range<usize>,
-    /// Of each of them: the variance of its mean from its halves' difference, the sum and the number of these around it, and
-    /// the variance of its mean from its samples' spread.
+    /// Per pixel: variance of its mean by the half difference; windowed sum and count of these; variance of its mean by the
+    /// samples' spread.
     halves: Vec<f64>,
     around: Vec<[f64; 2]>,
     spread: Vec<f64>,
-    /// What the sequence gains around each: the variance of means by the halves' difference over that by the samples'
-    /// spread; 1 for independent numbers, below where the sequence gains; 0 where there is no spread.
+    /// Gain of the sequence around each pixel: variance by the half differences over that by the samples' spread. 1 for
+    /// independent numbers, below for better sequences, 0 without spread.
     gains: Vec<f64>,
 }
 
 /// Rows of a band.
 const BAND_ROWS: usize = 64;
 
-/// The rows of the bands of a picture.
+/// The row ranges of an image's bands.
 pub(super) fn bands(grid: TileGrid) -> Vec<Range<usize>> {
     let height = if grid.width == 0 { 0 } else { grid.height as usize };
     let band = |first: usize| first..(first + BAND_ROWS).min(height);
@@ -108,7 +107,7 @@ pub(super) fn bands(grid: TileGrid) -> Vec<Range<usize>> {
 impl<'a> Band<'a> {
     fn of(film: &'a Film, rows: Range<usize>) -> Self {
         let width = film.width as usize;
-        // With what lies above and below, of which its means are made, too.
+        // With the rows above and below that windowed means need.
         let first = rows.start.saturating_sub(MAP_RADIUS);
         let last = (rows.end + MAP_RADIUS).min(film.height as usize);
         let wider = || first * width..last * width;
@@ -134,8 +133,8 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// What is expected of a pixel's squared variance: the product of the two halves' own spreads is right in the mean, as
-    /// the halves are independent; the gain of the sequence around the pixel makes variances of means of them.
+    /// Expectation of a pixel's squared variance. The product of the two halves' own spreads is unbiased, as the halves are
+    /// independent; the sequence's gain around the pixel converts it to variances of means.
     fn squared_variance(&self, place: usize) -> f64 {
         let [even, odd] = self.film.halves(self.pixels.start + place);
         if even.samples < 2.0 || odd.samples < 2.0 {
@@ -147,10 +146,10 @@ impl<'a> Band<'a> {
     }
 }
 
-/// Sums over the pixels of a picture.
+/// Sums over the pixels of an image.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
-    /// How many have samples in both halves.
+    /// Number of pixels with samples in both halves.
     measured: f64,
     luminance: f64,
     /// Variances by the halves' differences, and by the samples' spread.
@@ -192,17 +191,16 @@ impl Sums {
         }
     }
 
-    /// Σ V² over the pixels, from their own spreads. But where most pixels have not yet met what their variance comes from,
-    /// that is nearly always far below its expectation. So it is no less than from the means around each pixel, to which
-    /// its neighbours' hits count, too; and no less than from the half differences over their kurtosis: where a few
-    /// pixels' rare hits make up the error, this sees them.
+    /// Σ V² over the pixels, from their own spreads. With rare bright samples this is almost always an underestimate. So
+    /// there are two lower bounds. The windowed means include the neighbours' samples. The half differences over their
+    /// kurtosis respond to rare bright samples of a few pixels.
     fn squared_variance(&self) -> f64 {
         let sums = [self.of_pixels, self.of_neighbours, self.of_differences];
         sums.into_iter().fold(f64::MIN_POSITIVE, f64::max)
     }
 }
 
-/// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
+/// Per pixel the sum and count of the values in the square window around it; NaN counts as missing.
 pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
     let width = width.max(1);
     let entry = |value: &f64| if value.is_nan() { [0.0; 2] } else { [*value, 1.0] };
@@ -228,16 +226,15 @@ pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64;
     around
 }
 
-/// Adds to each sum what stands at its place, as far as there is something.
+/// Adds entries to sums by index, as far as both exist.
 fn add_each(sums: &mut [[f64; 2]], entries: &[[f64; 2]]) {
     for (sum, entry) in sums.iter_mut().zip(entries) {
         *sum = [sum[0] + entry[0], sum[1] + entry[1]];
     }
 }
 
-/// Standard error of each pixel's luminance over the picture's mean luminance: their root mean square is about the
-/// picture's relative error. From the samples' spread, times what the sequence gains around the pixel. 0 where nothing
-/// is known.
+/// Standard error of each pixel's luminance, relative to the image's mean: their root mean square is about the image's
+/// relative error. From the samples' spread times the sequence's gain around the pixel; 0 if unknown.
 pub fn relative_errors(film: &Film) -> Vec<f32> {
     let pixels = film.pixel_count();
     let mean = finite_sum((0..pixels).map(|pixel| film.luminance_of(pixel))) / pixels.max(1) as f64;
@@ -252,7 +249,7 @@ pub fn relative_errors(film: &Film) -> Vec<f32> {
     bands(film.grid()).into_par_iter().flat_map_iter(of_band).collect()
 }
 
-/// The sum of those numbers that are finite.
+/// Sum of the finite values.
 pub(super) fn finite_sum(values: impl Iterator<Item = f64>) -> f64 {
     values.filter(|value| value.is_finite()).sum()
 }
@@ -261,7 +258,7 @@ fn finite_or_nan(value: f64) -> f64 {
     if value.is_finite() { value } else { f64::NAN }
 }
 
-/// What the tiles of a picture show of its error.
+/// Error estimate of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileError {
     /// Variance of a pixel's luminance for one sample, as the sequence gains: of the mean, times the samples.
@@ -270,8 +267,7 @@ pub struct TileError {
     pub rays: f64,
 }
 
-/// Errors of all tiles. The spread of a tile's samples is well known; what the sequence gains is averaged over its
-/// neighbours, too.
+/// Error estimates of all tiles. A tile's own spread is precise; the sequence's gain is averaged over its neighbours.
 pub fn tile_errors(film: &Film) -> Vec<TileError> {
     let grid = film.grid();
     let sums: Vec<TileSums> = (0..grid.tiles())
@@ -301,7 +297,7 @@ pub fn tile_errors(film: &Film) -> Vec<TileError> {
 #[derive(Clone, Copy, Default)]
 struct TileSums {
     samples: f64,
-    /// How many pixels' error is known, and their variances by the samples' spread and by the halves' differences, for one
+    /// Number of pixels with a known error, and their variances by the samples' spread and by the half differences, for one
     /// sample each.
     pixels: f64,
     spread: f64,
@@ -449,9 +445,9 @@ mod tests {
         let (film, _) = film(64, 5, 0.3);
         let errors = relative_errors(&film);
         let squares: f64 = errors.iter().map(|error| f64::from(*error).powi(2)).sum();
-        let told = noise(&film).unwrap().relative;
+        let estimate = noise(&film).unwrap().relative;
         let of_map = (squares / f64::from(SIDE * SIDE)).sqrt();
-        assert!((of_map / told - 1.0).abs() < 0.1, "{of_map} {told}");
+        assert!((of_map / estimate - 1.0).abs() < 0.1, "{of_map} {estimate}");
         assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
         let tiles = tile_errors(&film);
         // The tiles in the middle column are half noisy.

@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::vector::{Vec3, vec3};
 
-/// Halvings of a patch after which its integral is taken as it is.
+/// Maximum depth of patch subdivision.
 const DEPTH_MAX: u32 = 9;
 /// Halvings before agreement is believed.
 const DEPTH_MIN: u32 = 1;
@@ -75,7 +75,7 @@ pub struct Patch {
     pub azimuth_rad: [f64; 2],
 }
 
-/// A function on the sphere with what is known about it.
+/// A function on the sphere, with its known properties.
 pub struct SphereFunction<'a, F> {
     /// The polar coordinates: their axis is the normal of this frame, which should lie on the function's peak.
     pub frame: Frame<f64>,
@@ -163,8 +163,8 @@ mod tests {
     use super::*;
     use crate::optics::frame::frame_from_normal;
 
-    /// ∫ f dω over the whole sphere: rings that shrink towards the axis by halves, so that peaks of any width on the axis
-    /// are met. Error about `tolerance` where the integral is about 1.
+    /// ∫ f dω over the whole sphere: rings that halve towards the axis, so that peaks of any width on the axis are resolved.
+    /// Error about `tolerance` for integrals about 1.
     fn integrate_sphere<F: Fn(Vec3<f64>) -> f64>(function: &SphereFunction<'_, F>, tolerance: f64) -> f64 {
         const RINGS: i32 = 24;
         const SECTORS: i32 = 4;

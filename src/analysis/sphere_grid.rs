@@ -1,11 +1,11 @@
-//! Quadrature over directions, adapted to lobes: the pole on the mirror direction, narrow rings where there is much.
+//! Quadrature over directions, adapted to lobes: the pole on the mirror direction, narrow rings where the lobe is large.
 
 use rayon::prelude::*;
 
 use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::{Vec3, vec3};
 
-/// Which side of the surface is integrated over.
+/// Side of the surface to integrate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Above the horizon.
@@ -17,7 +17,7 @@ pub enum Side {
 /// A function of the direction towards the light, for a view that is settled.
 pub type Profile<'a> = &'a (dyn Fn(Vec3<f64>) -> f64 + Sync);
 
-/// Directions and the solid angles that they stand for.
+/// Directions with their solid angles.
 #[derive(Clone, Debug)]
 pub struct SphereGrid {
     /// Unit directions with their solid angles in steradians.
@@ -65,7 +65,7 @@ impl SphereGrid {
     }
 }
 
-/// Where the rings end, in radians from the mirror direction: the finer, the more any of the profiles has there.
+/// Ring edges in radians from the mirror direction: finer where any of the profiles is larger.
 fn ring_edges(pole: &Pole, profiles: &[Profile]) -> Vec<f64> {
     let mut edges = vec![0.0];
     let mut edge = RING_FIRST;
@@ -142,7 +142,7 @@ struct Pole {
     azimuths: usize,
     /// The circle, or half of it.
     span_rad: f64,
-    /// How often each point counts.
+    /// Multiplicity of each point.
     multiplicity: f64,
 }
 
@@ -171,7 +171,7 @@ impl Pole {
         }
     }
 
-    /// Where the great circle of an azimuth crosses the horizon, radians from the mirror direction.
+    /// Angle from the mirror direction, in radians, at which the great circle of an azimuth crosses the horizon.
     fn horizon(&self, phi_rad: f64) -> f64 {
         self.cosine.atan2(self.sine * phi_rad.cos())
     }

@@ -207,9 +207,9 @@ impl Desk<'_> {
                 }
             }
             for &target in TextureTarget::ALL {
-                let texture = material.own.get(target);
-                if texture != before.own.get(target) {
-                    other.own.set(target, texture.cloned());
+                let texture = material.user_textures.get(target);
+                if texture != before.user_textures.get(target) {
+                    other.user_textures.set(target, texture.cloned());
                 }
             }
         }

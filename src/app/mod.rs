@@ -506,7 +506,7 @@ impl eframe::App for App {
         self.show(ui, &mut actions);
         let look = &self.shared.look;
         if look.is_shown != look.was_shown {
-            self.worker.look_closer(look.is_shown);
+            self.worker.set_inspected(look.is_shown);
             ctx.request_repaint();
         }
         if self.shared.selection.is_news() {

@@ -149,7 +149,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         self.stop.store(false, Ordering::Relaxed);
         if self.worker.is_none() {
             let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
-            let body = move |work: Work<R>, desk: &crate::render::background::Desk<'_, Work<R>, Standing<R>>| {
+            let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Standing<R>>| {
                 let mut watch = |progress| {
                     desk.publish(Standing::Running(progress));
                     !stop.load(Ordering::Relaxed) && !desk.is_superseded()

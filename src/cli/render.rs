@@ -164,7 +164,7 @@ fn render(
     };
     write_pictures(targets.outputs, rendered, document)?;
     // Words come after the picture: who does not read them must not hold it up.
-    say!("{}", told(&progress));
+    say!("{}", summary(&progress));
     say_written(targets.outputs);
     if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
@@ -243,20 +243,20 @@ fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
-    goes_on: &dyn Fn() -> bool,
+    keep_going: &dyn Fn() -> bool,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
-    let mut tell = |progress: &Progress| {
+    let mut show_progress = |progress: &Progress| {
         bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
         let error = progress.noise.map_or(String::new(), |noise| {
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
-        goes_on()
+        keep_going()
     };
     let mut attendant = Attendant::new(document);
-    let ended = to_end::step_to_end(session, engine, document, &mut attendant, &mut tell)?;
+    let ended = to_end::step_to_end(session, engine, document, &mut attendant, &mut show_progress)?;
     bar.finish_and_clear();
     if ended.progress.is_done {
         return Ok((ended.progress, ended.denoised));
@@ -267,15 +267,15 @@ fn step_to_end(
 }
 
 /// What came of a render, in a line.
-fn told(progress: &Progress) -> String {
+fn summary(progress: &Progress) -> String {
     let samples = format!(
         "{:.0} samples a pixel in {:.1} s",
         progress.mean_samples, progress.render_seconds
     );
     let Some(noise) = progress.noise else { return samples };
     let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
-    let denoised = progress.denoised.map_or(String::new(), |told| {
-        let [error, low, high] = [told.value, told.low, told.high].map(|share| 100.0 * share);
+    let denoised = progress.denoised.map_or(String::new(), |estimate| {
+        let [error, low, high] = [estimate.value, estimate.low, estimate.high].map(|share| 100.0 * share);
         format!(", denoised {error:.2} % ({low:.2} to {high:.2} %)")
     });
     let why = match (progress.is_converged(), progress.noise_wanted, progress.stopped_by) {

@@ -161,7 +161,7 @@ impl SceneArguments {
         if self.textures.is_empty() {
             return Ok(());
         }
-        for own in session.own_pictures(document)? {
+        for own in session.user_texture_files(document)? {
             if let Err(why) = own.picture
                 && files().any(|file| *file == own.file)
             {
@@ -234,8 +234,8 @@ impl SceneArguments {
             .lighting
             .area_lights
             .extend(given.map(|light| light.in_scene(radius_m)));
-        if takes_materials && let Some(told) = lights_left_out(document.add_lights_and_cameras(&model)) {
-            log::warn!("{told}");
+        if takes_materials && let Some(message) = lights_left_out(document.add_lights_and_cameras(&model)) {
+            log::warn!("{message}");
         }
         Ok(())
     }

@@ -7,14 +7,14 @@ use anyhow::bail;
 use crate::document::Document;
 use crate::named::Named as _;
 use crate::scene::Model;
-use crate::scene::texture::{OwnTexture, TextureTarget, set};
+use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 /// Images, and the material that they are put on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TextureArgument {
     /// Name or number of the slot; every material where none is given.
     slot: Option<String>,
-    textures: Vec<(TextureTarget, OwnTexture)>,
+    textures: Vec<(TextureTarget, UserTexture)>,
 }
 
 /// Reads `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
@@ -35,7 +35,7 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
             .ok_or_else(|| format!("{name} is nothing that a texture is put on; give one of {}", uses()))?;
         let file = existing(file)?;
         let named = set::targets_of(&file).into_iter().find(|(known, _)| *known == target);
-        let texture = named.map_or_else(|| OwnTexture::of(file), |(_, texture)| texture);
+        let texture = named.map_or_else(|| UserTexture::of(file), |(_, texture)| texture);
         return Ok(TextureArgument {
             slot,
             textures: vec![(target, texture)],

@@ -24,7 +24,7 @@ impl Waiting {
     pub(super) fn on(loading: &Loading) -> Self {
         let is_over = Arc::new(AtomicBool::new(false));
         let (loading, its_end) = (loading.clone(), is_over.clone());
-        let tell = move || {
+        let report = move || {
             let style =
                 ProgressStyle::with_template("{spinner} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
             let line = ProgressBar::new_spinner().with_style(style);
@@ -36,7 +36,7 @@ impl Waiting {
             line.finish_and_clear();
         };
         let is_seen = std::io::stderr().is_terminal();
-        let thread = is_seen.then(|| std::thread::Builder::new().name("waiting".to_owned()).spawn(tell));
+        let thread = is_seen.then(|| std::thread::Builder::new().name("waiting".to_owned()).spawn(report));
         Self {
             is_over,
             // Without a thread nothing is reported.

@@ -1,4 +1,4 @@
-//! The engine on the processor: the same path tracer as the GPU's, on all cores.
+//! The CPU engine: the same path tracer as the GPU's, on all cores.
 
 pub mod integrator;
 pub mod oracle;
@@ -24,7 +24,7 @@ use crate::optics::real::Real;
 use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 
-/// Renders on the processor's cores, which take a tile each at a time.
+/// The CPU engine. Its threads render one tile each at a time.
 #[derive(Default)]
 pub struct CpuEngine {
     job: Option<Arc<Job>>,
@@ -34,9 +34,9 @@ pub struct CpuEngine {
     samples_per_second: f64,
 }
 
-/// A pass has more samples than go on together only where it takes no longer than this.
+/// Longest pass with more samples per pixel than a wave has.
 const PASS: Duration = Duration::from_millis(30);
-/// Tiles that are listed at once: enough that cores seldom wait for each other, and few beside what a step renders.
+/// Tiles per slice: enough that threads seldom wait for each other, and few beside what a step renders.
 const LISTED_TILES: usize = 4096;
 
 impl CpuEngine {
@@ -57,9 +57,9 @@ impl CpuEngine {
         self.step_towards(budget, &goals);
     }
 
-    /// The same up to a number of samples a pixel for each tile.
+    /// The same up to a number of samples per pixel of each tile.
     pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) {
-        /// The step, to be taken in lanes.
+        /// The step, generic over the SIMD lanes.
         struct Step<'a>(&'a mut CpuEngine, Duration, &'a [u32]);
         impl InLanes for Step<'_> {
             type Output = ();
@@ -70,13 +70,13 @@ impl CpuEngine {
         in_lanes(instructions::level(), Step(self, budget, goals));
     }
 
-    /// Renders as [`CpuEngine::step`] does with shading in f64; rays meet the geometry in f32 in any case.
+    /// Renders as [`CpuEngine::step`] with shading in f64; intersection stays in f32.
     pub fn step_double(&mut self, budget: Duration, samples: u32) {
         let goals = vec![samples; self.schedule.grid().tiles()];
         self.step_double_towards(budget, &goals);
     }
 
-    /// Renders as [`CpuEngine::step_towards`] does with shading in f64.
+    /// Renders as [`CpuEngine::step_towards`] with shading in f64.
     pub fn step_double_towards(&mut self, budget: Duration, goals: &[u32]) {
         self.step_towards_in::<f64>(budget, goals);
     }
@@ -86,7 +86,7 @@ impl CpuEngine {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
         let mut waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| None).collect();
-        self.schedule.aim(goals);
+        self.schedule.set_goals(goals);
         let start = Instant::now();
         loop {
             let left = budget.saturating_sub(start.elapsed());
@@ -111,8 +111,8 @@ impl CpuEngine {
         }
     }
 
-    /// Samples of a pixel that a pass has at least. Samples that go on together cost less; but the first picture is there as
-    /// soon as can be, and then no part of it is more than twice as far as the rest when a step ends.
+    /// Smallest number of samples per pixel in a pass. More samples per wave are cheaper. But the first image must come
+    /// soon, and at the end of a step no part of it may have more than twice the samples of the rest.
     fn least_pass_samples(&self, left: Duration) -> u32 {
         let samples = self.samples_per_pixel();
         if samples == 0 {
@@ -124,10 +124,10 @@ impl CpuEngine {
         samples.max(by_the_end).min(WAVE_SAMPLES)
     }
 
-    /// Renders tiles one after the other, at least one, until the time is up, and tells how many. Each core works in a wave of
-    /// its own, made when it is first needed, and takes the next tile when it is done with one: tiles of background take a
-    /// fifth of the time of others, so how many there is time for shows only as they are rendered. Each tile is copied out of
-    /// the film and back, which takes a thousandth of the time, so that no two cores write to the same memory.
+    /// Renders tiles until the time is up, at least one. Returns their number. Each thread has its own wave, made on first
+    /// use, and takes the next tile when it is done with one. Background tiles take a fifth of the time of others, so the
+    /// number cannot be planned. Each tile is copied out of the film and back, so that no two threads write to the same
+    /// memory; that costs a thousandth of the time.
     fn render<T: Real>(
         &mut self,
         integrator: &Integrator<'_, T>,
@@ -154,27 +154,27 @@ impl CpuEngine {
         taken.into_inner().min(works.len())
     }
 
-    /// What has been accumulated.
+    /// The accumulated film.
     pub fn film(&self) -> &Film {
         &self.film
     }
 
-    /// What has been rendered of each tile.
+    /// The samples rendered per tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
 
-    /// Goes on with what another engine rendered of the same job.
+    /// Continues from another engine's film of the same job.
     pub fn take_over(&mut self, film: Film, schedule: Schedule) {
         (self.film, self.schedule) = (film, schedule);
     }
 
-    /// What has been rendered, for another engine to go on with.
+    /// The film and schedule, for another engine to continue.
     pub fn hand_over(self) -> (Film, Schedule) {
         (self.film, self.schedule)
     }
 
-    /// Completed samples a pixel.
+    /// Completed samples per pixel.
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()
     }

@@ -1,5 +1,5 @@
-//! Paths one by one and tiles by any instruction set, for records and tests. Nothing here is generic, so that the engine
-//! stands once in the machine code: a generic function would be compiled again in each crate that calls it.
+//! Single paths and tiles by any instruction set, for records and tests. Nothing here is generic, so that the engine is
+//! compiled once: a generic function would be compiled again in each crate that calls it.
 
 use fearless_simd::Level;
 
@@ -42,35 +42,35 @@ pub struct TileSamples {
 
 /// Results of a tile's paths as the engine renders it with an instruction set: pixels row by row, for each sample.
 pub fn trace_tile(job: &Job, level: Level, tile: TileSamples) -> Vec<PathResult<f32>> {
-    in_lanes(level, Together { job, tile })
+    in_lanes(level, TraceTile { job, tile })
 }
 
 /// A call of [`trace_tile`].
-struct Together<'a> {
+struct TraceTile<'a> {
     job: &'a Job,
     tile: TileSamples,
 }
 
-impl InLanes for Together<'_> {
+impl InLanes for TraceTile<'_> {
     type Output = Vec<PathResult<f32>>;
     fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
         let TileSamples { origin, size, samples } = self.tile;
         let pixels = (size[0] * size[1]) as usize;
-        let mut found = vec![PathResult::default(); pixels * samples[1] as usize];
+        let mut results_of = vec![PathResult::default(); pixels * samples[1] as usize];
         let tile = Tile::new(origin, size);
         let integrator = Integrator::<T>::new(self.job);
         let mut wave = Wave::new(integrator.sequence());
         integrator.trace_tile(&tile, &mut wave, samples, |[first, count], results| {
             for sample in 0..count {
                 let row = (first + sample - samples[0]) as usize * pixels;
-                for near in tile.near() {
-                    let path = near.path([sample, count]);
-                    for ([x, y], path) in near.places.iter().zip(path..) {
-                        found[row + (y * size[0] + x) as usize] = results.get(path);
+                for block in tile.blocks() {
+                    let path = block.path([sample, count]);
+                    for ([x, y], path) in block.places.iter().zip(path..) {
+                        results_of[row + (y * size[0] + x) as usize] = results.get(path);
                     }
                 }
             }
         });
-        found
+        results_of
     }
 }

@@ -1,5 +1,5 @@
-//! What of a job's numbers is not to be trusted, pixel by pixel: f32 against f64 on the same surface, samples that are
-//! dropped, and rays that start on the wrong side.
+//! A map of numerical trouble, pixel by pixel: f32 against f64 on the same surface, dropped samples, and rays that start on
+//! the wrong side.
 
 use rayon::prelude::*;
 
@@ -26,12 +26,12 @@ const LIGHTS: u32 = 6;
 const LIGHT_DENSITY: f64 = 1.0;
 /// The first of the pairs of numbers that directions are drawn with.
 const DIMENSION: u32 = 64;
-/// Straight back from a ray's origin its surface is met at so many times the bound on its place's error.
+/// Distances at which a ray's own surface must be hit straight back from its origin, in bounds of the position's error.
 const DISTANCE: [f32; 2] = [0.5, 2.0];
 /// Rows between two looks whether anybody still waits.
 const ROWS: u32 = 8;
 
-/// The map of a job in `size` pixels; `None` where it is not wanted any more.
+/// The map of a job; `None` if cancelled.
 pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<PrecisionMap> {
     let tracer = PathTracer::new(job);
     let mut findings = Vec::with_capacity(width as usize * height as usize);
@@ -51,7 +51,7 @@ pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() 
     })
 }
 
-/// What there is at the middle of a pixel of the map.
+/// The findings at the centre of a map pixel.
 fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> Finding {
     let settings = &job.settings;
     let place = [0, 1].map(|i| {
@@ -86,7 +86,7 @@ fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> 
     }
 }
 
-/// The largest error of the material's value in f32, over some directions of the light where it is not singular.
+/// Largest relative error of the material's value in f32, over some light directions where it is not singular.
 fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, state: RandomState) -> f64 {
     let (exact, exact_surface) = (material.cast::<f64>(), widened(surface));
     let layers = material_layers(material, &job.tables, surface);
@@ -122,8 +122,8 @@ fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, st
     (0..LIGHTS).filter_map(error).fold(0.0, f64::max)
 }
 
-/// Whether rays that leave the surface, or enter it where it transmits, start where they must not: straight back its own
-/// surface must be next, as far off as the ray was moved.
+/// Whether rays from the surface (and into it, if it transmits) start on the wrong side: straight back, their own surface
+/// must be the first hit, at the offset's distance.
 fn starts_astray(job: &Job, point: &SurfacePoint<f32>, transmits: bool) -> bool {
     let is_astray = |out: Vec3<f32>| {
         let origin = point.ray_origin(out, true);

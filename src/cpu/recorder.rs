@@ -1,16 +1,16 @@
-//! What happens along a path, told to whoever wants to list it. The path tracer is generic over a [`Recorder`]; the one
-//! that renders with, [`Unrecorded`], is compiled away.
+//! Events along a path, for a list of them. The path tracer is generic over a [`Recorder`]; rendering uses [`Unrecorded`],
+//! which is compiled away.
 
 use serde::Serialize;
 
 use crate::optics::layer::Layer;
 use crate::optics::real::Scalar;
 
-/// What is told of the events of a path, in their order.
+/// A receiver of a path's events, in order.
 pub trait Recorder {
-    /// Whether anything is kept of the events.
+    /// Whether events are kept.
     const KEEPS: bool;
-    /// Takes an event. Making it may cost something: only who keeps it calls for it.
+    /// Records an event. The closure is only called if events are kept, because making one costs time.
     fn record(&mut self, event: impl FnOnce() -> Event);
 }
 
@@ -22,7 +22,7 @@ impl<R: Recorder> Recorder for &mut R {
     }
 }
 
-/// Keeps nothing.
+/// Discards all events.
 #[derive(Clone, Copy)]
 pub struct Unrecorded;
 
@@ -39,211 +39,214 @@ impl Recorder for Vec<Event> {
     }
 }
 
-/// What a random number is drawn for.
+/// Purpose of a random number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Purpose {
-    /// The place in the pixel.
+    /// Position in the pixel.
     Pixel,
-    /// The place on the lens.
+    /// Position on the lens.
     Lens,
-    /// Whether a surface with holes stops the ray.
+    /// Opacity test: whether a surface with holes stops the ray.
     Opacity,
-    /// The direction drawn from a lobe.
+    /// Direction sampled from a lobe.
     Lobe,
-    /// Which layer of the material the direction is drawn from.
+    /// Choice of the layer that is sampled.
     Layer,
-    /// The direction of what the specular lobe passed on.
+    /// Direction below the specular lobe.
     Below,
-    /// The direction to a light.
+    /// Direction to a light.
     Light,
     /// Russian roulette.
     Roulette,
-    /// Whether a shadow catcher mirrors the ray.
+    /// Whether the shadow catcher mirrors the ray.
     Catcher,
-    /// The direction in which a blurred background is seen.
+    /// Direction of a blurred background.
     Blur,
-    /// Drawn beside another number and not used; not told.
+    /// Unused second number of a pair; not recorded.
     Unused,
 }
 
-/// Where light comes from.
+/// Source of light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {
-    /// The environment.
+    /// The environment light, at infinity.
     Environment,
     /// A surface that emits.
     Surface,
-    /// What the camera sees where it meets nothing.
+    /// The background that the camera sees behind the scene.
     Background,
 }
 
-/// Why a path goes no further.
+/// Why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
-    /// It left the scene.
-    Left,
-    /// It has as many bounces as it may have.
+    /// The ray left the scene.
+    #[serde(rename = "left")]
+    Escaped,
+    /// The bounce limit was reached.
     Bounces,
-    /// Nothing was reflected into the direction drawn, or what was is not a number.
+    /// The sampled direction carries no light, or NaN.
     Absorbed,
     /// Russian roulette.
     Roulette,
 }
 
-/// How likely a layer is to be sampled.
+/// Sampling probability of a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LayerChance {
-    /// The layer.
+    /// Layer of the material.
     pub layer: Layer,
     /// In [0, 1].
     pub probability: f32,
 }
 
-/// One event of a path. Lengths and places are in the geometry's units; colours are linear RGB. All numbers are as the
-/// engine had them, where it shades in f32.
+/// One event of a path. Lengths and positions are in the geometry's units, colours are linear RGB. All numbers are the
+/// engine's own f32 values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
     /// A random number was drawn.
     Number {
-        /// Which pair of the path's.
+        /// Dimension: index of the pair.
         dimension: u32,
-        /// Which of the pair: 0 or 1.
+        /// Index in the pair: 0 or 1.
         half: u32,
         /// In [0, 1).
         value: f32,
-        /// What for.
+        /// Purpose of the number.
         purpose: Purpose,
     },
     /// The ray left the camera.
     Camera {
-        /// On the lens.
+        /// Origin on the lens.
         origin: [f32; 3],
         /// Unit vector.
         direction: [f32; 3],
     },
-    /// A ray went straight on through a surface with holes.
+    /// A ray passed a surface with holes.
     Passed {
-        /// The surface's slot.
+        /// Material slot of the surface.
         slot: u32,
-        /// From where the ray started or last went through.
+        /// Distance from the ray's origin or the last passed surface.
         distance: f32,
-        /// Share of light that the surface stops there.
+        /// Opacity there, in [0, 1].
         opacity: f32,
     },
     /// A surface stopped the ray.
     Hit {
         /// Number of bounces before.
         bounce: u32,
-        /// In the order of the hierarchy's leaves.
+        /// Triangle index, in the order of the hierarchy's leaves.
         triangle: u32,
-        /// The surface's slot.
+        /// Material slot of the surface.
         slot: u32,
-        /// From the ray's origin.
+        /// Distance from the ray's origin.
         distance: f32,
-        /// Where.
+        /// Position of the hit, in the geometry's units.
         position: [f32; 3],
-        /// Geometric normal, on the side of the ray.
+        /// Geometric normal, on the ray's side.
         normal: [f32; 3],
-        /// The normal that is shaded with.
+        /// Unit shading normal, on the ray's side.
         shading_normal: [f32; 3],
-        /// True where the back of the triangle was met.
+        /// True for a hit on the triangle's back.
         is_inside: bool,
     },
-    /// A shadow catcher shows the background, as far as light reaches it or what it mirrors does not hide it.
-    Caught {
+    /// The camera ray hit the shadow catcher, which shows the background times the light that arrives, or mirrors.
+    #[serde(rename = "caught")]
+    CatcherHit {
         /// Whether it mirrors the ray.
         is_mirrored: bool,
-        /// What is seen of the background; 1 where it is transparent, and the path's light is taken from that.
+        /// Radiance of the background; 1 if transparent, from which the light is subtracted.
         background: [f32; 3],
-        /// The radiance of a white matt plane there, nothing in the way of the light.
+        /// Radiance of a white diffuse plane there without occluders.
         light: [f32; 3],
-        /// What the light that arrives is multiplied by from here on.
+        /// Throughput from here on.
         throughput: [f32; 3],
     },
-    /// The interior took its part of the light.
+    /// The medium absorbed light.
     Absorption {
-        /// The way inside.
+        /// Distance inside the medium.
         distance: f32,
-        /// What it lets through.
+        /// Transmittance per channel.
         kept: [f32; 3],
     },
-    /// The path itself met light.
-    Found {
-        /// What shines.
+    /// The path hit light by BSDF sampling.
+    #[serde(rename = "found")]
+    LightHit {
+        /// Source of the light.
         source: Source,
-        /// Its radiance.
+        /// Radiance of the light.
         radiance: [f32; 3],
-        /// The density with which the lobe drew the direction, per steradian; 0 where it competes with nothing.
+        /// Density of BSDF sampling per steradian; 0 if it does not compete.
         lobe_density: f32,
-        /// The density with which light sampling would have drawn it; 0 where it could not.
+        /// Density of light sampling per steradian; 0 if it could not draw the direction.
         light_density: f32,
-        /// The share of the lobe under multiple importance sampling.
+        /// MIS weight of BSDF sampling, in [0, 1].
         weight: f32,
     },
-    /// A direction to a light was drawn.
+    /// A direction to a light was sampled.
     Light {
-        /// What was drawn from.
+        /// The sampled source.
         source: Source,
         /// Unit vector.
         direction: [f32; 3],
-        /// Of the direction, per steradian.
+        /// Density of the direction, per steradian.
         density: f32,
-        /// What the material reflects or refracts from there, cosine included, without the weight.
+        /// Value of the material, cosine included, without the MIS weight.
         value: [f32; 3],
-        /// The share of light sampling under multiple importance sampling, by colour; 0 where the value is.
+        /// MIS weight of light sampling per channel, in [0, 1]; 0 where the value is 0.
         weight: [f32; 3],
-        /// The share of the light that arrives: 0 in shadow. 1 where nothing needed to be looked at.
+        /// Visibility in [0, 1]: 0 in shadow, 1 if no shadow ray was needed.
         visible: f32,
-        /// What shines there; 0 where nothing would arrive.
+        /// Radiance of the light; 0 if none would arrive.
         radiance: [f32; 3],
     },
-    /// The path goes on in a direction drawn from the material.
+    /// The path continues in a direction sampled from the material.
     Scattered {
-        /// Which layer was chosen.
+        /// The sampled layer.
         layer: Layer,
-        /// How likely each layer was. Where the specular lobe passes on what it does not reflect, by its mean.
+        /// Probability of each layer. If the specular lobe passes on what it does not reflect: its mean.
         probabilities: Vec<LayerChance>,
         /// Unit vector.
         direction: [f32; 3],
-        /// What the throughput was multiplied by.
+        /// Factor of the throughput.
         factor: [f32; 3],
-        /// Of the direction in that layer times the probability of the layer, per steradian; 0 where it is not asked for.
+        /// Density of the direction in that layer times the layer's probability, per steradian; 0 if not needed.
         density: f32,
-        /// Whether the layer is weighed as a mirror.
+        /// Whether the layer counts as a mirror for MIS.
         is_mirror: bool,
-        /// After it.
+        /// Throughput after it.
         throughput: [f32; 3],
     },
     /// Russian roulette was played.
     Roulette {
-        /// The probability of going on.
+        /// Survival probability.
         survival: f32,
-        /// The number drawn: the path goes on where it is below.
+        /// The random number: the path survives below `survival`.
         number: f32,
     },
     /// Light was added to the sample.
     Contribution {
-        /// Where it comes from.
+        /// Source of the light.
         source: Source,
-        /// How often it was reflected or refracted.
+        /// Number of reflections and refractions.
         reflections: u32,
-        /// What the path brings of it.
+        /// The contribution before the firefly clamp.
         found: [f32; 3],
-        /// What was added: less where fireflies are limited.
+        /// The contribution after the firefly clamp.
         added: [f32; 3],
     },
-    /// The path went no further.
+    /// The path ended.
     Ended {
-        /// Why.
+        /// Reason.
         why: End,
     },
 }
 
-/// As f32: exact where the path is traced in it.
+/// A number as f32: exact if the path is traced in f32.
 pub(super) fn single<S: Scalar>(value: S) -> f32 {
     value.to_f64() as f32
 }

@@ -1,4 +1,4 @@
-//! What drawing directions costs on the processor, with nothing around it. Twin of `shaders/pass/sampling.wgsl`.
+//! Cost of sampling directions on the CPU in isolation. Twin of `shaders/pass/sampling.wgsl`.
 
 use std::time::Instant;
 
@@ -10,11 +10,11 @@ use crate::optics::lobe::{Horizon, LobeShape, raw_sampler};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::{Vec3, vec3};
 
-/// The corner of the shining triangle and two of its sides, seen from the quad.
+/// A corner of the emitting triangle and two of its edges, relative to the quad.
 const LIGHT_CORNER: [f32; 3] = [-0.5, -0.5, 1.0];
 const LIGHT_SIDES: [[f32; 3]; 2] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 
-/// Draws on all cores, and says how long it took.
+/// Samples on all cores and measures the time.
 pub fn run(request: &SamplingRequest) -> SamplingRun {
     let begun = Instant::now();
     let rows = (0..request.rows).into_par_iter();
@@ -22,7 +22,7 @@ pub fn run(request: &SamplingRequest) -> SamplingRun {
     let sum = match request.stage {
         SamplingStage::Numbers => rows.map(|y| row(request, y, |xi, _| Vec3::from_f32(xi))).sum(),
         SamplingStage::Directions => rows.map(|y| directions(request, y, |_| true)).sum(),
-        SamplingStage::Rays => rows.map(|y| directions(request, y, meets_light)).sum(),
+        SamplingStage::Rays => rows.map(|y| directions(request, y, hits_light)).sum(),
     };
     SamplingRun {
         seconds: begun.elapsed().as_secs_f64(),
@@ -30,7 +30,7 @@ pub fn run(request: &SamplingRequest) -> SamplingRun {
     }
 }
 
-/// A row of directions, those that `counts` being added up.
+/// Sum over a row of the directions for which `counts` holds.
 fn directions(request: &SamplingRequest, y: u32, counts: impl Fn(Vec3<f32>) -> bool) -> f64 {
     let frame = frame_from_normal(Vec3::from_f64(QUAD_NORMAL));
     let shape = LobeShape {
@@ -67,8 +67,8 @@ fn row(request: &SamplingRequest, y: u32, draw: impl Fn([f32; 3], Vec3<f32>) -> 
     (0..request.width).map(pixel).sum()
 }
 
-/// Whether a direction from the quad meets the triangle (Möller and Trumbore 1997).
-fn meets_light(direction: Vec3<f32>) -> bool {
+/// Whether a direction from the quad hits the triangle (Möller and Trumbore 1997).
+fn hits_light(direction: Vec3<f32>) -> bool {
     let [side_u, side_v] = LIGHT_SIDES.map(Vec3::from_f32);
     let across = direction.cross(side_v);
     let determinant = side_u.dot(across);

@@ -6,7 +6,7 @@ use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::lobe::{lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 
-/// Draws the samples.
+/// Samples the lobe.
 pub fn scatter(request: &ScatterRequest) -> ScatterCloud {
     let shape = request.model.shape::<f32>();
     let frame = ScatterRequest::frame();

@@ -1,31 +1,31 @@
-//! The sums of a tile's pixels while samples come in: those of pixels near each other field by field, as their samples are
-//! added side by side.
+//! Sums of a tile's pixels while samples arrive, as structure of arrays per pixel block: a block's samples are added in
+//! SIMD.
 
-use super::integrator::{NEAR, Results, Tile, is_sound};
+use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
 use crate::job::film::{Film, HalfSums};
 use crate::job::guides::GUIDE_SAMPLES;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::vec3;
 
-/// A tile's sums, and the part of a film that they are of.
+/// A tile's sums and its part of the film.
 pub(super) struct TileSums<'a> {
     tile: &'a Tile,
     film: &'a mut Film,
-    /// The even samples and the odd ones of pixels near each other.
-    halves: Vec<[NearSums; 2]>,
+    /// Even and odd samples of each block.
+    halves: Vec<[BlockSums; 2]>,
 }
 
 impl<'a> TileSums<'a> {
-    /// What the film has of the tile, which is all of it.
+    /// The sums so far; `film` is the tile alone.
     pub fn of(film: &'a mut Film, tile: &'a Tile) -> Self {
         let mut sums = Self {
             tile,
             film,
             halves: Vec::new(),
         };
-        for near in tile.near() {
-            let mut halves = [NearSums::default(); 2];
-            for (i, place) in near.places.iter().enumerate() {
+        for block in tile.blocks() {
+            let mut halves = [BlockSums::default(); 2];
+            for (i, place) in block.places.iter().enumerate() {
                 let of_pixel = sums.film.halves(sums.pixel(place));
                 for (half, of_pixel) in halves.iter_mut().zip(&of_pixel) {
                     half.set(i, of_pixel, of_pixel.mean_luminance(), true);
@@ -36,12 +36,12 @@ impl<'a> TileSums<'a> {
         sums
     }
 
-    /// Which pixel of the film lies at a place in the tile.
+    /// Film index of a pixel.
     fn pixel(&self, [x, y]: &[u32; 2]) -> usize {
         (y * self.film.width + x) as usize
     }
 
-    /// Adds as many samples of each pixel, from sample `first` on.
+    /// Adds `count` samples of each pixel, from sample `first` on.
     pub fn add<T: Real>(&mut self, [first, count]: [u32; 2], results: &Results<T::Scalar>) {
         let (tile, halves) = (self.tile, &mut self.halves);
         let costs = &mut self.film.costs[0];
@@ -50,15 +50,15 @@ impl<'a> TileSums<'a> {
         T::vectorize(
             #[inline(always)]
             || {
-                for (near, halves) in tile.near().zip(halves) {
+                for (block, halves) in tile.blocks().zip(halves) {
                     for sample in 0..count {
-                        let colors = results.radiances(near.path([sample, count]));
-                        let mut are_sound = [false; NEAR];
+                        let colors = results.radiances(block.path([sample, count]));
+                        let mut are_sound = [false; BLOCK_PIXELS];
                         for (i, sound) in are_sound.iter_mut().enumerate() {
                             *sound = is_sound(vec3(colors[0][i], colors[1][i], colors[2][i]));
                         }
                         halves[(first + sample) as usize % 2].add(&colors, &are_sound);
-                        let of_pixels = &are_sound[..near.places.len()];
+                        let of_pixels = &are_sound[..block.places.len()];
                         costs.dropped += of_pixels.iter().filter(|is_sound| !**is_sound).count() as u64;
                     }
                 }
@@ -67,15 +67,15 @@ impl<'a> TileSums<'a> {
         self.add_more([first, count], results);
     }
 
-    /// The same for what only some films keep, and what limiting fireflies took.
+    /// Adds the optional sums: coverage, guides and clamped luminance.
     fn add_more<S: Scalar>(&mut self, [first, count]: [u32; 2], results: &Results<S>) {
-        if !self.film.extras().coverage && !results.have_more() {
+        if !self.film.extras().coverage && !results.has_extras() {
             return;
         }
         for sample in 0..count {
-            for near in self.tile.near() {
-                let path = near.path([sample, count]);
-                for (place, path) in near.places.iter().zip(path..) {
+            for block in self.tile.blocks() {
+                let path = block.path([sample, count]);
+                for (place, path) in block.places.iter().zip(path..) {
                     let (pixel, found) = (self.pixel(place), results.get(path));
                     if !is_sound(found.radiance) {
                         continue;
@@ -85,17 +85,17 @@ impl<'a> TileSums<'a> {
                     if first + sample < GUIDE_SAMPLES
                         && let Some(guides) = self.film.guides.get_mut(pixel)
                     {
-                        guides[(first + sample) as usize % 2].add(&found.seen);
+                        guides[(first + sample) as usize % 2].add(&found.guides);
                     }
                 }
             }
         }
     }
 
-    /// Puts the sums back.
+    /// Writes the sums back to the film.
     pub fn finish(self) {
-        for (near, halves) in self.tile.near().zip(&self.halves) {
-            for (i, place) in near.places.iter().enumerate() {
+        for (block, halves) in self.tile.blocks().zip(&self.halves) {
+            for (i, place) in block.places.iter().enumerate() {
                 let pixel = self.pixel(place);
                 self.film.set_halves(pixel, &halves.each_ref().map(|half| half.get(i)));
             }
@@ -103,17 +103,17 @@ impl<'a> TileSums<'a> {
     }
 }
 
-/// The sums of pixels near each other, see [`HalfSums`].
+/// Sums of a pixel block, see [`HalfSums`].
 #[derive(Clone, Copy, Debug, Default)]
-struct NearSums {
-    color: [[f64; NEAR]; 3],
-    squared_deviations: [f64; NEAR],
-    samples: [f64; NEAR],
-    /// Their mean luminance, which is needed for the next sample.
-    mean_luminance: [f64; NEAR],
+struct BlockSums {
+    color: [[f64; BLOCK_PIXELS]; 3],
+    squared_deviations: [f64; BLOCK_PIXELS],
+    samples: [f64; BLOCK_PIXELS],
+    /// Mean luminance, needed for the next sample.
+    mean_luminance: [f64; BLOCK_PIXELS],
 }
 
-impl NearSums {
+impl BlockSums {
     #[inline(always)]
     fn get(&self, i: usize) -> HalfSums {
         HalfSums {
@@ -123,7 +123,7 @@ impl NearSums {
         }
     }
 
-    /// Sets those of a pixel and their mean luminance, if they are to be set. Written so that compilers turn it into lanes.
+    /// Sets a pixel's sums if `is_set`. Branchless, so that compilers vectorise it.
     #[inline(always)]
     fn set(&mut self, i: usize, sums: &HalfSums, mean_luminance: f64, is_set: bool) {
         let [red, green, blue] = sums.color;
@@ -136,10 +136,10 @@ impl NearSums {
         put(&mut self.mean_luminance[i], mean_luminance);
     }
 
-    /// Adds a sample of each pixel where it is sound.
+    /// Adds the sound samples, one per pixel.
     #[inline(always)]
-    fn add(&mut self, colors: &[[f64; NEAR]; 3], is_sound: &[bool; NEAR]) {
-        for i in 0..NEAR {
+    fn add(&mut self, colors: &[[f64; BLOCK_PIXELS]; 3], is_sound: &[bool; BLOCK_PIXELS]) {
+        for i in 0..BLOCK_PIXELS {
             let mut sums = self.get(i);
             let color = [colors[0][i], colors[1][i], colors[2][i]];
             let mean = sums.add_to_mean(self.mean_luminance[i], color);

@@ -114,6 +114,6 @@ fn look_alike(old: &Document, new: &Document) -> bool {
     old.materials.len() == new.materials.len()
         && std::iter::zip(&old.materials, &new.materials).all(|(old, new)| {
             let is_same = |parameter: &Parameter| parameter.get(old) == parameter.get(new);
-            old.own == new.own && PARAMETERS.iter().all(is_same)
+            old.user_textures == new.user_textures && PARAMETERS.iter().all(is_same)
         })
 }

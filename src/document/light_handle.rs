@@ -214,12 +214,12 @@ fn move_around(light: &mut AreaLight, view: &View, middle: Option<DVec2>, pull: 
     };
     let (origin, along, half, below_root) = nearest(middle.unwrap_or(pull.from) + pull.to - pull.from);
     let root = below_root.max(0.0).sqrt();
-    let meets_sphere = below_root >= 0.0;
+    let hits_sphere = below_root >= 0.0;
     let (t, is_on_sphere) = match half - root {
-        near if near > 0.0 && !is_far => (near, meets_sphere),
+        near if near > 0.0 && !is_far => (near, hits_sphere),
         // It was behind the camera: it stays on the viewer's side of the target.
         _ if !is_far && half > 0.0 && !light.is_sun() => (0.5 * half, false),
-        _ => (half + root, meets_sphere),
+        _ => (half + root, hits_sphere),
     };
     // With the target behind the camera nothing that is seen is nearest to it.
     let (t, is_on_sphere) = if t > 0.0 { (t, is_on_sphere) } else { (distance, false) };

@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
 use super::import::{ImportLobe, geometric_from_ggx};
-use super::own_textures::OwnTextures;
+use super::user_textures::UserTextures;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
@@ -84,8 +84,8 @@ pub struct MaterialSettings {
     pub normal_strength: f32,
     /// Which textures are looked up.
     pub textures: TextureUse,
-    /// The user's own textures, which take the place of the slot's.
-    pub own: OwnTextures,
+    /// Textures that the user assigned, instead of the slot's.
+    pub user_textures: UserTextures,
     /// What the file's "material" had that this version does not know.
     pub extra: Map<String, Json>,
     /// What the file had beside it.
@@ -129,7 +129,7 @@ impl Default for MaterialSettings {
             opacity: 1.0,
             normal_strength: 1.0,
             textures: TextureUse::default(),
-            own: OwnTextures::default(),
+            user_textures: UserTextures::default(),
             extra: Map::new(),
             file_extra: Map::new(),
         };

@@ -14,11 +14,11 @@ pub mod match_look;
 pub mod material;
 pub mod measured_look;
 pub mod of_model;
-mod own_textures;
 pub mod parameter;
 mod settings;
 pub mod technique;
 pub mod turntable;
+mod user_textures;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -33,9 +33,6 @@ pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
-pub use own_textures::{
-    OwnTextures, TextureError, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
-};
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
@@ -43,6 +40,9 @@ pub use parameter::{
 pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,
     range,
+};
+pub use user_textures::{
+    TextureError, UserTextures, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
 };
 
 pub use crate::job::{LightPaths, Strategy};
@@ -115,7 +115,7 @@ impl Document {
 
     /// The files that it names beside model and environment: its materials' textures, and the view's table of colours.
     pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
-        let textures = self.materials.iter().flat_map(|material| material.own.iter());
+        let textures = self.materials.iter().flat_map(|material| material.user_textures.iter());
         textures.map(|(_, texture)| &texture.file).chain(&self.view.lut)
     }
 

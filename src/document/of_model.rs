@@ -29,14 +29,14 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
         return report;
     }
     for slot in &model.slots {
-        let mut tell = |what: &str| report.note(Fate::Approximated, what, &slot.name);
+        let mut note = |what: &str| report.note(Fate::Approximated, what, &slot.name);
         if lobe.of_slot(slot) != lobe {
-            tell("a roughness above 0.7, for which the lobe is GGX");
+            note("a roughness above 0.7, for which the lobe is GGX");
         } else if slot.transmission > 0.0 && slot.roughness > 0.0 {
-            tell("a rough refraction, as wide as that of GGX but without its tail");
+            note("a rough refraction, as wide as that of GGX but without its tail");
         }
         if slot.coat > 0.0 && slot.coat_roughness > ROUGHNESS_MAX {
-            tell("a coat's roughness above 0.7, taken as 0.7");
+            note("a coat's roughness above 0.7, taken as 0.7");
         }
     }
     report

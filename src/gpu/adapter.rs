@@ -1,4 +1,4 @@
-//! Which adapter there is, whether it will do, and what is asked of it.
+//! Adapters: selection, requirements, requested limits.
 
 use pollster::block_on;
 
@@ -6,19 +6,19 @@ use super::array::TEXEL_ROW;
 use super::device::{GpuDevice, GpuError, driver, is_software};
 use super::traversal::Traversal;
 
-/// Which adapters are considered.
+/// Kinds of adapters to consider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AdapterKind {
     /// The fastest: hardware before software.
     Any,
     /// Only real GPUs.
     Hardware,
-    /// Only Vulkan on the processor.
+    /// Only software Vulkan, on the CPU.
     Software,
 }
 
-/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's six storage
-/// buffers, three uniforms and eleven textures, arrays in textures of 4096 texels a row, workgroups of 64.
+/// Limits that every pass needs, each within WebGPU's guaranteed ones: the path tracer's six storage buffers, three uniforms
+/// and eleven textures, textures of 4096 texels per row, workgroups of 64.
 fn limits_needed() -> wgpu::Limits {
     wgpu::Limits {
         max_texture_dimension_2d: TEXEL_ROW as u32,
@@ -33,12 +33,12 @@ fn limits_needed() -> wgpu::Limits {
         max_compute_workgroup_size_y: 8,
         max_compute_workgroup_size_z: 1,
         max_compute_workgroups_per_dimension: 65_535,
-        // Of the rest nothing is used: the least that there is.
+        // Nothing else is used: the lowest limits.
         ..wgpu::Limits::downlevel_webgl2_defaults()
     }
 }
 
-/// The limits of an adapter that are below what is needed, by their names; `None` where none is.
+/// Names of an adapter's insufficient limits; `None` if it has none.
 fn lacking(adapter: &wgpu::Limits) -> Option<String> {
     let mut lacking = Vec::new();
     limits_needed().check_limits_with_fail_fn(adapter, false, |name, needed, allowed| {
@@ -47,7 +47,7 @@ fn lacking(adapter: &wgpu::Limits) -> Option<String> {
     (!lacking.is_empty()).then(|| lacking.join("; "))
 }
 
-/// What is asked of an adapter: what is needed, and where models and pictures call for more, as much as it has.
+/// Limits to request: those needed, and for large models and texture maps as much as the adapter has.
 fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
     wgpu::Limits {
         max_texture_dimension_2d: adapter.max_texture_dimension_2d,
@@ -70,7 +70,8 @@ impl GpuAdapter {
     /// The best adapter of a kind.
     ///
     /// # Errors
-    /// Says what to install where there is none.
+    ///
+    /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let wanted = |backends| {
@@ -85,7 +86,7 @@ impl GpuAdapter {
             });
             adapters
         };
-        // OpenGL only where there is nothing else: looking for it takes time and prints errors where it is missing.
+        // OpenGL only as a last resort: searching for it takes time and prints errors if it is missing.
         let mut adapters = wanted(wgpu::Backends::PRIMARY);
         if adapters.is_empty() && kind != AdapterKind::Software {
             adapters = wanted(wgpu::Backends::GL);
@@ -102,7 +103,7 @@ impl GpuAdapter {
         })
     }
 
-    /// True where the adapter is the processor in disguise.
+    /// True for a software adapter, which runs on the CPU.
     pub fn is_software(&self) -> bool {
         is_software(&self.info)
     }
@@ -112,15 +113,16 @@ impl GpuAdapter {
         driver(&self.info)
     }
 
-    /// Whether it can find by itself what rays meet.
+    /// Whether the adapter supports ray queries.
     pub fn has_ray_queries(&self) -> bool {
         self.adapter.features().contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY)
     }
 
-    /// Opens it, for rays that go this way.
+    /// Opens the adapter for a kind of traversal.
     ///
     /// # Errors
-    /// What the adapter lacks.
+    ///
+    /// If the adapter lacks something.
     pub fn open(&self, traversal: Traversal) -> Result<GpuDevice, GpuError> {
         let unfit = |reason: String| GpuError::Unfit {
             adapter: self.info.name.clone(),
@@ -140,8 +142,8 @@ impl GpuAdapter {
         if traversal == Traversal::RayQueries {
             descriptor.required_features |= wgpu::Features::EXPERIMENTAL_RAY_QUERY;
             descriptor.required_limits = descriptor.required_limits.using_acceleration_structure_values(limits);
-            // SAFETY: wgpu asks to be aware that its experiments may have bugs. This one can be switched off, and our own
-            // traversal stands in where it does not work.
+            // SAFETY: wgpu warns that experimental features may have bugs. Ray queries can be switched off, and our own
+            // traversal is the fallback.
             descriptor.experimental_features = unsafe { wgpu::ExperimentalFeatures::enabled() };
         }
         let opened = block_on(self.adapter.request_device(&descriptor)).map_err(|error| unfit(error.to_string()))?;
@@ -150,10 +152,11 @@ impl GpuAdapter {
 }
 
 impl GpuDevice {
-    /// Opens the best adapter of a kind, with nothing that is an experiment: rays go through our own hierarchy.
+    /// Opens the best adapter of a kind without experimental features: rays use our own hierarchy.
     ///
     /// # Errors
-    /// Says what to install where there is none, or what the adapter lacks.
+    ///
+    /// If there is none, with what to install; or with what the adapter lacks.
     pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
         GpuAdapter::find(kind)?.open(Traversal::Own)
     }
@@ -189,14 +192,14 @@ mod tests {
             max_texture_dimension_2d: 2048,
             ..wgpu::Limits::default()
         };
-        let told = lacking(&poor).expect("it lacks two");
+        let message = lacking(&poor).expect("it lacks two");
         assert!(
-            told.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
-            "{told}"
+            message.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
+            "{message}"
         );
         assert!(
-            told.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
-            "{told}"
+            message.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
+            "{message}"
         );
     }
 }

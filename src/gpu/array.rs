@@ -1,5 +1,5 @@
-//! Arrays on the GPU, brought there a part at a time: in a storage buffer, or in a texture where WebGPU's eight storage
-//! buffers a stage or its 128 MiB a binding do not suffice, or where kernels compile sooner with texels.
+//! Arrays on the GPU, uploaded in parts. In a storage buffer; or in a texture, if WebGPU's eight storage buffers per stage
+//! or its 128 MiB per binding do not suffice, or if kernels compile faster with texels.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -10,13 +10,13 @@ use super::device::{GpuDevice, GpuError};
 
 /// The binary logarithm of [`TEXEL_ROW`], which the shaders know.
 pub const TEXEL_ROW_BITS: u32 = 12;
-/// Texels in a row of a texture that holds an array: within the texture sizes that every adapter takes.
+/// Texels per row of an array's texture, within the texture size of every adapter.
 pub const TEXEL_ROW: usize = 1 << TEXEL_ROW_BITS;
 /// Rows in a layer of it.
 const LAYER_ROWS: usize = TEXEL_ROW;
 /// Values that are made and written at once.
 const PART: usize = 1 << 18;
-/// Bytes that may wait for the device: each waits in memory of its own.
+/// Bytes of pending uploads at most; each has a staging buffer.
 const PENDING_BYTES: usize = 64 << 20;
 
 /// Plain values, made when they are asked for, so that a model is not there twice.
@@ -42,7 +42,7 @@ impl<'a, T: Pod> Values<'a, T> {
         }
     }
 
-    /// The same values in another form.
+    /// The same values, converted.
     pub fn map<U: Pod>(self, other: impl Fn(&T) -> U + 'a) -> Values<'a, U>
     where
         T: 'a,
@@ -58,8 +58,7 @@ impl<'a, T: Pod> Values<'a, T> {
         (self.count * size_of::<T>()) as u64
     }
 
-    /// Hands the values on, part by part, each with the number of its first one; waits for the device where much is
-    /// pending.
+    /// Passes the values on in parts, each with the index of its first value. Waits for the device if much is pending.
     fn write(&self, gpu: &GpuDevice, mut write: impl FnMut(usize, &[T])) -> Result<(), GpuError> {
         let mut pending = 0;
         for first in (0..self.count).step_by(PART) {
@@ -102,11 +101,12 @@ pub fn write_buffer<T: Pod>(
     })
 }
 
-/// A texture of these values, one or four words a texel: `u32`s, or what is as long as some `[u32; 4]`s. Shaders find the
-/// texels by `texel_place`.
+/// A texture of these values, one or four words per texel: `u32`, or types of the size of several `[u32; 4]`. Shaders find
+/// the texels by `texel_place`.
 ///
 /// # Errors
-/// [`GpuError::Lost`]; what the adapter has against the texture is told when the work is checked.
+///
+/// [`GpuError::Lost`]. The adapter's objections to the texture are reported when the work is checked.
 pub fn texture<T: Pod>(
     gpu: &GpuDevice,
     what: &'static str,
@@ -147,8 +147,8 @@ pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) 
     })
 }
 
-/// How many layers hold so many rows. wgpu takes a texture of one layer for one without layers in OpenGL, and one of six
-/// that are square for a cube: shaders would read zeros there, so it has a layer more.
+/// Number of layers for a number of rows. In OpenGL, wgpu takes a single-layer texture for one without layers, and six
+/// square layers for a cube: shaders would read zeros. So these get one layer more.
 fn layers(rows: usize, is_opengl: bool) -> usize {
     let needed = rows.div_ceil(LAYER_ROWS);
     let is_mistaken = needed == 1 || needed.is_multiple_of(6);

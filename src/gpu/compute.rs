@@ -1,4 +1,4 @@
-//! What every compute pass is made of: module, layouts, pipeline, bindings, dispatch.
+//! Parts of every compute pass: module, layouts, pipeline, bindings, dispatch.
 
 use super::device::{GpuDevice, GpuError, Moment};
 use super::shader;
@@ -9,7 +9,7 @@ pub(super) const UNIFORMS: wgpu::BufferBindingType = wgpu::BufferBindingType::Un
 pub(super) const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
 pub(super) const WRITE: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: false };
 
-/// A part of a pipeline, or what the driver has against its shader.
+/// A part of a pipeline, or the driver's objection to its shader.
 pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
     gpu.checked(GpuError::Shader, make)
 }
@@ -93,10 +93,11 @@ pub(super) fn pipeline_layout(
     })
 }
 
-/// An entry point compiled with constants.
+/// A compute pipeline of an entry point with constants.
 ///
 /// # Errors
-/// [`GpuError::Shader`] where the driver refuses it.
+///
+/// [`GpuError::Shader`] if the driver refuses it.
 pub(super) fn pipeline(
     gpu: &GpuDevice,
     module: &wgpu::ShaderModule,
@@ -154,7 +155,7 @@ pub(super) fn bind<'a>(
     })
 }
 
-/// Submits one dispatch, its time taken where there is a timer.
+/// Submits one dispatch, timed if there is a timer.
 pub(super) fn dispatch(
     gpu: &GpuDevice,
     pipeline: &wgpu::ComputePipeline,

@@ -1,4 +1,4 @@
-//! An open GPU: its memory, and what it says when it fails.
+//! An open GPU device: its memory and its errors.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
@@ -8,10 +8,10 @@ use pollster::block_on;
 
 use super::traversal::Traversal;
 
-/// What can go wrong with a GPU.
+/// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum GpuError {
-    /// No adapter of the wanted kind.
+    /// No adapter of the requested kind.
     #[error(
         "no {0}Vulkan adapter was found. Install a driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers), or \
          render on the processor with --engine cpu"
@@ -20,27 +20,27 @@ pub enum GpuError {
     /// The adapter can't run the path tracer.
     #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the processor with --engine cpu")]
     Unfit {
-        /// Its name.
+        /// Name of the adapter.
         adapter: String,
-        /// What it lacks.
+        /// What the adapter lacks.
         reason: String,
     },
-    /// Something is larger than the adapter takes.
+    /// A resource exceeds the adapter's limit.
     #[error(
         "{what} takes {needed_mib} MiB, and the adapter {adapter} takes {allowed_mib} MiB at once. Choose something \
          smaller, or render on the processor with --engine cpu"
     )]
     TooLarge {
-        /// What is too large.
+        /// The resource.
         what: &'static str,
-        /// Its size.
+        /// Size of the resource, in MiB.
         needed_mib: u64,
-        /// The adapter's name.
+        /// Name of the adapter.
         adapter: String,
-        /// The adapter's limit.
+        /// Limit of the adapter, in MiB.
         allowed_mib: u64,
     },
-    /// A command that the device did not carry out; it goes on working.
+    /// A command that the device refused; the device remains usable.
     #[error("the GPU refused a command: {0}. Choose something smaller, or render on the processor with --engine cpu")]
     Refused(String),
     /// The device stopped working.
@@ -52,7 +52,7 @@ pub enum GpuError {
 }
 
 impl GpuError {
-    /// True where nothing more is to be had of the device; after any other error it goes on with what it has.
+    /// True if the device is lost; after any other error it remains usable.
     pub fn is_lost(&self) -> bool {
         matches!(self, Self::Lost(_))
     }
@@ -63,20 +63,20 @@ impl GpuError {
 pub struct GpuDevice {
     /// wgpu's device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// Command queue of the device.
     pub queue: wgpu::Queue,
     /// Name, driver, kind.
     pub info: wgpu::AdapterInfo,
-    /// How its kernels find what rays meet, wherever they can.
+    /// Traversal of its kernels, if the scene permits.
     pub traversal: Traversal,
     failures: Arc<Mutex<Failures>>,
-    /// Bytes that a buffer may have, where that is less than the adapter's limit.
+    /// Largest size of a buffer in bytes, if below the adapter's limit.
     buffer_limit: Arc<AtomicU64>,
-    /// The [`Moment`] at which it is taken away; 0 for none.
+    /// The [`Moment`] at which a test loses the device; 0 for none.
     losing_moment: Arc<AtomicU8>,
 }
 
-/// When a device is taken away, in tests of what follows: real ones are lost at any time.
+/// Moment at which a test loses the device; real ones are lost at any time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Moment {
@@ -90,17 +90,17 @@ pub enum Moment {
     Reading,
 }
 
-/// What the device said outside of any call.
+/// Errors that the device reported asynchronously.
 #[derive(Debug, Default)]
 struct Failures {
     /// Why it stopped working.
     lost: Option<String>,
-    /// The first error since one was last told.
+    /// The first error since the last report.
     refused: Option<String>,
 }
 
 impl GpuDevice {
-    /// Around what an adapter has opened.
+    /// Wraps an opened device.
     pub(super) fn new(
         (device, queue): (wgpu::Device, wgpu::Queue),
         info: wgpu::AdapterInfo,
@@ -131,12 +131,12 @@ impl GpuDevice {
         }
     }
 
-    /// Refuses buffers above a size, as a smaller adapter does: for tests of what follows.
+    /// Refuses buffers above a size in bytes, as a smaller adapter does. For tests.
     pub fn limit_buffers(&self, bytes: u64) {
         self.buffer_limit.store(bytes, Relaxed);
     }
 
-    /// Takes the device away at a moment to come, as a driver's reset does: for tests of what follows.
+    /// Loses the device at a later moment, as a driver's reset does. For tests.
     pub fn lose_when(&self, moment: Moment) {
         self.losing_moment.store(moment as u8, Relaxed);
     }
@@ -148,7 +148,7 @@ impl GpuDevice {
         }
     }
 
-    /// True where the adapter is the processor in disguise.
+    /// True for a software adapter, which runs on the CPU.
     pub fn is_software(&self) -> bool {
         is_software(&self.info)
     }
@@ -158,7 +158,7 @@ impl GpuDevice {
         driver(&self.info)
     }
 
-    /// What `make` makes; else [`GpuError::Lost`], or what the device has against it as a `refusal`.
+    /// The result of `make`, or [`GpuError::Lost`], or the device's objection as a `refusal`.
     pub(super) fn checked<T>(
         &self,
         refusal: impl FnOnce(String) -> GpuError,
@@ -174,7 +174,7 @@ impl GpuDevice {
             .filter_map(|scope| block_on(scope.pop()))
             .collect();
         let Some(error) = said.first() else { return Ok(made) };
-        // A device that was lost refuses everything: why, it tells when it is asked.
+        // A lost device refuses everything; waiting returns the reason.
         match self.wait() {
             Err(lost) if lost.is_lost() => Err(lost),
             _ => Err(refusal(error.to_string())),
@@ -184,7 +184,8 @@ impl GpuDevice {
     /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// [`GpuError::Lost`] from the device's loss on; [`GpuError::Refused`] once for what it refused since this was last asked.
+    ///
+    /// [`GpuError::Lost`] from the device's loss on; [`GpuError::Refused`] once for a refused command since the last call.
     pub fn wait(&self) -> Result<(), GpuError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         let mut failures = lock(&self.failures);
@@ -212,9 +213,10 @@ impl GpuDevice {
         self.buffer_of(what, size, wgpu::BufferUsages::empty())
     }
 
-    /// The same with something else that it is used for.
+    /// The same with another usage.
     ///
     /// # Errors
+    ///
     /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub(super) fn buffer_of(
         &self,
@@ -233,7 +235,7 @@ impl GpuDevice {
         }
         Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(what),
-            // Nothing of length zero can be bound.
+            // Bindings must not be empty.
             size: size.max(64),
             usage: wgpu::BufferUsages::STORAGE
                 | wgpu::BufferUsages::COPY_DST
@@ -248,7 +250,7 @@ impl GpuDevice {
         self.filled("uniforms", wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(uniforms))
     }
 
-    /// A buffer of these very bytes. Unlike wgpu's own helper it does not panic where the device is lost.
+    /// A buffer of exactly these bytes. Unlike wgpu's own helper, it does not panic on a lost device.
     pub(super) fn filled(&self, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
@@ -268,9 +270,10 @@ impl GpuDevice {
         self.read_part(buffer, 0..count)
     }
 
-    /// The same of some of the values.
+    /// The same for a range of the values.
     ///
     /// # Errors
+    ///
     /// If the device failed.
     pub fn read_part<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
         let [first, size] = [part.start, part.len()].map(|count| (count * size_of::<A>()) as u64);
@@ -294,12 +297,12 @@ impl GpuDevice {
     }
 }
 
-/// What a panicking thread leaves is whole: every write is a single assignment.
+/// Locks the errors, poisoned or not: they stay consistent, as every write is a single assignment.
 fn lock(failures: &Mutex<Failures>) -> MutexGuard<'_, Failures> {
     failures.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether an adapter is the processor in disguise.
+/// Whether an adapter is software, which runs on the CPU.
 pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
     info.device_type == wgpu::DeviceType::Cpu
 }

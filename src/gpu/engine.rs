@@ -20,7 +20,7 @@ use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Pixels that the host reads at once: what it needs for that is bounded.
+/// Pixels per read by the host, to bound its memory.
 const READ_PIXELS: usize = 1 << 19;
 
 /// Renders on a GPU.
@@ -31,16 +31,16 @@ pub struct GpuEngine {
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
-    /// What of it is in the film: the rest is in the GPU's sums. `None` while the film has a part of them.
+    /// Per-tile samples already merged into `film`; the rest is still in the GPU's sums. `None` while a merge is pending.
     in_film: Option<Schedule>,
     /// Most samples of a pixel in the GPU's sums.
     unflushed: u32,
     /// Whether there is anything in them.
     is_flushed: bool,
-    /// What a dispatch may render.
+    /// Size of the next dispatch.
     budget: Budget,
     timer: Option<Timer>,
-    /// What the dispatches of the job took by the timer.
+    /// Time of the job's dispatches by the GPU's timer, in seconds.
     gpu_seconds: f64,
 }
 
@@ -48,7 +48,8 @@ impl GpuEngine {
     /// An engine on an open device.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses the path tracer.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses the path tracer.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
@@ -66,15 +67,16 @@ impl GpuEngine {
         })
     }
 
-    /// The device.
+    /// The device that renders.
     pub fn device(&self) -> &GpuDevice {
         &self.gpu
     }
 
-    /// Begins a job. After an error the old one goes on.
+    /// Begins a job. After an error the old job continues.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it;
+    ///
+    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] if the adapter cannot hold a part of it;
     /// [`GpuError::Shader`].
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
@@ -104,11 +106,12 @@ impl GpuEngine {
         self.pipelines.has(&(job.plan.specialisation(), form))
     }
 
-    /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
-    /// nothing. Takes seconds.
+    /// Compiles the kernel of a job's plan, with an empty dispatch, because some drivers compile at the first one. Takes
+    /// seconds.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses the kernel; [`GpuError::TooLarge`].
+    ///
+    /// [`GpuError::Shader`] if the driver refuses the kernel; [`GpuError::TooLarge`].
     pub fn prepare(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         self.submit(job)?;
         self.dispatch(&[Tile::default()])
@@ -120,14 +123,14 @@ impl GpuEngine {
         self.in_film = None;
     }
 
-    /// Goes on with what another engine rendered of the same job.
+    /// Continues from another engine's film of the same job.
     pub fn take_over(&mut self, film: Film, schedule: Schedule) {
         self.in_film = Some(schedule.clone());
         (self.film, self.schedule) = (film, schedule);
     }
 
-    /// What the host has of the picture, for another engine to go on with: the samples that the GPU has not handed over
-    /// are not in it. `None` where the GPU failed while it did.
+    /// The film and schedule on the host, for another engine to continue. Samples still on the GPU are lost. `None` if a
+    /// merge failed.
     pub fn hand_over(self) -> Option<(Film, Schedule)> {
         Some((self.film, self.in_film?))
     }
@@ -141,19 +144,21 @@ impl GpuEngine {
         self.step_towards(budget, &goals)
     }
 
-    /// The same up to a number of samples a pixel for each tile.
+    /// The same up to a number of samples per pixel of each tile.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
-        self.schedule.aim(goals);
+        self.schedule.set_goals(goals);
         let start = Instant::now();
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
             let limits = SliceLimits {
                 pass_samples: [1, FLUSH_SAMPLES - self.unflushed],
                 tiles: [1, DISPATCH_TILES],
-                // Also for software Vulkan, whose threads take a run of workgroups each: none gets the background alone.
+                // Spread, so that of software Vulkan's threads, which take a run of workgroups each, none gets only
+                // background.
                 order: Order::Spread,
             };
             let works = self.schedule.slice(self.budget.affordable(left), limits);
@@ -226,7 +231,7 @@ impl GpuEngine {
         for band in resources.sums.bands() {
             for first in (0..band.pixels).step_by(READ_PIXELS) {
                 let part = first..(first + READ_PIXELS).min(band.pixels);
-                take_over_band(&self.gpu, &mut self.film, band, part)?;
+                merge_band(&self.gpu, &mut self.film, band, part)?;
             }
         }
         resources.sums.clear(&self.gpu);
@@ -235,16 +240,17 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// What has been accumulated.
+    /// The accumulated film.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn film(&mut self) -> Result<&Film, GpuError> {
         self.flush()?;
         Ok(&self.film)
     }
 
-    /// What has been rendered of each tile.
+    /// The samples rendered per tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
     }
@@ -254,20 +260,20 @@ impl GpuEngine {
         self.schedule.samples_per_pixel()
     }
 
-    /// How long the GPU rendered the job by its own clock; `None` where it has none.
+    /// GPU time of the job by its own clock, in seconds; `None` without one.
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
     }
 }
 
-/// Adds what the GPU summed of some pixels of a band to the film.
-fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
+/// Merges the GPU's sums of some pixels of a band into the film.
+fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
     let [colors, statistics, guides] = &band.buffers;
     let colors: Vec<PixelColors> = gpu.read_part(colors, part.clone())?;
     let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
     let first = band.first_row as usize * film.width as usize + part.start;
     for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(&statistics)) {
-        take_over(film, pixel, colors, statistics);
+        merge_pixel(film, pixel, colors, statistics);
     }
     if film.extras().guides {
         let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
@@ -282,8 +288,8 @@ fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usi
     Ok(())
 }
 
-/// Adds what the GPU summed of a pixel to the film.
-fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
+/// Merges the GPU's sums of a pixel into the film.
+fn merge_pixel(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
     let [red, green, blue, coverage] = colors.all.map(f64::from);
     let [luminance_squared, odd_luminance_squared] = statistics.luminance_squared.map(f64::from);
     let [kept, dropped] = statistics.kept_dropped;
@@ -306,7 +312,7 @@ fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &P
     costs.cut += f64::from(statistics.cut);
 }
 
-/// A half's sums from those of its squares. Rounding may take the deviations below 0; further on it averages out.
+/// Converts a half's raw moments to central ones. Rounding may make the deviations negative; that cancels in the mean.
 fn half(color: [f64; 3], luminance_squared: f64, samples: f64) -> HalfSums {
     let y = luminance(color);
     HalfSums {

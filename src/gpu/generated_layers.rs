@@ -4,8 +4,7 @@
 use crate::job::effect::{Constant, EffectId};
 use crate::optics::layer::{Layer, LayerTraits};
 
-/// WGSL for a layer: in a template `$` stands for the prefix of its functions, `#` for the constant with its number, `@` for
-/// whether the plan calls for it.
+/// WGSL of a layer from a template: `$` is the prefix of its functions, `#` its constant, `@` whether the plan uses it.
 fn filled(template: &str, layer: Layer) -> String {
     let prefix = layer.module();
     let Constant { name: plan, .. } = layer
@@ -75,7 +74,7 @@ pub fn layer_registry() -> String {
     .concat()
 }
 
-/// How many layers the plan calls for, and the number of each of them.
+/// WGSL of the planned layers: their count, and the number of each.
 fn planned() -> String {
     let counts = each(all, "    if @ { count += 1u; }\n");
     let found = each(
@@ -164,7 +163,7 @@ fn chosen() -> String {
         let by_facet = if decides { by_facet } else { "" };
         let template = format!(
             "    if @ && first <= # {{\n{by_facet}        let part = split(left, {chance});\n        \
-             if part.is_below {{ return LayerChoice(#, part.stretched); }}\n        left = part.stretched;\n    }}\n"
+             if part.is_below {{ return LayerChoice(#, part.remapped); }}\n        left = part.remapped;\n    }}\n"
         );
         filled(&template, *layer)
     };
@@ -175,7 +174,8 @@ fn chosen() -> String {
     )
 }
 
-/// What each layer has for a view: albedos on the way inwards, probabilities on the way outwards, then what is reached.
+/// WGSL of the layers' shares for a view: albedos on the way inwards, probabilities on the way outwards, then what is
+/// reached.
 fn shares() -> String {
     let albedo = "    layers.$.transmittance = transmittance;\n    if @ && $_is_there(material, surface) {\n        \
                   let albedo = $_albedo(material, surface, left);\n        layers.$.albedo = albedo.reflected;\n        ";

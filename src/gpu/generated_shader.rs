@@ -16,7 +16,7 @@ use crate::optics::random::Sequence;
 use crate::scene::camera::PixelFilter;
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
 
-/// A module that no file holds: the name that `#import` knows it by, and what writes it.
+/// A generated module: its name for `#import`, and its generator.
 pub type Generated = (&'static str, fn() -> String);
 
 /// Every module that no file holds.
@@ -80,7 +80,7 @@ fn scene_choices() -> String {
     )
 }
 
-/// The override constants of the plan, each with the value that leaves nothing out.
+/// The plan's override constants, each with the default of the über-shader.
 fn plan_constants() -> String {
     let mut text = format!("// Generated from src/job/effect.rs.\nconst ANY: u32 = {ANY}u;\n");
     for constant in EffectId::ALL.iter().filter_map(|effect| effect.constant()) {
@@ -103,8 +103,7 @@ fn cases<T: Named>(value: impl Fn(T) -> String) -> Vec<(u32, String)> {
     T::ALL.iter().map(|choice| (choice.number(), value(*choice))).collect()
 }
 
-/// WGSL that finds a lobe's functions by its number, and what is special about it: the twin of the `match`es in
-/// `src/optics/lobe/mod.rs`.
+/// WGSL that selects a lobe's functions and properties by its number: twin of the `match`es in `src/optics/lobe/mod.rs`.
 fn lobe_registry() -> String {
     let mut text = String::from("// Generated from the registry in src/optics/lobe/mod.rs.\n");
     for lobe in Lobe::ALL {
@@ -156,8 +155,7 @@ fn lobe_registry() -> String {
     text
 }
 
-/// WGSL that finds a curve's functions by its number, and what is special about it: the twin of the `match`es in
-/// `src/optics/curve/mod.rs`.
+/// WGSL that selects a curve's functions and properties by its number: twin of the `match`es in `src/optics/curve/mod.rs`.
 fn curve_registry() -> String {
     let mut text = String::from("// Generated from the registry in src/optics/curve/mod.rs.\n");
     for curve in Curve::ALL {

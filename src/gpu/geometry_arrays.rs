@@ -1,5 +1,5 @@
-//! What rays meet, on the GPU: the model's hierarchy, triangles and vertices, and after them those of what is around it; where
-//! rays are queries, the adapter's own hierarchies besides.
+//! The geometry on the GPU: hierarchy, triangles and vertices of the model, followed by those of its surroundings; for ray
+//! queries, the adapter's acceleration structures, too.
 
 use super::array::{self, Values};
 use super::device::{GpuDevice, GpuError};
@@ -12,14 +12,14 @@ use crate::scene::{Geometry, Part, Vertex};
 /// the GPU again.
 const ROOM: usize = 1024;
 
-/// How shaders find a geometry: kernels are made for one of these.
+/// Storage of a geometry; kernels are specialised for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Form {
     /// Nodes and triangles in buffers.
     Buffers,
-    /// In textures, too, which may be larger than a binding: not for ray queries, which build over a buffer.
+    /// In textures, too, which may exceed a buffer binding. Not for ray queries, which build over a buffer.
     Textures,
-    /// In buffers, with the adapter's own hierarchies.
+    /// In buffers, with the adapter's acceleration structures.
     Structures,
 }
 
@@ -44,7 +44,7 @@ impl Form {
         }
     }
 
-    /// How rays find it.
+    /// Traversal of this storage.
     pub fn traversal(self) -> Traversal {
         match self {
             Self::Buffers | Self::Textures => Traversal::Own,
@@ -52,14 +52,14 @@ impl Form {
         }
     }
 
-    /// The override constant that tells a pipeline where it is.
+    /// Override constant of a pipeline for this storage.
     pub fn constant(self) -> (&'static str, f64) {
         ("GEOMETRY_IN_TEXTURES", f64::from(u8::from(self == Self::Textures)))
     }
 }
 
-/// Hierarchy and triangles in buffers or, where one of them is larger than a binding may be, in textures; in textures in any
-/// case what is read once a path's step: vertices, material slots.
+/// Hierarchy and triangles in buffers, or in textures if one exceeds a buffer binding. Vertices and material slots, read
+/// once per bounce, are always in textures.
 #[derive(Clone, Debug)]
 pub struct GeometryArrays {
     buffers: [wgpu::Buffer; 2],
@@ -73,9 +73,10 @@ pub struct GeometryArrays {
 }
 
 impl GeometryArrays {
-    /// Nothing to meet.
+    /// An empty geometry.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
         let buffer = || gpu.empty_storage("nothing", 0);
@@ -130,9 +131,10 @@ impl GeometryArrays {
         Ok(arrays)
     }
 
-    /// The same model with something else around it, in the place of what was there. There must be room for it.
+    /// The same model with other surroundings, which overwrite the old ones. They must fit.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn with_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
         self.write_around(gpu, geometry)?;
@@ -143,14 +145,15 @@ impl GeometryArrays {
         })
     }
 
-    /// Whether what is around the same model can take the place of what is there.
+    /// Whether other surroundings of the same model fit in place of the current ones.
     pub fn has_room_for(&self, gpu: &GpuDevice, geometry: &Geometry) -> bool {
         self.room == room(&geometry.around) && self.form == Form::of(gpu, geometry)
     }
 
-    /// Brings what is around the model to the GPU, in the place of what was there. There must be room for it.
+    /// Uploads the surroundings over the current ones. They must fit.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn write_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<(), GpuError> {
         self.write(gpu, &geometry.around, Counts::of(&geometry.model))
@@ -176,7 +179,7 @@ impl GeometryArrays {
         }
     }
 
-    /// Nodes, triangles.
+    /// Buffers of nodes and triangles.
     pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         self.buffers.each_ref()
     }
@@ -187,18 +190,18 @@ impl GeometryArrays {
         [nodes, triangles, &self.vertices, &self.slots]
     }
 
-    /// The adapter's own hierarchies, where there are any.
+    /// The adapter's acceleration structure, if used.
     pub fn structure(&self) -> Option<&wgpu::Tlas> {
         self.structures.as_ref().map(Structures::whole)
     }
 
-    /// How shaders find it.
+    /// Storage of the geometry.
     pub fn form(&self) -> Form {
         self.form
     }
 }
 
-/// Room, in triangles, that is kept for what is around a model.
+/// Triangles reserved for the surroundings.
 fn room(around: &Part) -> usize {
     around.triangles.len().next_power_of_two().max(ROOM)
 }
@@ -212,7 +215,7 @@ struct Counts {
 }
 
 impl Counts {
-    /// What a part has.
+    /// Sizes of a part.
     fn of(part: &Part) -> Self {
         Self {
             nodes: part.compressed().nodes.len(),
@@ -221,7 +224,7 @@ impl Counts {
         }
     }
 
-    /// So many nodes, what else a part has, and room for so many triangles.
+    /// Sizes with `nodes` nodes and room for `room` triangles.
     fn with_room(nodes: usize, part: &Part, room: usize) -> Self {
         Self {
             nodes: nodes + room,

@@ -1,4 +1,4 @@
-//! Compiled kernels kept on disk between starts, where the driver can (`Features::PIPELINE_CACHE`: Vulkan).
+//! Cache of compiled kernels on disk, if the driver supports it (`Features::PIPELINE_CACHE`: Vulkan).
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -14,15 +14,15 @@ pub(super) struct KernelCache {
 }
 
 impl KernelCache {
-    /// In the user's cache folder; `None` where the driver or the system has no place for it. Software Vulkan compiles
-    /// later, and keeps a cache of its own.
+    /// Opens the cache in the user's cache folder. `None` if the driver or the system has none. Software Vulkan compiles
+    /// later and has its own cache.
     pub(super) fn open(gpu: &GpuDevice) -> Option<Self> {
         if gpu.is_software() {
             return None;
         }
         let folders = directories::ProjectDirs::from("", "", "glossmith")?;
         let key = wgpu::util::pipeline_cache_key(&gpu.info)?;
-        // Of a file each, so that a device for the one does not write over what that for the other has left.
+        // A file per traversal, so that devices of different kinds do not overwrite each other's.
         let ending = match gpu.traversal {
             Traversal::Own => "kernels",
             Traversal::RayQueries => "ray-query.kernels",
@@ -30,7 +30,7 @@ impl KernelCache {
         Self::at(gpu, folders.cache_dir().join(format!("{key}.{ending}")))
     }
 
-    /// Reads what an earlier start left in a file; `None` where the driver keeps nothing.
+    /// Reads the cache from a file; `None` if the driver has no cache.
     fn at(gpu: &GpuDevice, path: PathBuf) -> Option<Self> {
         if !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
             return None;
@@ -51,7 +51,7 @@ impl KernelCache {
         &self.cache
     }
 
-    /// Writes what the driver has compiled. A cache: where it can't be written, the next start compiles again.
+    /// Saves the compiled kernels. If that fails, the next start compiles again.
     pub(super) fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
         if let Err(error) = replace(&self.path, &data) {
@@ -60,7 +60,7 @@ impl KernelCache {
     }
 }
 
-/// Another start finds the old cache or the new one, never a part.
+/// Replaces the file atomically: another process finds the old cache or the new one.
 fn replace(path: &Path, data: &[u8]) -> std::io::Result<()> {
     let folder = path.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;

@@ -34,23 +34,23 @@ pub struct Globals {
     pub image_size: [u32; 2],
     /// Reflections a path may have.
     pub bounces: u32,
-    /// Random numbers.
+    /// Random sequence.
     pub sequence: u32,
-    /// Linear colour of the background; where the environment is blurred, the sine of the angle, 0, 0.
+    /// Linear background colour; for a blurred environment (sine of the blur angle, 0, 0).
     pub background: [f32; 3],
     /// 0 environment, 1 transparent, 2 colour, 3 environment blurred.
     pub background_kind: u32,
-    /// Cosine and sine.
+    /// Cosine and sine of the rotation.
     pub environment_rotation: [f32; 2],
     /// Columns and rows of the environment's cells.
     pub environment_cells_size: [u32; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f32,
-    /// How light is found.
+    /// Light strategy.
     pub strategy: u32,
     /// Changes all random numbers.
     pub seed: u32,
-    /// Nodes of the hierarchies; 0 where there is nothing to meet.
+    /// Number of nodes; 0 for an empty scene.
     pub node_count: u32,
     /// Columns and rows of the table of emitting triangles.
     pub light_cells_size: [u32; 2],
@@ -60,37 +60,37 @@ pub struct Globals {
     pub density_per_luminance: f32,
     /// The largest radiance of an indirect contribution.
     pub firefly_clamp: f32,
-    /// The slot of the shadow catcher, and that which it reflects with; no material's where there is none.
+    /// Slot of the shadow catcher; no material's without one.
     pub catcher_slot: u32,
-    /// See `catcher_slot`.
+    /// Slot of the catcher's reflection; no material's without a catcher.
     pub catcher_reflection_slot: u32,
-    /// Where its table begins.
+    /// Start of the catcher's table.
     pub catcher_table: u32,
     /// Light that was reflected less often does not count.
     pub least_reflections: u32,
-    /// Where the hierarchy of what is around the model begins, in a node of its own; 0 where there is no second one.
+    /// First node of the surroundings' hierarchy; 0 without one.
     pub around_root: u32,
-    /// Where the triangles of what is around the model begin.
+    /// First triangle of the surroundings.
     pub around_triangle: u32,
-    /// The slot of the solid around the camera; [`NO_MEDIUM`] where there is none.
+    /// Slot of the medium around the camera, or [`NO_MEDIUM`].
     pub camera_medium: u32,
     /// To a multiple of 16 bytes.
     pub unused: [u32; 2],
-    /// 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    /// 1: coarse triangles are rounded according to their normals.
     pub rounds_surfaces: u32,
     /// Early roulette is played below this throughput alone.
     pub roulette_floor: f32,
 }
 
-/// What a dispatch renders of one tile.
+/// A tile of a dispatch.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Tile {
-    /// Its top left pixel.
+    /// Top left pixel.
     pub origin: [u32; 2],
     /// Index of the first sample.
     pub first_sample: u32,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub sample_count: u32,
 }
 

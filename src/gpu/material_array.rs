@@ -1,5 +1,5 @@
-//! A scene's materials on the GPU: among the uniforms, which drivers read without a test for each lane and word, or in a
-//! storage buffer where there are too many.
+//! A scene's materials on the GPU: in a uniform buffer, which drivers read without bounds checks per lane and word; or in a
+//! storage buffer if there are too many.
 
 use bytemuck::Zeroable;
 
@@ -13,7 +13,7 @@ pub const FEW_MATERIALS: usize = (64 << 10) / size_of::<Material<f32>>();
 /// The materials of a scene, in one of two buffers.
 #[derive(Clone, Debug)]
 pub struct MaterialArray {
-    /// As many as there may be among the uniforms, whatever the scene has.
+    /// The uniform buffer, always of full size.
     few: wgpu::Buffer,
     many: wgpu::Buffer,
     are_many: bool,
@@ -26,7 +26,7 @@ impl MaterialArray {
     /// [`GpuError::TooLarge`].
     pub fn new(gpu: &GpuDevice, materials: &[Material<f32>]) -> Result<Self, GpuError> {
         let are_many = Self::are_many(materials);
-        // Each buffer is at least as large as what the shader takes it for, whether it is read or not.
+        // Each buffer has at least the size that the shader declares, whether it is read or not.
         let filler = [Material::zeroed()];
         let mut few = vec![filler[0]; FEW_MATERIALS];
         let many = if are_many {
@@ -47,7 +47,7 @@ impl MaterialArray {
         materials.len() > FEW_MATERIALS
     }
 
-    /// Whether these are.
+    /// Whether the materials are in the storage buffer.
     pub(super) fn has_many(&self) -> bool {
         self.are_many
     }

@@ -12,14 +12,14 @@ use super::traversal::Traversal;
 use super::{shader, sums};
 use crate::job::plan::{Plan, Specialisation};
 
-/// What a pipeline is made for: a plan's constants, and how the scene is found.
+/// Key of a pipeline: the plan's constants and the scene's storage.
 pub type Kernel = (Specialisation, SceneForm);
 
-/// The path tracer: its shader for each way that rays go, its binding layouts, and a pipeline for each kind of scene met.
+/// The path tracer: its shader for each traversal, its binding layouts, and its pipelines.
 #[derive(Debug)]
 pub struct Pipelines {
     passes: HashMap<Traversal, ScenePass>,
-    /// Of group 1.
+    /// Layout of group 1.
     pub sums_layout: wgpu::BindGroupLayout,
     made: HashMap<Kernel, wgpu::ComputePipeline>,
     cache: Option<KernelCache>,
@@ -57,10 +57,10 @@ impl Pipelines {
             label: Some(PASS),
             source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
         };
-        // SAFETY: every index is made by our own code from sizes that it uploads itself: hierarchy and triangles from
-        // the same geometry, slots below the number of materials, pixels inside the picture. The loops end: paths are
-        // bounded by their bounces and the traversal by its stack. Ray queries begin with finite numbers, go on until
-        // they are done, and are then asked what they found.
+        // SAFETY: our own code computes every index from sizes that it uploads itself: hierarchy and triangles from the same
+        // geometry, slots below the number of materials, pixels inside the image. The loops end: paths are bounded by their
+        // bounces and the traversal by its stack. Ray queries start with finite numbers, run until they are done, and are
+        // then read.
         let module = compute::validated(gpu, |device| unsafe {
             device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
         })?;
@@ -79,10 +79,11 @@ impl Pipelines {
         self.made.contains_key(kernel)
     }
 
-    /// The pipeline of a plan, compiled at its first use.
+    /// The pipeline of a plan, compiled on first use.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses it.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: SceneForm) -> Result<&wgpu::ComputePipeline, GpuError> {
         let kernel = (plan.specialisation(), form);
         if !self.made.contains_key(&kernel) {

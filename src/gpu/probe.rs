@@ -22,7 +22,7 @@ const BATCH: usize = 1 << 20;
 #[derive(Debug)]
 pub struct Probe {
     gpu: GpuDevice,
-    /// For rays that go as the device has them, and for scenes where they can't.
+    /// Passes by traversal: the device's own, and the fallback.
     passes: HashMap<Traversal, ScenePass>,
     own_layout: wgpu::BindGroupLayout,
     pipelines: Mutex<HashMap<(&'static str, SceneForm), wgpu::ComputePipeline>>,
@@ -32,7 +32,8 @@ impl Probe {
     /// Links the shader.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses it.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let own_layout = compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]);
         let mut passes = HashMap::new();
@@ -53,10 +54,11 @@ impl Probe {
         })
     }
 
-    /// The answers of an entry point, one for each question.
+    /// The answers of an entry point, one per question.
     ///
     /// # Errors
-    /// If the device fails, or can't hold what is asked about.
+    ///
+    /// If the device fails, or cannot hold the questions.
     pub fn ask<Q: Pod, A: Pod>(
         &self,
         entry_point: &'static str,
@@ -68,7 +70,7 @@ impl Probe {
         let pipeline = self.pipeline(entry_point, form)?;
         let mut answers = Vec::with_capacity(questions.len());
         for batch in questions.chunks(BATCH) {
-            // Nothing past the questions may be taken for one: a buffer of their very size.
+            // A buffer of exact size, because the shader takes the number of questions from it.
             let asked = gpu.filled("questions", wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(batch));
             let answered = gpu.empty_storage("the answers", (batch.len() * size_of::<A>()) as u64)?;
             let own = compute::bind_group(gpu, &self.own_layout, &[(0, &asked), (1, &answered)], &[]);

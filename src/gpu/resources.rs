@@ -1,4 +1,4 @@
-//! What a job becomes on the GPU.
+//! A job's resources on the GPU.
 
 use std::sync::Arc;
 
@@ -12,28 +12,29 @@ use super::sums::Sums;
 use crate::job::Job;
 use crate::scene::Geometry;
 
-/// Buffers and textures of a job; what a new job shares with the old one is kept.
+/// Buffers and textures of a job. Parts that a new job shares with the old one are kept.
 #[derive(Debug)]
 pub struct Resources {
     job: Arc<Job>,
     scene: SceneGroup,
-    /// The scene, bound.
+    /// Bind group of the scene.
     pub scene_group: wgpu::BindGroup,
     /// Sums since the last flush.
     pub sums: Sums,
 }
 
 impl Resources {
-    /// Uploads a job, sharing with `old` what has not changed. The sums may be the old ones as they stand.
+    /// Uploads a job, sharing unchanged parts with `old`. The sums may be the old ones, not cleared.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it; what
-    /// `old` holds is as it was.
+    ///
+    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] if the adapter cannot hold a part of it; `old`
+    /// is unchanged then.
     pub fn new(gpu: &GpuDevice, pipelines: &Pipelines, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
         gpu.reach(Moment::Uploading);
         let made = gpu.checked(GpuError::Refused, |_| Self::made(gpu, pipelines, job, old));
         made.flatten().inspect_err(|_| {
-            // It may have been overwritten by the new job's. A device that is lost by now is found out by its next work.
+            // It may have been overwritten by the new job's. The next work reports a device lost by now.
             if let Some(old) = old {
                 let _ = old.scene.geometry.write_around(gpu, &old.job.geometry);
             }
@@ -61,13 +62,13 @@ impl Resources {
         &self.job
     }
 
-    /// How kernels find the scene.
+    /// Storage of the scene.
     pub fn form(&self) -> SceneForm {
         self.scene.form()
     }
 }
 
-/// The job's scene: the parts that are the old job's are taken from there.
+/// The job's scene, with unchanged parts of the old job's.
 fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGroup, GpuError> {
     let kept = |is_kept: fn(&Job, &Job) -> bool| old.filter(|old| is_kept(&old.job, job)).map(|old| &old.scene);
     Ok(SceneGroup {
@@ -90,12 +91,12 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
         textures: match kept(|a, b| Arc::ptr_eq(&a.textures, &b.textures)) {
             Some(old) => old.textures.clone(),
             None => {
-                // Another way of putting the same pictures on a surface changes their uses alone.
+                // Another mapping of the same texture maps changes only their records.
                 let old = kept(|a, b| Arc::ptr_eq(&a.textures.words, &b.textures.words));
                 scene_group::textures(gpu, &job.textures, old.map(|old| old.textures[1].clone()))?
             }
         },
-        // The last, as a part of what `old` has may be overwritten.
+        // Last, because it may overwrite a part of `old`.
         geometry: match kept(|a, b| Arc::ptr_eq(&a.geometry, &b.geometry)) {
             Some(old) => old.geometry.clone(),
             None => geometry(

@@ -1,4 +1,4 @@
-//! What drawing directions costs on the GPU, with nothing around it (`shaders/pass/sampling.wgsl`).
+//! Cost of sampling directions on the GPU in isolation (`shaders/pass/sampling.wgsl`).
 
 use std::collections::HashMap;
 use std::time::Instant;
@@ -19,17 +19,17 @@ const GROUP_SIDE: u32 = 8;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sampling {
-    /// The quad's normal.
+    /// Normal of the quad.
     pub normal: Vec3<f32>,
     /// Roughness in (0, 1].
     pub roughness: f32,
-    /// Columns of pixels.
+    /// Width of the image in pixels.
     pub width: u32,
     /// Rows of pixels that are drawn.
     pub rows: u32,
-    /// Rows of the whole picture.
+    /// Height of the whole image in pixels.
     pub height: u32,
-    /// Directions a pixel.
+    /// Directions per pixel.
     pub samples: u32,
     /// Changes all random numbers.
     pub seed: u32,
@@ -59,10 +59,11 @@ impl SamplingMeter {
         }
     }
 
-    /// Draws, and says how long it took by the GPU's clock where it has one.
+    /// Runs the pass, timed by the GPU's clock if it has one.
     ///
     /// # Errors
-    /// If the device fails, or what [`GpuDevice::empty_storage`] refuses.
+    ///
+    /// If the device fails, or with the errors of [`GpuDevice::empty_storage`].
     pub fn run(&mut self, request: &SamplingRequest) -> Result<SamplingRun, GpuError> {
         let kernel = [request.lobe as u32, request.curve as u32, request.stage as u32];
         if !self.kernels.contains_key(&kernel) {

@@ -17,13 +17,13 @@ const BATCH: u32 = 1 << 20;
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct Scatter {
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub wo: Vec3<f32>,
     /// Roughness in [0, 1].
     pub roughness: f32,
     /// Stretch in [−1, 1].
     pub anisotropy: f32,
-    /// 0 where the lobe reflects, else the relative index of refraction.
+    /// Relative index of refraction; 0 for reflection.
     pub eta: f32,
     /// The lobe as a number.
     pub lobe: u32,
@@ -50,7 +50,8 @@ impl Scatterer {
     /// Compiles the shader.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses it.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pass = LobePass::new(&gpu, "scatter", "draw", &[])?;
         Ok(Self { gpu, pass })
@@ -92,8 +93,7 @@ fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
     }
 }
 
-/// A pass of `shaders/pass/` that needs nothing of a scene but the lobes: the tables in group 0, in group 1 uniforms and
-/// what is written.
+/// A pass of `shaders/pass/` that needs only the lobes of a scene: the tables in group 0, uniforms and output in group 1.
 #[derive(Debug)]
 pub(super) struct LobePass {
     pipeline: wgpu::ComputePipeline,
@@ -104,7 +104,8 @@ impl LobePass {
     /// Compiles an entry point of `shaders/pass/NAME.wgsl`.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses it.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses it.
     pub(super) fn new(
         gpu: &GpuDevice,
         name: &str,

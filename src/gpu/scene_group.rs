@@ -21,7 +21,7 @@ const TABLES_BINDING: u32 = 5;
 
 /// The binding of the materials among the uniforms.
 const FEW_MATERIALS_BINDING: u32 = 14;
-/// The binding of the adapter's own hierarchies, the last of the group, where there are any.
+/// Binding of the adapter's acceleration structure, the last of the group, if used.
 const STRUCTURES_BINDING: u32 = 15;
 
 const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
@@ -44,10 +44,10 @@ pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     compute::layout(gpu, "scene", &entries)
 }
 
-/// How shaders find a scene: kernels are made for each of these.
+/// Storage of a scene; kernels are specialised for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SceneForm {
-    /// The geometry.
+    /// Storage of the geometry.
     pub geometry: Form,
     /// Whether the materials are too many for the uniforms.
     pub has_many_materials: bool,
@@ -62,7 +62,7 @@ impl SceneForm {
         }
     }
 
-    /// The override constants that tell a pipeline.
+    /// Override constants of a pipeline for this storage.
     pub fn constants(self) -> [(&'static str, f64); 2] {
         [
             self.geometry.constant(),
@@ -71,12 +71,12 @@ impl SceneForm {
     }
 }
 
-/// What a scene is on the GPU. The parts are shared: a new scene may have some of an old one's.
+/// A scene on the GPU. Its parts are shared: a new scene may reuse some of an old one's.
 #[derive(Clone, Debug)]
 pub struct SceneGroup {
-    /// What rays meet.
+    /// Arrays of the geometry.
     pub geometry: GeometryArrays,
-    /// The materials.
+    /// Array of the materials, by slot.
     pub materials: MaterialArray,
     /// See [`tables`].
     pub tables: wgpu::TextureView,
@@ -89,9 +89,10 @@ pub struct SceneGroup {
 }
 
 impl SceneGroup {
-    /// A scene of nothing.
+    /// An empty scene.
     ///
     /// # Errors
+    ///
     /// If the device fails.
     pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
         let nothing = || array::texture(gpu, "nothing", &Values::<u32>::of(&[]));
@@ -132,7 +133,7 @@ impl SceneGroup {
         compute::bind(gpu, layout, (0..).zip(buffers.chain(textures).chain(last)))
     }
 
-    /// How shaders find it.
+    /// Storage of the scene.
     pub fn form(&self) -> SceneForm {
         SceneForm {
             geometry: self.geometry.form(),
@@ -151,7 +152,7 @@ pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::TextureView, GpuE
     array::texture(gpu, "the materials' tables", &Values::of(nodes))
 }
 
-/// The layout of a group of the tables alone, for passes that read nothing else of a scene.
+/// Layout of a group with the tables alone, for passes that read nothing else of a scene.
 pub fn tables_layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
     let entry = texture_entry(
         TABLES_BINDING,
@@ -161,15 +162,16 @@ pub fn tables_layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
     compute::layout(gpu, "tables", &[entry])
 }
 
-/// That group.
+/// The group for [`Self::tables_layout`].
 pub fn bind_tables(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, tables: &wgpu::TextureView) -> wgpu::BindGroup {
     compute::bind_group(gpu, layout, &[], &[(TABLES_BINDING, tables)])
 }
 
-/// The map of an environment and the cells of what directions are drawn with.
+/// The map of an environment and its sampling cells.
 ///
 /// # Errors
-/// [`GpuError::Unfit`] where the map is wider than the adapter's textures.
+///
+/// [`GpuError::Unfit`] if the map is wider than the adapter's textures.
 pub fn environment(
     gpu: &GpuDevice,
     environment: &Environment,
@@ -190,8 +192,8 @@ pub fn environment(
     ])
 }
 
-/// The cells of an environment, row by row, and after them the rows themselves: the first of the numbers that draw each,
-/// the number after the last, its slot's guide and that of the slot after it, in halves of a word, and the density.
+/// An environment's sampling cells, row by row, followed by the rows. An entry has the first number that selects it, the
+/// number after the last, the guides of its slot and the next (halves of a word), and the density.
 fn environment_cells(distribution: &Distribution) -> Values<'_, [u32; 4]> {
     let (width, height) = (distribution.width as usize, distribution.height as usize);
     let cell = move |index: usize| {
@@ -247,12 +249,13 @@ fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4
     texture.create_view(&Default::default())
 }
 
-/// The alias table of the triangles that emit, each told by its place in the hierarchy's order.
+/// The alias table of emitting triangles, which are given by their positions in the hierarchy's order.
 ///
 /// # Errors
+///
 /// If the device fails.
 pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Result<wgpu::TextureView, GpuError> {
-    // Where the model's triangles are need not be known where only lights around it emit.
+    // The model's positions are only needed if the model emits.
     let places = geometry
         .parts()
         .map(|(part, first)| (LazyCell::new(|| part.compressed().places()), first as u32));
@@ -265,9 +268,10 @@ pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Res
     array::texture(gpu, "the triangles that emit", &cells)
 }
 
-/// The uses of a model's pictures, and their words: those that are there, where they are the same.
+/// The records and texels of a model's texture maps; unchanged ones are kept.
 ///
 /// # Errors
+///
 /// If the device fails.
 pub fn textures(
     gpu: &GpuDevice,

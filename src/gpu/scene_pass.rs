@@ -10,7 +10,7 @@ use super::traversal::Traversal;
 pub struct ScenePass {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
-    /// Of group 0.
+    /// Layout of group 0.
     pub scene_layout: wgpu::BindGroupLayout,
 }
 
@@ -30,10 +30,11 @@ impl ScenePass {
         }
     }
 
-    /// An entry point compiled with constants.
+    /// A pipeline of an entry point with constants.
     ///
     /// # Errors
-    /// [`GpuError::Shader`] where the driver refuses it.
+    ///
+    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn pipeline(
         &self,
         gpu: &GpuDevice,

@@ -1,7 +1,7 @@
-//! Puts shaders together: `#import "optics/fresnel"` brings in `shaders/optics/fresnel.wgsl`, once.
+//! Shader linker: `#import "optics/fresnel"` includes `shaders/optics/fresnel.wgsl` once.
 //!
-//! The shaders are part of the program. An aid for whoever works on them: where the environment variable
-//! [`FOLDER_VARIABLE`] names a folder, modules that are there are read from it instead, without compiling anything again.
+//! The shaders are part of the program. For development, the environment variable [`FOLDER_VARIABLE`] names a folder from
+//! which modules are read instead, without recompiling the program.
 
 use std::path::Path;
 
@@ -12,18 +12,18 @@ use super::traversal::Traversal;
 
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
 
-/// The environment variable that names a folder of shaders to read in place of those in the program.
+/// Environment variable with a folder of shaders that replace the program's own.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_SHADERS";
 
 /// The name under which modules import the traversal; which module it is, is chosen when they are linked.
 const TRAVERSAL: &str = "scene/traversal";
-/// What [`Linked::locate`] calls the extensions of WGSL that modules enable, all of them before anything else.
+/// Name in [`Linked::locate`] of the WGSL extensions that modules enable, which come first.
 pub const EXTENSIONS: &str = "extensions";
 
 /// A shader with everything that it imports.
 #[derive(Clone, Debug, Default)]
 pub struct Linked {
-    /// WGSL.
+    /// The linked WGSL.
     pub source: String,
     /// The modules in their order, each with the line (from 1) of `source` at which it begins.
     pub modules: Vec<(String, usize)>,
@@ -33,7 +33,7 @@ pub struct Linked {
 }
 
 impl Linked {
-    /// Where a line (from 1) of the source comes from: module and line in it.
+    /// Module and line (from 1) of a line of the linked source.
     pub fn locate(&self, line: usize) -> (&str, usize) {
         let begun = self.modules.iter().rev().find(|(_, first)| *first <= line);
         begun.map_or(("", line), |(module, first)| (module.as_str(), line - first + 1))
@@ -43,7 +43,7 @@ impl Linked {
     fn append(&mut self, module: &str, text: &str) {
         self.modules.push((module.to_owned(), self.source.lines().count() + 1));
         for line in text.lines() {
-            // What stands elsewhere leaves an empty line behind: line numbers stay those of the file.
+            // Moved lines leave an empty one, so that line numbers stay those of the file.
             let is_elsewhere = line.starts_with("#import") || line.starts_with(ENABLE);
             self.source.push_str(if is_elsewhere { "" } else { line });
             self.source.push('\n');
@@ -72,7 +72,7 @@ impl Linked {
         Ok(())
     }
 
-    /// Puts the extensions before everything else, where WGSL wants them.
+    /// Puts the extensions first, as WGSL requires.
     fn finished(mut self) -> Self {
         let extensions = std::mem::take(&mut self.extensions);
         if !extensions.is_empty() {
@@ -86,7 +86,7 @@ impl Linked {
     }
 }
 
-/// How a line begins that enables an extension of WGSL.
+/// Prefix of a line that enables a WGSL extension.
 const ENABLE: &str = "enable ";
 
 /// A module of `shaders/` with everything that it imports, for rays through our own hierarchy.
@@ -97,10 +97,11 @@ pub fn link(module: &str) -> Result<Linked, String> {
     link_for(module, Traversal::Own)
 }
 
-/// The same for rays that go another way.
+/// The same for another traversal.
 ///
 /// # Errors
-/// Names the module that does not exist.
+///
+/// With the name of a missing module.
 pub fn link_for(module: &str, traversal: Traversal) -> Result<Linked, String> {
     let mut linked = Linked {
         traversal,
@@ -110,7 +111,7 @@ pub fn link_for(module: &str, traversal: Traversal) -> Result<Linked, String> {
     Ok(linked.finished())
 }
 
-/// What [`Linked::locate`] calls the source that came on top of the modules.
+/// Name in [`Linked::locate`] of source beyond the modules.
 pub const EXTRA: &str = "extra source";
 
 /// Modules of `shaders/` with everything that they import, then `extra_source`, which may use all of it: an entry point

@@ -1,14 +1,14 @@
-//! The adapter's own hierarchies of what rays meet, for ray queries.
+//! The adapter's acceleration structures, for ray queries.
 
 use super::device::GpuDevice;
 use super::layout::Triangle;
 use crate::scene::{Geometry, Part};
 
-/// The hierarchy of the model, and over it and that of what is around it the one that shaders read. Shaders know the
-/// instances by the numbers 0 and 1 (`shaders/scene/ray_query.wgsl`).
+/// The bottom-level structures of the model and its surroundings, and the top-level structure over both. Instance 0 is the
+/// model, 1 its surroundings (`shaders/scene/ray_query.wgsl`).
 #[derive(Clone, Debug)]
 pub struct Structures {
-    /// `None` where there is no model.
+    /// `None` without a model.
     model: Option<wgpu::Blas>,
     whole: wgpu::Tlas,
 }
@@ -29,7 +29,7 @@ impl Structures {
         Self::build(gpu, (blas, model), geometry, triangles)
     }
 
-    /// The same model with something else around it: nothing of the model is built again, and what is there stays.
+    /// The same model with other surroundings; the model's structure is kept.
     pub fn with_around(&self, gpu: &GpuDevice, geometry: &Geometry, triangles: &wgpu::Buffer) -> Self {
         Self::build(gpu, (self.model.clone(), None), geometry, triangles)
     }
@@ -58,7 +58,7 @@ impl Structures {
         Self { model, whole }
     }
 
-    /// What shaders read.
+    /// The top-level structure, which shaders read.
     pub fn whole(&self) -> &wgpu::Tlas {
         &self.whole
     }
@@ -74,7 +74,7 @@ impl Structures {
 }
 
 impl<'a> Plan<'a> {
-    /// `None` where there is nothing to build over.
+    /// `None` without triangles.
     fn new(gpu: &GpuDevice, part: &Part, first: usize, triangles: &'a wgpu::Buffer) -> Option<Self> {
         let size = wgpu::BlasTriangleGeometrySizeDescriptor {
             vertex_format: wgpu::VertexFormat::Float32x3,
@@ -118,7 +118,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// A part where it is, by the number that shaders know it by.
+/// An instance of a part by its instance number.
 fn instance(blas: &wgpu::Blas, number: u32) -> wgpu::TlasInstance {
     let in_place = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     wgpu::TlasInstance::new(blas, in_place, number, 0xff)

@@ -1,5 +1,4 @@
-//! Group 1 of the path tracer: what it renders, and the picture's sums, cut into bands of rows where they would be larger
-//! than a binding may be.
+//! Group 1 of the path tracer: its tiles, and the image's sums, in bands of rows if they exceed a buffer binding.
 
 use super::compute::{self, UNIFORMS, WRITE, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
@@ -9,7 +8,7 @@ use crate::job::effect::EffectId;
 use crate::job::guides::GuideSums;
 use crate::job::tiles::TILE_SIDE;
 
-/// Most tiles of a dispatch: a workgroup each, of which WebGPU lets 65 535 stand in a row.
+/// Tiles per dispatch at most: one workgroup each, of which WebGPU allows 65 535 per dimension.
 pub const DISPATCH_TILES: usize = 65_535;
 
 /// The layout of the group.
@@ -24,7 +23,7 @@ pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
     compute::layout(gpu, "sums", &entries)
 }
 
-/// The sums over samples that the host has not taken yet, and the list of tiles to render.
+/// The sums over samples that the host has not read yet, and the list of tiles to render.
 #[derive(Clone, Debug)]
 pub struct Sums {
     size: [u32; 2],
@@ -37,26 +36,27 @@ pub struct Sums {
 /// Sums of some rows of pixels.
 #[derive(Clone, Debug)]
 pub struct Band {
-    /// Its first row of pixels.
+    /// First pixel row.
     pub first_row: u32,
-    /// Its pixels, row by row.
+    /// Number of pixels.
     pub pixels: usize,
-    /// Sums of colours, of statistics and of what is seen first.
+    /// Sums of colours, statistics and guides.
     pub buffers: [wgpu::Buffer; 3],
     /// The group to bind.
     pub group: wgpu::BindGroup,
 }
 
 impl Sums {
-    /// Whether these are what a job needs.
+    /// Whether these fit a job.
     pub fn fit(&self, job: &Job) -> bool {
         self.size == job.settings.image_size && self.has_guides == job.plan.has(EffectId::Guides)
     }
 
-    /// Sums for a job's picture; not zero where the driver leaves memory as it was.
+    /// Sums for a job's image; not cleared, if the driver does not clear memory.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where not even a row of tiles fits a binding.
+    ///
+    /// [`GpuError::TooLarge`] if not even a row of tiles fits a binding.
     pub fn new(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, job: &Job) -> Result<Self, GpuError> {
         let [width, height] = job.settings.image_size;
         let has_guides = job.plan.has(EffectId::Guides);
@@ -113,7 +113,7 @@ impl Sums {
         (tile.origin[1] / self.band_rows) as usize
     }
 
-    /// Lists what the next dispatch renders, at most [`DISPATCH_TILES`].
+    /// Sets the tiles of the next dispatch, at most [`DISPATCH_TILES`].
     pub fn list(&self, gpu: &GpuDevice, tiles: &[Tile]) {
         let rows = tiles.len().div_ceil(TILE_COLUMNS as usize);
         let mut whole = tiles.to_vec();

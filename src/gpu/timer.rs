@@ -1,4 +1,4 @@
-//! How long the GPU itself took for a pass, where the adapter tells.
+//! Timing of passes by the GPU's own clock, if it has one.
 
 use super::device::{GpuDevice, GpuError};
 
@@ -15,7 +15,7 @@ pub struct Timer {
 const SIZE: u64 = 16;
 
 impl Timer {
-    /// `None` where the adapter has no timestamps.
+    /// A timer; `None` if the adapter has no timestamps.
     pub fn new(gpu: &GpuDevice) -> Option<Self> {
         let has_timestamps = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let buffer = |usage| {
@@ -38,7 +38,7 @@ impl Timer {
         })
     }
 
-    /// What the pass to be measured is begun with.
+    /// Timestamp writes for the pass to measure.
     pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
@@ -47,7 +47,7 @@ impl Timer {
         }
     }
 
-    /// Has the timestamps copied, after the pass and before the submission.
+    /// Copies the timestamps, after the pass and before the submission.
     pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.staging, 0, SIZE);

@@ -1,9 +1,9 @@
-//! How kernels find what rays meet.
+//! Traversal methods of kernels.
 
 use crate::named::named;
 
 named! {
-    /// How kernels find what rays meet. Hits are the same but for rounding at edges.
+    /// Traversal method of a kernel. Hits are the same but for rounding at edges.
     #[derive(Default)]
     Traversal {
         #[default]

@@ -1,17 +1,17 @@
-//! The effects that an engine can simulate, by name, and what was decided about each.
+//! The effects (features) that an engine can simulate, and the decision about each.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// The value of a constant that leaves a choice to each material.
+/// Value of a constant that each material decides.
 pub const ANY: u32 = u32::MAX;
 
 /// An override constant of the pipelines, generated into the shader module `scene/plan`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// Its name in WGSL.
+    /// Name in WGSL.
     pub name: &'static str,
-    /// Its value where nothing is left out: 1 for a flag, [`ANY`] for one of several.
+    /// Value in the über-shader: 1 for a flag, [`ANY`] for one of several.
     pub general: u32,
 }
 
@@ -26,8 +26,8 @@ macro_rules! general {
 
 macro_rules! effects {
     ($($effect:ident $name:literal $($kind:ident $constant:literal)?;)*) => {
-        /// An effect that costs time and that not every scene needs. `document::effect` says of each what it is, which
-        /// scenes call for it, and how it is taken out.
+        /// An effect that costs time and that not every scene needs. `document::effect` describes each: its meaning, the
+        /// scenes that need it, and how it is switched off.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[allow(missing_docs, reason = "document::effect describes each")]
         pub enum EffectId {
@@ -45,7 +45,7 @@ macro_rules! effects {
                 }
             }
 
-            /// What switches its code in the shaders; `None` where it has none that could be left out.
+            /// Constant that switches its code in the shaders; `None` without such code.
             pub const fn constant(self) -> Option<Constant> {
                 match self {
                     $($(Self::$effect => Some(Constant { name: $constant, general: general!($kind) }),)?)*
@@ -118,14 +118,14 @@ impl FromStr for EffectId {
     }
 }
 
-/// What is decided about an effect, and why.
+/// A decision about an effect, with its reason.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Decision {
-    /// It is simulated.
+    /// True if simulated.
     pub is_on: bool,
     /// The value of its constant.
     pub value: u32,
-    /// In words.
+    /// Reason in words.
     pub reason: String,
 }
 

@@ -1,4 +1,4 @@
-//! What the camera sees first at each pixel: albedo, normal, depth. For compositing and denoising.
+//! First-hit features per pixel: albedo, normal, depth. For compositing and denoising.
 
 use super::film::Film;
 
@@ -9,23 +9,23 @@ pub struct Features {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// The share of the light that the surface reflects or lets through, linear Rec. 709, premultiplied by the share of
-    /// the pixel that is covered: 0 where nothing is met. In a mirror, and behind clear glass, that of what is seen there.
+    /// Albedo, linear Rec. 709, premultiplied by the covered share of the pixel: 0 without a hit. In mirrors and behind
+    /// clear glass, that of the surface seen there.
     pub albedo: Vec<[f32; 3]>,
-    /// Shading normal in the world, towards the viewer; shorter than 1 where normals differ or the pixel is not covered.
+    /// Shading normal in world space, towards the viewer; shorter than 1 if normals differ or the pixel is partly covered.
     pub normal: Vec<[f32; 3]>,
-    /// Distance from the camera along its axis, in the model's units, over the covered part of the pixel; infinite where
-    /// nothing is met.
+    /// Distance from the camera along its axis, in the model's units, over the covered part of the pixel; infinite without a
+    /// hit.
     pub depth: Vec<f32>,
 }
 
 impl Features {
-    /// The means of a film's sums; `world_units_per_unit` is the geometry's. Nothing is seen where the film keeps none.
+    /// Features from a film's sums; `world_units_per_unit` is the geometry's. Empty if the film keeps no guides.
     pub fn of(film: &Film, world_units_per_unit: f64) -> Self {
         Self::of_samples(film, |pixel| film.guide_samples(pixel), world_units_per_unit)
     }
 
-    /// The same where it is said how many samples of a pixel are in the sums of each half.
+    /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2], world_units_per_unit: f64) -> Self {
         let mut features = Self {
             width: film.width,

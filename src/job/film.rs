@@ -1,4 +1,4 @@
-//! The picture as sums: what the engines accumulate and everything shown is read from.
+//! The film: an image as sums, which the engines accumulate.
 
 use rayon::prelude::*;
 
@@ -7,8 +7,8 @@ use super::guides::{GUIDE_SAMPLES, GuideSums};
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
-/// Sums over the samples of each pixel. Colors are summed in f64, so that they do not stall after millions of samples.
-/// 72 bytes a pixel and 32 a tile, and what else of [`Extras`] is called for.
+/// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 72
+/// bytes per pixel and 32 per tile, plus the requested [`Extras`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
     /// Width in pixels.
@@ -17,21 +17,21 @@ pub struct Film {
     pub height: u32,
     /// Sums of each pixel, row by row from the top.
     pixels: Vec<KeptHalves>,
-    /// Sums of the coverage; empty where every pixel is covered.
+    /// Sums of coverage; empty if every pixel is covered.
     coverage: Vec<f64>,
-    /// What the first [`GUIDE_SAMPLES`] samples of each pixel saw first, the even ones and the odd ones; empty where nobody
-    /// asks.
+    /// First-hit guides of the first [`GUIDE_SAMPLES`] samples of each pixel, of the even and the odd ones; empty if not
+    /// requested.
     pub guides: Vec<[GuideSums; 2]>,
-    /// What each tile cost, and what was taken from it.
+    /// Costs and removed energy per tile.
     pub costs: Vec<TileCosts>,
 }
 
-/// What a film keeps beside color and spread: only what is called for.
+/// Optional data of a film, besides colour and spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// Coverage, 8 bytes a pixel: the background is transparent.
     pub coverage: bool,
-    /// What is seen first, 64 bytes a pixel: for layers and the denoiser.
+    /// First-hit guides, 64 bytes per pixel: for layers and the denoiser.
     pub guides: bool,
 }
 
@@ -42,7 +42,7 @@ pub struct TileCosts {
     pub rays: f64,
     /// Luminance that limiting fireflies took.
     pub clamped: f64,
-    /// Luminance of the throughput of paths that ended at their last bounce; not counted where nothing is refracted.
+    /// Throughput's luminance of paths that the bounce limit ended; only counted with refraction.
     pub cut: f64,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
@@ -55,13 +55,13 @@ pub struct HalfSums {
     pub color: [f64; 3],
     /// Squared deviations of the luminance from its mean.
     pub squared_deviations: f64,
-    /// How many samples there are.
+    /// Number of samples.
     pub samples: f64,
 }
 
-/// The same of both halves as a film keeps them. Squared deviations lose nothing by cancellation, as squares less the mean's
-/// would. In f32 their spread would be precise enough, but they would be rounded after each pass, whose length the clock
-/// decides: the same render twice would not be the same.
+/// Sums of one half of a pixel's samples. Squared deviations lose nothing by cancellation, unlike squares minus the mean's.
+/// f32 would be precise enough for the spread, but rounded after each pass, whose length depends on the clock: the same
+/// render twice would differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct KeptHalves {
     color: [[f64; 3]; 2],
@@ -84,7 +84,7 @@ impl HalfSums {
         luminance(self.color)
     }
 
-    /// The mean luminance; 0 where there are no samples.
+    /// Mean luminance; 0 without samples.
     #[inline(always)]
     pub fn mean_luminance(&self) -> f64 {
         self.luminance() / self.samples.max(1.0)
@@ -122,7 +122,7 @@ impl HalfSums {
         }
     }
 
-    /// Variance of a sample's luminance, unbiased where the samples are independent; NaN below two.
+    /// Variance of a sample's luminance, unbiased for independent samples; NaN below two.
     pub fn spread(&self) -> f64 {
         if self.samples < 2.0 {
             return f64::NAN;
@@ -160,7 +160,7 @@ impl KeptHalves {
 }
 
 impl Extras {
-    /// What a job calls for.
+    /// The data that a job needs.
     pub fn of(job: &Job) -> Self {
         Self {
             coverage: job.settings.background == BackgroundKind::Transparent,
@@ -203,7 +203,7 @@ impl Film {
         Self::keeping(width, height, Extras::of(job))
     }
 
-    /// What is kept beside color and spread.
+    /// The optional data that is kept.
     pub fn extras(&self) -> Extras {
         Extras {
             coverage: !self.coverage.is_empty(),
@@ -211,12 +211,12 @@ impl Film {
         }
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     pub fn pixel_count(&self) -> usize {
         self.pixels.len()
     }
 
-    /// The tiles of the picture.
+    /// Tiles of the image.
     pub fn grid(&self) -> TileGrid {
         TileGrid {
             width: self.width,
@@ -224,7 +224,7 @@ impl Film {
         }
     }
 
-    /// Adds sample number `sample` of a pixel: linear color with coverage.
+    /// Adds sample number `sample` of a pixel: linear colour with coverage.
     pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
         let mut halves = self.halves(pixel);
         let [red, green, blue, coverage] = color;
@@ -233,7 +233,7 @@ impl Film {
         self.add_coverage(pixel, coverage);
     }
 
-    /// Adds to the sum of a pixel's coverage, where that is kept.
+    /// Adds to a pixel's coverage, if kept.
     pub fn add_coverage(&mut self, pixel: usize, coverage: f64) {
         if let Some(sum) = self.coverage.get_mut(pixel) {
             *sum += coverage;
@@ -245,7 +245,7 @@ impl Film {
         self.pixels[pixel].sums()
     }
 
-    /// Puts other sums in their place.
+    /// Replaces a pixel's sums.
     pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
         self.pixels[pixel] = KeptHalves::of(halves);
     }
@@ -267,15 +267,15 @@ impl Film {
         (0..self.pixels.len()).map(|pixel| self.color(pixel))
     }
 
-    /// The mean of a pixel's colors and its coverage; black where there is no sample yet. The noise of a caught shadow may
-    /// take its coverage out of [0, 1], which is mended here.
+    /// Mean colour and coverage of a pixel; black without samples. Coverage is clamped to [0, 1], because the noise of a
+    /// caught shadow may exceed it.
     pub fn mean(&self, pixel: usize) -> [f64; 4] {
         let samples = self.samples_of(pixel).max(1.0);
         let [red, green, blue, coverage] = self.color(pixel).map(|sum| sum / samples);
         [red, green, blue, coverage.clamp(0.0, 1.0)]
     }
 
-    /// How many samples are in a pixel's sums.
+    /// Number of samples in a pixel's sums.
     pub fn samples_of(&self, pixel: usize) -> f64 {
         self.pixels[pixel].samples.map(f64::from).iter().sum()
     }
@@ -286,8 +286,7 @@ impl Film {
         samples.max().unwrap_or(0)
     }
 
-    /// How many of the samples of each half of a pixel are in the sums of what they saw first, where rendering began with
-    /// the first.
+    /// Guide samples per half of a pixel, if rendering started with the first sample.
     pub fn guide_samples(&self, pixel: usize) -> [f64; 2] {
         let most = f64::from(GUIDE_SAMPLES / 2);
         self.halves(pixel).map(|half| half.samples.min(most))
@@ -330,7 +329,7 @@ impl Film {
         }
     }
 
-    /// The chosen pixels alone, in a row, without what their tiles cost.
+    /// The chosen pixels as a film of one row, without tile costs.
     pub fn of_pixels(&self, is_chosen: impl Fn(usize) -> bool) -> Film {
         let chosen: Vec<usize> = (0..self.pixels.len()).filter(|&pixel| is_chosen(pixel)).collect();
         let mut film = Film::keeping(chosen.len() as u32, 1, self.extras());
@@ -357,7 +356,7 @@ impl Film {
         self.costs.iter().map(|costs| costs.clamped).sum()
     }
 
-    /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
+    /// Share of the image's energy, in [0, 1], that the firefly clamp removed.
     pub fn clamped_share(&self) -> f64 {
         let clamped = self.clamped();
         if clamped > 0.0 {
@@ -368,8 +367,8 @@ impl Film {
         }
     }
 
-    /// The part of the picture's energy, in [0, 1], that was cut at the last bounce. It supposes that what lies beyond is as
-    /// bright as what was found.
+    /// Estimated share of the image's energy, in [0, 1], lost at the bounce limit, assuming that further light is as bright
+    /// as the light found.
     pub fn cut_share(&self) -> f64 {
         let cut: f64 = self.costs.iter().map(|costs| costs.cut).sum();
         if cut > 0.0 { cut / self.samples() as f64 } else { 0.0 }
@@ -381,7 +380,7 @@ impl Film {
         self.pixels.iter().flat_map(of_halves).sum()
     }
 
-    /// The mean picture: linear Rec. 709, alpha premultiplied; black where there is no sample yet.
+    /// The mean image: linear Rec. 709, premultiplied alpha; black without samples.
     pub fn image(&self) -> Image {
         let mean = |pixel| self.mean(pixel).map(|x| x as f32);
         Image {
@@ -391,21 +390,20 @@ impl Film {
         }
     }
 
-    /// Mean luminance of a pixel; NaN where there is no sample.
+    /// Mean luminance of a pixel; NaN without samples.
     pub fn luminance_of(&self, pixel: usize) -> f64 {
         let sums = self.sums(pixel);
         sums.luminance() / sums.samples
     }
 
-    /// Mean luminance of each pixel; NaN where there is no sample.
+    /// Mean luminance of each pixel; NaN without samples.
     pub fn luminance(&self) -> Vec<f64> {
         let of_pixel = |pixel| self.luminance_of(pixel);
         (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()
     }
 
-    /// By how many standard deviations the luminance summed over the whole picture differs from that of another render
-    /// of the same size. The sum over many pixels is nearly normal even where single pixels are skewed. Rounding of f32
-    /// radiance counts as an uncertainty of 1e-4.
+    /// Difference of the total luminance from another render's of the same size, in standard deviations. The sum over many
+    /// pixels is nearly normal even for skewed pixels. Rounding of f32 radiance counts as an uncertainty of 1e-4.
     pub fn difference_in_sigma(&self, other: &Film) -> f64 {
         let (a, b): (f64, f64) = (self.luminance().iter().sum(), other.luminance().iter().sum());
         let variance: f64 = self.variance_of_mean().iter().chain(&other.variance_of_mean()).sum();
@@ -429,7 +427,7 @@ impl Film {
     }
 }
 
-/// Copies values where they are kept.
+/// Copies optional values.
 fn copy_kept<T: Copy>(to: &mut [T], to_range: std::ops::Range<usize>, from: &[T], from_range: std::ops::Range<usize>) {
     if let (Some(to), Some(from)) = (to.get_mut(to_range), from.get(from_range)) {
         to.copy_from_slice(from);
@@ -444,7 +442,7 @@ impl Image {
     }
 }
 
-/// A linear picture.
+/// A linear image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
     /// Width in pixels.

@@ -1,18 +1,18 @@
-//! Sums of what a pixel's first samples saw first: guides of the denoiser, and layers of a picture.
+//! First-hit guides: sums over a pixel's first samples, for the denoiser and as layers.
 
-/// Samples of a pixel that tell what is seen first: the mean over more would hardly change. Even, as both halves of the
-/// samples tell as much.
+/// Samples per pixel that record guides: the mean over more would hardly change. Even, so that both halves have the same
+/// number.
 pub const GUIDE_SAMPLES: u32 = 32;
 
-/// Sums over a pixel's first samples of what they saw first, as both engines make them: of the even ones or the odd ones,
-/// so that what leads a half's denoising is independent of the other half. Albedo and normal are those of the first
-/// surface that is not a mirror or clear glass; the depth is that of the first surface of all.
+/// Sums of first-hit guides over a pixel's first samples, as both engines compute them: of the even or the odd ones, so that
+/// the guides of a half are independent of the other half. Albedo and normal are those of the first surface that is not a
+/// mirror or clear glass; depth is the first surface's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct GuideSums {
-    /// Sum of the albedos, each times what mirrors and glass before it leave of the light.
+    /// Sum of the albedos, each times the throughput of the mirrors and glass before it.
     pub albedo: [f32; 3],
-    /// How many samples met something.
+    /// Number of samples with a hit.
     pub hits: f32,
     /// Sum of the shading normals in the world.
     pub normal: [f32; 3],
@@ -21,7 +21,7 @@ pub struct GuideSums {
 }
 
 impl GuideSums {
-    /// Adds what a sample saw, or other sums.
+    /// Adds a sample's guides, or other sums.
     pub fn add(&mut self, seen: &GuideSums) {
         for i in 0..3 {
             self.albedo[i] += seen.albedo[i];

@@ -1,5 +1,5 @@
-//! What an engine is handed, and what it hands back: the job (a document compiled to numbers, with the plan that says
-//! which effects it calls for), the film, tiles and their schedule, and what else is asked of an engine.
+//! Input and output of an engine: the job (a document compiled to numbers, with its feature plan), the film, tiles and their
+//! schedule, and other requests.
 
 pub mod effect;
 pub mod features;
@@ -25,29 +25,29 @@ use crate::scene::texture::Textures;
 use crate::named::named;
 use plan::Plan;
 
-/// Everything that a picture depends on. Cheap to clone.
+/// A render job: everything that an image depends on. Cheap to clone.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// What rays meet.
+    /// Geometry of the model and its surroundings, in units of its bounding radius.
     pub geometry: Arc<Geometry>,
-    /// What they see far away.
+    /// The environment light.
     pub environment: Arc<Environment>,
-    /// What of the geometry emits.
+    /// The emitting triangles.
     pub lights: Arc<Lights>,
-    /// The materials by slot: the model's, the ground's, the area lights', what a shadow catcher reflects with.
+    /// Materials by slot: the model's, the ground's, the area lights', the shadow catcher's reflection.
     pub materials: Arc<Vec<Material<f32>>>,
-    /// What the materials look up.
+    /// Textures of the materials.
     pub textures: Arc<Textures>,
     /// Custom curves, albedo tables, the shadow catcher's table (`optics::table`).
     pub tables: Arc<Vec<f32>>,
     /// Camera, light and sampling.
     pub settings: Settings,
-    /// Which effects are simulated.
+    /// Plan of the simulated effects.
     pub plan: Plan,
 }
 
 impl Job {
-    /// What directions to the environment's light are drawn with.
+    /// Distribution of light sampling over the environment.
     pub fn distribution(&self) -> &Distribution {
         self.environment.distribution(self.settings.strategy == Strategy::Light)
     }
@@ -63,34 +63,33 @@ impl Job {
 pub struct Settings {
     /// Width and height in pixels.
     pub image_size: [u32; 2],
-    /// In the geometry's units.
+    /// Camera in the geometry's units.
     pub camera: Camera<f64>,
-    /// The slot of the solid around the camera; `None` where nothing depends on it.
+    /// Slot of the medium around the camera; `None` if irrelevant.
     pub camera_medium: Option<u32>,
-    /// What the camera sees where it meets nothing.
+    /// Background of camera rays that miss.
     pub background: BackgroundKind,
-    /// The ground, where only shadows and reflections are seen of it.
+    /// The shadow catcher, if any.
     pub catcher: Option<Catcher>,
     /// Cosine and sine of the environment's rotation about +Y.
     pub environment_rotation: [f64; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f64,
-    /// Coarse triangles are taken as the round surfaces that their normals tell of.
+    /// Whether coarse triangles are rounded according to their normals.
     pub rounds_surfaces: bool,
-    /// How one light sample is shared out.
+    /// Split of light samples between environment and emitters.
     pub light_choice: LightChoice,
     /// Reflections a path may have.
     pub bounces: u32,
-    /// Paths of few bounces at what is no mirror or clear glass play Russian roulette below this throughput alone; 1 where
-    /// nothing is refracted.
+    /// Throughput limit of Russian roulette for paths with few rough bounces; 1 without refraction.
     pub roulette_floor: f64,
     /// Light that was reflected less often does not count.
     pub least_reflections: u32,
-    /// The largest radiance that light keeps that was reflected twice or more; infinite where all is kept.
+    /// Largest radiance of indirect contributions; infinite for no limit.
     pub firefly_clamp: f64,
-    /// Random numbers.
+    /// Random sequence.
     pub sequence: Sequence,
-    /// How light is found.
+    /// Light strategy.
     pub strategy: Strategy,
     /// Changes all random numbers.
     pub seed: u32,
@@ -99,7 +98,7 @@ pub struct Settings {
 }
 
 named! {
-    /// How light is found. All three converge to the same picture.
+    /// Light strategy; all three converge to the same image.
     #[derive(Default)]
     Strategy {
         Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
@@ -110,7 +109,7 @@ named! {
 }
 
 named! {
-    /// Which light the picture shows. Direct and indirect light together are all of it.
+    /// Part of the light in the image; direct and indirect light add up to all.
     #[derive(Default)]
     LightPaths {
         #[default]
@@ -121,7 +120,7 @@ named! {
 }
 
 impl LightPaths {
-    /// How often light is reflected that counts: at least and, where paths may have so many bounces, at most.
+    /// Range of reflections that count: at least and at most; paths may have `bounces` bounces.
     pub fn reflections(self, bounces: u32) -> [u32; 2] {
         match self {
             Self::All => [0, bounces],
@@ -134,18 +133,18 @@ impl LightPaths {
 /// A ground of which the camera sees only shadows and reflections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Catcher {
-    /// Its material slot.
+    /// Material slot.
     pub slot: u32,
     /// The slot whose specular lobe it reflects with.
     pub reflection_slot: u32,
-    /// Where its table begins among the job's ([`catcher_table`](crate::scene::catcher::catcher_table)).
+    /// Start of its table among the job's ([`catcher_table`](crate::scene::catcher::catcher_table)).
     pub table: u32,
 }
 
-/// What the camera sees where it meets nothing.
+/// Background of camera rays that miss.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BackgroundKind {
-    /// The environment.
+    /// The environment map, unblurred.
     Environment,
     /// The environment, averaged around each direction; the sine of the largest angle.
     Blurred(f64),

@@ -2,37 +2,37 @@
 
 use super::effect::{Constant, Decision, EffectId};
 
-/// What is decided about every effect, in the order of [`EffectId::ALL`].
+/// The decision about every effect, in the order of [`EffectId::ALL`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan {
     decisions: Vec<Decision>,
 }
 
-/// What a pipeline is made for: the values of the constants, in the order of [`Plan::constants`]. Plans that differ in
-/// their reasons only share it.
+/// Specialisation of a pipeline: values of the constants, in the order of [`Plan::constants`]. Plans that differ only in
+/// reasons share it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Specialisation(Vec<u32>);
 
 impl Plan {
-    /// A plan of what `decide` says of each effect.
+    /// A plan from a decision per effect.
     pub fn new(decide: impl FnMut(EffectId) -> Decision) -> Self {
         Self {
             decisions: EffectId::ALL.iter().copied().map(decide).collect(),
         }
     }
 
-    /// The plan that leaves nothing out.
+    /// The plan of the über-shader.
     pub fn general() -> Self {
         Self::new(|effect| Decision::which(effect.constant().map_or(1, |c| c.general), "nothing is left out"))
     }
 
-    /// The same with another decision about one effect.
+    /// The plan with another decision about one effect.
     pub fn with(mut self, effect: EffectId, decision: Decision) -> Self {
         self.decisions[effect as usize] = decision;
         self
     }
 
-    /// Every effect with what was decided.
+    /// Every effect with its decision.
     pub fn table(&self) -> impl Iterator<Item = (EffectId, &Decision)> {
         EffectId::ALL.iter().copied().zip(&self.decisions)
     }
@@ -48,7 +48,7 @@ impl Plan {
         simulated.map(|(effect, _)| effect.name()).collect()
     }
 
-    /// How many effects' code is left out of the kernel, or narrowed down to one choice.
+    /// Number of effects that are compiled out of the kernel or fixed to one choice.
     pub fn left_out(&self) -> usize {
         self.switched()
             .filter(|(constant, value)| *value != constant.general)
@@ -62,7 +62,7 @@ impl Plan {
             .collect()
     }
 
-    /// What a pipeline for this plan is made for.
+    /// Specialisation of a pipeline for this plan.
     pub fn specialisation(&self) -> Specialisation {
         Specialisation(self.switched().map(|(_, value)| value).collect())
     }

@@ -1,4 +1,4 @@
-//! Where the numbers behind a picture are not to be trusted: f32 against f64, samples dropped, rays that start astray.
+//! Map of numerical trouble in a render: f32 against f64, dropped samples, rays that start on the wrong side.
 
 use crate::optics::vector::Vec3;
 
@@ -6,12 +6,11 @@ use crate::optics::vector::Vec3;
 pub const ERROR_BOUND: f64 = 1e-3;
 /// Values below this part of a white Lambertian's count as if they were that large.
 const SMALL: f64 = 1e-3 / std::f64::consts::PI;
-/// A singularity is where one rounding of the direction changes the value, in f64, by more than this part.
+/// Relative change of the value, in f64, by one rounding of the direction from which a point counts as singular.
 const SINGULAR: f64 = 2e-5;
 
-/// The largest error of a colour channel, relative to the right value or to 1e-3 of white; infinite where the answer is not
-/// a number, nothing at a singularity. `oracle` gives the right value with the direction moved by so many roundings of f32
-/// along two tangents.
+/// Largest error of a colour channel, relative to the right value or to 1e-3 of white; infinite for NaN, 0 at a singularity.
+/// `oracle` returns the right value with the direction moved by some roundings of f32 along two tangents.
 pub fn relative_error(answer: Vec3<f32>, oracle: impl Fn([f64; 2]) -> Vec3<f64>) -> Option<f64> {
     let right = oracle([0.0; 2]);
     let size = right.max_component().max(SMALL);
@@ -22,10 +21,10 @@ pub fn relative_error(answer: Vec3<f32>, oracle: impl Fn([f64; 2]) -> Vec3<f64>)
     is_regular.then_some(if error.is_nan() { f64::INFINITY } else { error })
 }
 
-/// What was found at a pixel.
+/// Finding at a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Finding {
-    /// Cosine between the view and the surface met, in [0, 1]; 0 where nothing is met.
+    /// Cosine between the view and the hit surface, in [0, 1]; 0 without a hit.
     pub cosine: f32,
     /// Samples that were not finite or negative.
     pub dropped: u32,
@@ -35,7 +34,7 @@ pub struct Finding {
     pub starts_astray: bool,
 }
 
-/// What a pixel of the map tells, the gravest first.
+/// Kinds of trouble, the gravest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// Samples were dropped.
@@ -47,7 +46,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// All of them, with what they are called and explained as.
+    /// All kinds, with labels and explanations.
     pub const ALL: [(Self, &str, &str); 3] = [
         (
             Self::Dropped,
@@ -66,7 +65,7 @@ impl Fault {
         ),
     ];
 
-    /// Its colour: red, green, blue of 8 bits, told apart by the colour-blind, too.
+    /// Its colour, 8-bit RGB, from a palette safe for colour-blind viewers.
     pub fn color(self) -> [u8; 3] {
         match self {
             Self::Dropped => [230, 40, 150],
@@ -79,7 +78,7 @@ impl Fault {
 /// Brightness of a surface without a fault, seen along its normal.
 const FACING: f32 = 56.0;
 
-/// What was found at all pixels; row by row from the top.
+/// Findings of all pixels, rows from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PrecisionMap {
     /// Width in pixels.
@@ -88,7 +87,7 @@ pub struct PrecisionMap {
     pub height: u32,
     /// Errors above this count.
     pub bound: f64,
-    /// One a pixel.
+    /// Findings, one per pixel.
     pub findings: Vec<Finding>,
 }
 
@@ -106,8 +105,7 @@ impl PrecisionMap {
         self.findings.iter().filter(|finding| self.has(finding, fault)).count()
     }
 
-    /// Red, green, blue and alpha of 8 bits: the gravest fault's colour, else a dim grey by which the scene is recognised,
-    /// black where there is nothing.
+    /// RGBA, 8 bits each: the gravest finding's colour, else dim grey to recognise the scene, black without a hit.
     pub fn colors(&self) -> Vec<u8> {
         let color = |finding: &Finding| {
             let fault = Fault::ALL.iter().find(|(fault, ..)| self.has(finding, *fault));

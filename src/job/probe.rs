@@ -1,5 +1,5 @@
-//! Single functions of the optics and the traversal asked about inputs of one's own, whichever engine answers: what hard
-//! cases are made of. Questions are rows of words as `shaders/pass/probe.wgsl` reads them.
+//! Single functions of the optics and the traversal on given inputs, on either engine, for tests of hard cases. Inputs are
+//! rows of words as `shaders/pass/probe.wgsl` reads them.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -8,18 +8,18 @@ use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
 
-/// What the questions refer to.
+/// Scene data that the inputs refer to.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeScene<'a> {
     /// Custom curves and albedo tables.
     pub tables: &'a [f32],
     /// The materials that questions count.
     pub materials: &'a [Material<f32>],
-    /// What rays meet, if anything.
+    /// The geometry, if any.
     pub geometry: Option<&'a Geometry>,
 }
 
-/// Nothing but a table of one number.
+/// Only a table of one number.
 impl Default for ProbeScene<'_> {
     fn default() -> Self {
         Self {
@@ -30,7 +30,7 @@ impl Default for ProbeScene<'_> {
     }
 }
 
-/// A lobe, seen from somewhere: what does it draw for these numbers, and what is its value in a direction?
+/// Input of a lobe: random numbers to sample with, and a direction to evaluate, for a view.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct LobeQuestion {
@@ -40,23 +40,23 @@ pub struct LobeQuestion {
     pub curve: u32,
     /// The horizon policy as a number.
     pub horizon: u32,
-    /// Where the custom curve's table begins.
+    /// Start of the custom curve's table.
     pub table: u32,
     /// Roughness in [0, 1].
     pub roughness: f32,
     /// Stretch in [−1, 1].
     pub anisotropy: f32,
-    /// 0 where the lobe reflects, else the relative index of refraction.
+    /// Relative index of refraction; 0 for reflection.
     pub eta: f32,
     /// Unit shading normal.
     pub shading: Vec3<f32>,
     /// Unit geometric normal.
     pub normal: Vec3<f32>,
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub wo: Vec3<f32>,
     /// The numbers to draw with, in [0, 1).
     pub xi: [f32; 3],
-    /// Towards the light.
+    /// Unit direction to the light.
     pub wi: Vec3<f32>,
 }
 
@@ -76,13 +76,13 @@ impl LobeQuestion {
     }
 }
 
-/// What a lobe answers.
+/// Output of a lobe.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct LobeAnswer {
-    /// The direction drawn.
+    /// Sampled direction.
     pub wi: Vec3<f32>,
-    /// Its weight.
+    /// Weight of the sample.
     pub weight: f32,
     /// (Evaluate, density) of the direction drawn.
     pub drawn: [f32; 2],
@@ -90,7 +90,7 @@ pub struct LobeAnswer {
     pub given: [f32; 2],
 }
 
-/// Fresnel's equations.
+/// Input of the Fresnel equations.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct FresnelQuestion {
@@ -100,7 +100,7 @@ pub struct FresnelQuestion {
     pub cosine: f32,
     /// Index of refraction behind the boundary over that before it, or its real part.
     pub eta: f32,
-    /// Its imaginary part.
+    /// Imaginary part of the index of refraction.
     pub k: f32,
 }
 
@@ -108,7 +108,7 @@ pub struct FresnelQuestion {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct RandomQuestion {
-    /// Pixel.
+    /// Pixel coordinates (x, y).
     pub pixel: [u32; 2],
     /// Seed of the render.
     pub seed: u32,
@@ -116,7 +116,7 @@ pub struct RandomQuestion {
     pub sample: u32,
     /// The sequence as a number.
     pub sequence: u32,
-    /// Which pair.
+    /// Dimension: index of the pair.
     pub dimension: u32,
 }
 
@@ -124,17 +124,17 @@ pub struct RandomQuestion {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct MaterialQuestion {
-    /// Which of [`ProbeScene::materials`].
+    /// Index into [`ProbeScene::materials`].
     pub material: u32,
-    /// 1 where the viewer is within the solid.
+    /// 1 if the viewer is inside the solid.
     pub is_inside: u32,
     /// Unit shading normal.
     pub shading: Vec3<f32>,
     /// Unit geometric normal.
     pub normal: Vec3<f32>,
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub wo: Vec3<f32>,
-    /// Towards the light.
+    /// Unit direction to the light.
     pub wi: Vec3<f32>,
     /// Density with which the light was drawn.
     pub light_density: f32,
@@ -144,22 +144,22 @@ pub struct MaterialQuestion {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct RayQuestion {
-    /// Where it starts.
+    /// Ray origin.
     pub origin: [f32; 3],
-    /// Where it goes; any length but 0.
+    /// Ray direction, of any length but 0.
     pub direction: [f32; 3],
-    /// How far, in lengths of the direction.
+    /// Ray length, in lengths of the direction.
     pub t_max: f32,
 }
 
-/// The answer of a ray that meets nothing.
+/// Triangle index of a miss.
 pub const NO_HIT: u32 = u32::MAX;
 
-/// What a ray meets first.
+/// Closest hit of a ray.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct RayAnswer {
-    /// Which triangle, or [`NO_HIT`].
+    /// Triangle index, or [`NO_HIT`].
     pub triangle: u32,
     /// Distance in lengths of the direction.
     pub t: f32,

@@ -1,56 +1,56 @@
-//! What drawing directions costs: what is asked for, whichever engine draws them.
+//! Cost of sampling directions: request and result, for either engine.
 
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 
-/// How much of the work is done.
+/// Stage of the measured work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum SamplingStage {
     /// Random numbers alone.
     Numbers = 0,
-    /// Directions, too.
+    /// With directions.
     Directions = 1,
-    /// And a triangle that they may meet.
+    /// With a test against a triangle.
     Rays = 2,
 }
 
 impl SamplingStage {
-    /// All of them, each with all that the ones before it do.
+    /// All stages; each includes the ones before.
     pub const ALL: [Self; 3] = [Self::Numbers, Self::Directions, Self::Rays];
 }
 
-/// Directions to draw over a picture of a quad that is seen from above its middle.
+/// Directions to sample over an image of a quad, seen from above its centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplingRequest {
-    /// The lobe.
+    /// Lobe to sample.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,
     /// Roughness in (0, 1].
     pub roughness: f32,
-    /// How much of the work is done.
+    /// Stage of the work.
     pub stage: SamplingStage,
-    /// Columns of pixels.
+    /// Width of the image in pixels.
     pub width: u32,
     /// Rows of pixels that are drawn.
     pub rows: u32,
-    /// Rows of the whole picture.
+    /// Height of the whole image in pixels.
     pub height: u32,
-    /// Directions a pixel.
+    /// Directions per pixel.
     pub samples: u32,
     /// Changes all random numbers.
     pub seed: u32,
 }
 
-/// What came of it.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SamplingRun {
-    /// By the clock of the engine that drew.
+    /// Time in seconds, by the engine's clock.
     pub seconds: f64,
     /// The sum of all coordinates drawn: the same on every engine, but for rounding.
     pub sum: f64,
 }
 
-/// The quad's normal: not an axis, so that nothing is simpler than for any other.
+/// Normal of the quad: not an axis, so that no special case applies.
 pub const QUAD_NORMAL: [f64; 3] = [0.05, -0.03, 0.998_299_55];

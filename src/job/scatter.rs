@@ -1,4 +1,4 @@
-//! Clouds of samples: what is asked for and what comes back, whichever engine draws them.
+//! Clouds of lobe samples: request and result, for either engine.
 
 use crate::optics::frame::Frame;
 use crate::optics::lobe::lobe_middle;
@@ -6,22 +6,22 @@ use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// Samples of a lobe to draw, in the local frame with the normal +z and the mirror direction in the x–z half plane
-/// x ≥ 0; what is refracted has z < 0.
+/// A request for samples of a lobe, in the local frame with the normal +z and the mirror direction in the x–z half plane x ≥
+/// 0; refracted samples have z < 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterRequest {
     /// The lobe, not turned out of the plane of incidence.
     pub model: LobeModel,
     /// Angle between view and normal, degrees in [0, 90].
     pub view_angle_deg: f32,
-    /// How many to draw; absorbed ones count.
+    /// Number of samples, absorbed ones included.
     pub count: u32,
     /// Changes all random numbers.
     pub seed: u32,
 }
 
 impl ScatterRequest {
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub fn wo<T: Real>(&self) -> Vec3<T> {
         Vec3::from_f64(view_direction(f64::from(self.view_angle_deg).to_radians()).to_f64())
     }
@@ -43,7 +43,7 @@ impl ScatterRequest {
     }
 }
 
-/// Samples drawn.
+/// Sampled directions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScatterCloud {
     /// Unit direction, then density per steradian; absorbed samples left out.
@@ -53,7 +53,7 @@ pub struct ScatterCloud {
 }
 
 impl ScatterCloud {
-    /// From samples whose density is negative where they were absorbed.
+    /// From raw samples, whose density is negative if absorbed.
     pub fn from_raw(mut samples: Vec<[f32; 4]>) -> Self {
         let drawn = samples.len();
         samples.retain(|sample| sample[3] >= 0.0);

@@ -1,29 +1,29 @@
-//! The picture in tiles, and how many samples each has had and is to have: what both engines work through.
+//! Tiles of an image, their samples so far and their goals: the schedule of both engines.
 
 /// Side of a tile, pixels: a workgroup's, as the shaders say.
 pub const TILE_SIDE: u32 = 8;
 
-/// A picture cut into tiles, row by row from the top; those at the right and the bottom may be smaller.
+/// An image as a grid of tiles, rows from the top; those at the right and the bottom may be smaller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TileGrid {
-    /// Width of the picture, pixels.
+    /// Width of the image in pixels.
     pub width: u32,
-    /// Height of the picture, pixels.
+    /// Height of the image in pixels.
     pub height: u32,
 }
 
 impl TileGrid {
-    /// Tiles across.
+    /// Number of tile columns.
     pub fn columns(self) -> usize {
         self.width.div_ceil(TILE_SIDE) as usize
     }
 
-    /// Tiles down.
+    /// Number of tile rows.
     pub fn rows(self) -> usize {
         self.height.div_ceil(TILE_SIDE) as usize
     }
 
-    /// How many there are.
+    /// Number of tiles.
     pub fn tiles(self) -> usize {
         self.columns() * self.rows()
     }
@@ -46,7 +46,7 @@ impl TileGrid {
         (top..top + rows).flat_map(row)
     }
 
-    /// How many pixels a tile has.
+    /// Number of pixels of a tile.
     pub fn pixels(self, tile: usize) -> u64 {
         let [width, height] = self.size(tile);
         u64::from(width) * u64::from(height)
@@ -69,7 +69,7 @@ impl TileGrid {
         (y / TILE_SIDE) as usize * self.columns() + (x / TILE_SIDE) as usize
     }
 
-    /// Whether a tile has pixels in a part of the picture: left, top, right, bottom as shares of width and height.
+    /// Whether a tile overlaps a region: left, top, right, bottom as shares of width and height.
     pub fn is_within(self, tile: usize, region: [f64; 4]) -> bool {
         let (origin, size) = (self.origin(tile), self.size(tile));
         [self.width, self.height].into_iter().enumerate().all(|(axis, whole)| {
@@ -93,46 +93,45 @@ impl TileGrid {
     }
 }
 
-/// What an engine renders of one tile.
+/// Work of an engine on one tile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// The tile.
+    /// Tile index.
     pub tile: usize,
     /// Index of its first sample.
     pub first_sample: u32,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub count: u32,
 }
 
-/// What a slice may be.
+/// Limits of a slice.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceLimits {
-    /// The least samples that a tile gets in a pass, where it lacks so many, and the most; at least 1.
+    /// Minimum (if it lacks so many) and maximum samples per pixel of a tile in a pass; at least 1.
     pub pass_samples: [u32; 2],
-    /// The least tiles of a slice, where there are so many, and the most; between them what is affordable decides.
+    /// Minimum (if there are so many) and maximum tiles of a slice; between them the affordable work decides.
     pub tiles: [usize; 2],
-    /// In which order a pass takes its tiles.
+    /// Tile order of a pass.
     pub order: Order,
 }
 
-/// An order of a picture's tiles.
+/// An order of an image's tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Row by row: neighbours share what is in the caches.
+    /// Row by row, for cache locality.
     Rows,
-    /// Spread over the picture, so that any few in a row cost about as much as any others.
+    /// Spread over the image, so that any consecutive few cost about the same.
     Spread,
 }
 
 impl Order {
-    /// Puts tiles that are in rows into the order.
+    /// Reorders tiles from row order.
     fn arrange(self, tiles: Vec<usize>) -> Vec<usize> {
         let count = tiles.len();
         if self == Self::Rows || count < 2 {
             return tiles;
         }
-        // Steps of the golden section leave no two neighbours near each other; one that shares no divisor with the count
-        // meets every tile once.
+        // Golden section steps keep consecutive tiles apart; a step coprime to the count visits every tile once.
         let coprime = |step: &usize| greatest_common_divisor(*step, count) == 1;
         let golden = (count as f64 * 0.618_034) as usize;
         let step = (golden.max(1)..).find(coprime).unwrap_or(1);
@@ -144,7 +143,7 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
-/// Which samples have been rendered and which come next. A *pass* goes once over all tiles that lack samples.
+/// Rendered samples per tile, and the next ones. A *pass* visits all tiles that lack samples once.
 #[derive(Clone, Debug, Default)]
 pub struct Schedule {
     grid: TileGrid,
@@ -152,7 +151,7 @@ pub struct Schedule {
     first_sample: u32,
     samples: Vec<u32>,
     goals: Vec<u32>,
-    /// The tiles of the pass in progress, how many of them have been rendered, and the most samples that each gets.
+    /// Tiles of the current pass, the number already rendered, and the maximum samples of each.
     pass: Vec<usize>,
     next: usize,
     pass_samples: u32,
@@ -160,12 +159,12 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Nothing rendered, nothing to render.
+    /// A schedule without samples and goals.
     pub fn new(width: u32, height: u32) -> Self {
         Self::starting_at(width, height, 0)
     }
 
-    /// The same for samples from a number on.
+    /// The same starting at sample `first_sample`.
     pub fn starting_at(width: u32, height: u32, first_sample: u32) -> Self {
         let grid = TileGrid { width, height };
         Self {
@@ -177,20 +176,20 @@ impl Schedule {
         }
     }
 
-    /// The picture's tiles.
+    /// The image's tiles.
     pub fn grid(&self) -> TileGrid {
         self.grid
     }
 
     /// Sets how many samples a pixel of each tile is to have; one number a tile.
-    pub fn aim(&mut self, goals: &[u32]) {
+    pub fn set_goals(&mut self, goals: &[u32]) {
         self.goals.clear();
         self.goals.extend_from_slice(goals);
         self.goals.resize(self.samples.len(), 0);
     }
 
-    /// What comes next, of about `affordable` samples: some tiles of a pass, or a pass of several samples of each tile.
-    /// Empty where no tile lacks any.
+    /// The next work, of about `affordable` pixel samples: some tiles of a pass, or a pass of several samples per tile.
+    /// Empty if no tile lacks any.
     pub fn slice(&mut self, affordable: f64, limits: SliceLimits) -> Vec<Work> {
         if self.next >= self.pass.len() {
             self.begin(affordable, limits);
@@ -211,7 +210,7 @@ impl Schedule {
         self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(least, most);
     }
 
-    /// The most samples that a tile gets in the pass.
+    /// Maximum samples of a tile in the current pass.
     pub fn pass_samples(&self) -> u32 {
         self.pass_samples
     }
@@ -242,7 +241,7 @@ impl Schedule {
         is_end
     }
 
-    /// Whether every tile has what it is to have.
+    /// Whether every tile has reached its goal.
     pub fn is_at_goal(&self) -> bool {
         self.next >= self.pass.len() && std::iter::zip(&self.samples, &self.goals).all(|(n, goal)| n >= goal)
     }
@@ -252,7 +251,7 @@ impl Schedule {
         &self.samples
     }
 
-    /// Samples a pixel where there are most, at the end of the last pass: with equal goals every pixel has as many.
+    /// Maximum samples per pixel at the end of the last pass; with equal goals every pixel has as many.
     pub fn samples_per_pixel(&self) -> u32 {
         self.completed
     }
@@ -301,7 +300,7 @@ mod tests {
     fn every_tile_gets_what_it_lacks_and_nothing_twice() {
         let mut schedule = Schedule::new(20, 10);
         let goals = [5, 0, 3, 5, 5, 1];
-        schedule.aim(&goals);
+        schedule.set_goals(&goals);
         let mut had = [0_u32; 6];
         let mut completed = 0;
         // No more than two tiles at a time, so that passes are cut.
@@ -327,7 +326,7 @@ mod tests {
         assert!(schedule.is_at_goal());
         assert_eq!(schedule.pixel_samples(), 64 * 5 + 32 * 3 + 16 * (5 + 5) + 8);
         // A tile that was left behind catches up.
-        schedule.aim(&[5; 6]);
+        schedule.set_goals(&[5; 6]);
         assert!(!schedule.is_at_goal());
         let all = SliceLimits {
             pass_samples: [1, 8],
@@ -346,7 +345,7 @@ mod tests {
     #[test]
     fn a_pass_has_its_least_samples_however_little_is_affordable() {
         let mut schedule = Schedule::new(20, 10);
-        schedule.aim(&[6; 6]);
+        schedule.set_goals(&[6; 6]);
         let limits = SliceLimits {
             pass_samples: [4, 8],
             tiles: [1, 2],

@@ -1,8 +1,8 @@
-//! The share of light that a lobe reflects of each view, tabulated: what is left over reaches the layer below.
+//! Tabulated albedo of a lobe over the view angle; the rest reaches the layer below.
 //!
-//! Where a texture changes roughness, metalness or colour from point to point, or the surface is metal in part, the table
-//! goes over the roughness too and holds the four integrals of which every Fresnel factor's albedo is a sum
-//! ([`rough_albedo`]): that of the whole and that of the dielectric alone, which the base lies under.
+//! If roughness, metalness or colour vary over the surface, or the surface is partly metal, the table extends over roughness
+//! too. It then holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]), for the whole
+//! and for the dielectric alone, which covers the base.
 
 use super::frame::frame_from_normal;
 use super::fresnel::{
@@ -19,7 +19,7 @@ use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
 pub const ALBEDO_NODES: usize = 64;
-/// Of the nodes of a table for views from within, those below the critical angle: there the reflection is total.
+/// Nodes of a table for views from within that lie below the critical angle, where reflection is total.
 pub const TOTAL_NODES: usize = 16;
 /// Numbers of an albedo table: red, green, blue and 0 a node.
 pub const ALBEDO_LENGTH: usize = NODE_LENGTH * ALBEDO_NODES;
@@ -28,8 +28,8 @@ pub const ROUGHNESS_NODES: usize = 17;
 /// Numbers of a rough albedo table: [`ROUGHNESS_NODES`] times the nodes of an albedo table, each four integrals.
 pub const ROUGH_ALBEDO_LENGTH: usize = NODE_LENGTH * ROUGHNESS_NODES * ALBEDO_NODES;
 
-/// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
-/// what [`albedo_place`] makes of it.
+/// Specular albedo at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
+/// [`albedo_place`] from within.
 #[inline(always)]
 pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
     let [low, beyond] = node_below(place, ALBEDO_NODES);
@@ -47,8 +47,8 @@ fn albedo_node<T: Real>(table: &[f32], node: T) -> Vec3<T> {
     )
 }
 
-/// Where in a table a view is found, in [0, 1]. At the critical angle the albedo of a smooth interface rises with a
-/// vertical tangent: below it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
+/// Table position of a view, in [0, 1]. At the critical angle the albedo of a smooth interface has a vertical tangent: below
+/// it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
 #[inline(always)]
 pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
     let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
@@ -77,8 +77,8 @@ fn node_cosine(node: usize, eta: f64) -> f64 {
     (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
 }
 
-/// The specular lobe's albedo against the view's cosine, from within or without: what [`albedo_lookup`] reads. `samples`
-/// a node.
+/// Table of the specular lobe's albedo over the view's cosine, from within or outside, for [`albedo_lookup`]; `samples` per
+/// node.
 pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
     let shape = material.shape(tables);
     let terms = material.fresnel_terms(is_inside);
@@ -91,7 +91,7 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
     (0..ALBEDO_NODES).flat_map(means).map(|x| x as f32).collect()
 }
 
-/// At a node of a table, the mean over a lobe of its weight times what `factors` gives for the half vector's cosine.
+/// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine.
 fn node_means<const N: usize>(
     node: usize,
     is_inside: bool,
@@ -120,8 +120,7 @@ fn node_means<const N: usize>(
     sums.map(|sum| sum / f64::from(samples))
 }
 
-/// The table of a material whose roughness, metalness or base colour changes from point to point: what
-/// [`rough_albedo_lookup`] reads. `samples` a node.
+/// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node.
 pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
     let terms = material.fresnel_terms(is_inside);
     let mut table = Vec::with_capacity(ROUGH_ALBEDO_LENGTH);
@@ -139,8 +138,8 @@ pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32
     table
 }
 
-/// What a Fresnel factor is a sum of, whatever the metalness and the base colour: the exact dielectric, Schlick's two
-/// terms and the darkening towards the edge; or the untinted factor of each channel, then 0.
+/// Basis of the Fresnel factor for any metalness and base colour: the exact dielectric, Schlick's two terms and the
+/// darkening towards the edge; or the untinted factor of each channel, then 0.
 fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
     if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
         let untinted = FresnelTerms {

@@ -1,13 +1,15 @@
-//! The density of the geometric lobe where the lobe is a unit ball, in closed form (docs/MATHEMATICS.md, section 4).
+//! Density of the geometric lobe as a unit ball, in closed form (docs/MATHEMATICS.md, section 4).
 //!
-//! A direction ω leaves the surface point and meets the sphere of radius D around a + D κ n at the distances T ± √A W,
-//! T = μ + κνD. With D = c + s cosh v and W = s sinh v the section's integral over u reads, u being v shifted,
+//! A direction ω from the surface point intersects the sphere of radius D around a + D κ n at the distances T ± √A W,
+//! T = μ + κνD. With D = c + s cosh v and W = s sinh v (v is u shifted), the section's integral over u is
 //!
-//! p(ω) = 1/(4π√A) ∫ t² h(D) dv,   t = T + √A W,   over the v with t ≥ 0 and D ≤ D's maximum.
+//! p(ω) = 1/(4π√A) ∫ t² h(D) dv,   t = T + √A W,
 //!
-//! t² = (T² + A W²) + 2√A T W: the first part is a polynomial in D and integrates by the moments ∫ Dⁿ dv, which follow
-//! one from another; in the second W dv = dD. So a curve whose h is a polynomial or 1/D costs one logarithm, whatever the
-//! roughness, and a density drawn by hand costs as much in each of its intervals. Only the long tail needs quadrature.
+//! over the v with t ≥ 0 and D ≤ D's maximum.
+//!
+//! t² = (T² + A W²) + 2√A T W. The first part is a polynomial in D and integrates by the moments ∫ Dⁿ dv, which follow from
+//! each other. In the second, W dv = dD. So a curve whose h is a polynomial or 1/D costs one logarithm at any roughness, and
+//! a custom density costs the same per interval. Only the long tail needs quadrature.
 
 use super::curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h};
 use super::numeric::log1p;
@@ -15,17 +17,17 @@ use super::real::{Mask, Real, Scalar};
 use super::table::NODE_LENGTH;
 use super::vector::Vec3;
 
-/// Closest to the mirror direction, in radians, that f32 tells apart: within it a density's peak is cut off.
+/// Angle from the mirror direction, in radians, that f32 resolves: within it a density's peak is cut off.
 pub const PEAK_RADIUS: f64 = 1e-7;
-/// Keeps |a⊥|² from vanishing where the lobe is Lambertian; its square is still a normal f32.
+/// Lower bound of |a⊥|² for Lambertian lobes; its square is a normal f32.
 pub const TINY: f64 = 1e-18;
-/// Longest range of v worth integrating where the lobe is Lambertian, and its growth with μ: there the integrand falls as
-/// e^(2v) towards its lower end, else it is level in between.
+/// Longest range of v to integrate for a Lambertian lobe, and its growth with μ: the integrand falls as e^(2v) towards its
+/// lower end, and is flat otherwise.
 pub const RANGE_MAX: [f64; 2] = [20.0, 1000.0];
 /// Roughness up to which the shorter rule integrates a curve without a closed form (the long tail) to better than 1e-3.
 pub const SHORT_RULE_ROUGHNESS: f64 = 0.5;
-/// Range of v up to which a curve whose h vanishes at the silhouette is integrated node by node: the closed
-/// form takes it as a difference of moments there, each much larger.
+/// Range of v up to which a curve whose h vanishes at the silhouette is integrated by quadrature: the closed form is a
+/// difference of much larger moments there.
 pub const SHORT_RANGE: f64 = 0.5;
 
 /// Positive nodes and weights of the 6-point Gauss–Legendre rule on [−1, 1].
@@ -57,7 +59,7 @@ const GAUSS_20: [[f64; 2]; 10] = [
     [0.993128599185095, 0.017614007139150893],
 ];
 
-/// What a direction meets of the spheres.
+/// The chord of a direction through the spheres.
 #[derive(Clone, Copy, Debug)]
 struct Chord<T> {
     /// c.
@@ -74,15 +76,15 @@ struct Chord<T> {
     odd: [T; 2],
     /// √A.
     a_root: T,
-    /// Where the chord leaves the largest sphere: D and W.
+    /// D and W where the chord leaves the largest sphere.
     last: [T; 2],
-    /// Where it begins: on the sphere through the surface point, or where it enters the largest one. W counts negative
-    /// where that point lies beyond the middle of the chord.
+    /// D and W where the chord starts: on the sphere through the surface point, or where it enters the largest one. W is
+    /// negative if that point is beyond the chord's middle.
     first: [T; 2],
 }
 
 impl<T: Real> Chord<T> {
-    /// That of one lane.
+    /// The chord of one lane.
     #[inline(always)]
     fn lane(&self, lane: usize) -> Chord<T::Scalar> {
         Chord {
@@ -119,14 +121,15 @@ pub fn chord_density<T: Real>(
         || {
             let reach = curve_distance_max(curve, table);
             let chord = chord_through(reach, kappa, stretch, normal, mirror, light);
-            // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
-            let is_met = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
-            if !is_met.any() {
+            // No intersection, or none ahead: without the test, the latter would be the rounding error of two ends that
+            // cancel.
+            let is_hit = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
+            if !is_hit.any() {
                 return T::zero();
             }
             let integral = chord_integral(curve, table, kappa, &chord);
             let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
-            T::select(is_met, value.max(T::zero()), T::zero())
+            T::select(is_hit, value.max(T::zero()), T::zero())
         },
     )
 }
@@ -163,8 +166,8 @@ fn chord_integral<T: Real>(curve: Curve, table: &[f32], kappa: T, chord: &Chord<
     }
 }
 
-/// The chord's geometry, written with the part of a that is perpendicular to ω, so that nothing cancels where the lobe is
-/// narrow (κ → 0) or Lambertian (κ → 1).
+/// The chord's geometry, by the component of a perpendicular to ω, so that nothing cancels for narrow (κ → 0) or Lambertian
+/// (κ → 1) lobes.
 #[inline(always)]
 fn chord_through<T: Real>(
     reach: T,
@@ -278,7 +281,7 @@ fn chord_polynomial_integral<T: Real>(chord: &Chord<T>, h: [f64; 3]) -> T {
         + c(h[2]) * chord_weighed(chord, [i2, i3, i4], [d3, d4])
 }
 
-/// ∫ t² h dv by Gauss–Legendre in v, for curves without a closed form, or where it cancels.
+/// ∫ t² h dv by Gauss–Legendre in v, for curves without a closed form, or if it cancels.
 #[inline(always)]
 fn chord_quadrature<T: Real>(curve: Curve, rule: &[[f64; 2]], chord: &Chord<T>) -> T {
     let half = T::from_f64(0.5);
@@ -319,19 +322,19 @@ fn chord_table_integral<T: Scalar>(table: &[f32], chord: Chord<T>) -> T {
     let chord = &chord;
     let ([last, _], [first, w_first]) = (chord.last, chord.first);
     let mut sum = T::zero();
-    // Spheres that are met twice ahead of the surface point: what is odd in W cancels.
+    // Spheres that are intersected twice ahead of the surface point: odd terms in W cancel.
     if T::zero().less(w_first).any() {
         sum += T::from_f64(2.0) * chord_table_section(table, chord, [chord.nearest, T::zero()], first, T::zero());
     }
-    // Spheres around the surface point: met once.
+    // Spheres around the surface point are intersected once.
     if first.less(last).any() {
         sum += chord_table_section(table, chord, [first, w_first.abs()], last, T::one());
     }
     sum
 }
 
-/// The part of [`chord_table_integral`] on one side of the chord's middle, from the end `from` (D and W) to the distance
-/// `to`, with `odd` times what is odd in W.
+/// [`chord_table_integral`] on one side of the chord's middle, from the end `from` (D and W) to the distance `to`; `odd`
+/// scales the odd terms in W.
 fn chord_table_section<T: Scalar>(table: &[f32], chord: &Chord<T>, from: [T; 2], to: T, odd: T) -> T {
     let c = T::from_f64;
     let width = chord.last[0] * c(1.0 / CUSTOM_INTERVALS as f64);

@@ -1,8 +1,8 @@
-//! Elementary functions of f32 in plain arithmetic: the same bits on every processor, alone and in lanes, and quicker than the
-//! system's, whose calls hold up everything around them. The GPU has its own, and f64, the oracle, the system's.
+//! Elementary functions of f32 in plain arithmetic: the same bits on every CPU, scalar and in SIMD lanes, and faster than
+//! the system's, whose calls block inlining and vectorisation. The GPU has its own; f64, the oracle, uses the system's.
 //!
-//! No operation is fused with another: so it does not matter whether the processor could. Polynomials for the exponential, the
-//! logarithm, sine and cosine: Moshier's Cephes library (1989).
+//! No operations are fused, so that results do not depend on FMA support. Polynomials for the exponential, the logarithm,
+//! sine and cosine: Moshier's Cephes library (1989).
 
 use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, LOG2_E, PI};
 
@@ -10,13 +10,13 @@ use super::real::Real;
 
 /// A number in single precision, or several in lanes, with its bits.
 pub trait Single: Real<Scalar = f32> {
-    /// The bits.
+    /// Unsigned integer with the number's bits.
     type Bits: Bits;
     /// The number's bits.
     fn to_bits(self) -> Self::Bits;
     /// The inverse of [`Single::to_bits`].
     fn from_bits(bits: Self::Bits) -> Self;
-    /// A number that is whole, as a signed integer; anything where it does not fit.
+    /// An integral number as a signed integer; arbitrary if it does not fit.
     fn to_whole(self) -> Self::Bits;
     /// The inverse of [`Single::to_whole`].
     fn from_whole(whole: Self::Bits) -> Self;
@@ -157,7 +157,7 @@ pub fn cos<T: Single>(angle: T) -> T {
 /// The exponents between which e to their power is a normal number.
 const EXPONENTS: [f32; 2] = [-87.336_54, 88.722_83];
 
-/// e to a power, within two units in the last place; 0 where that is less than the least normal number.
+/// Exponential, within two units in the last place; 0 below the smallest normal number.
 #[inline(always)]
 pub fn exp<T: Single>(x: T) -> T {
     let [low, high] = EXPONENTS;
@@ -176,7 +176,7 @@ pub fn exp<T: Single>(x: T) -> T {
         ],
     );
     let grown = series * (rest * rest) + rest + T::one();
-    // In two steps: the last doubling alone would be infinite.
+    // In two steps, because one factor alone would overflow.
     let first = (doublings * c(0.5)).floor();
     let value = grown * power_of_two(first) * power_of_two(doublings - first);
     let value = T::select(x.less(c(low)), T::zero(), value);
@@ -190,7 +190,7 @@ fn power_of_two<T: Single>(power: T) -> T {
     T::from_bits(power.to_whole().plus(Bits::splat(127)).left::<23>())
 }
 
-/// The mantissa's bits, and those of √½, from which on it counts.
+/// The mantissa's bits, and those of √½, where its range starts.
 const MANTISSA: u32 = 0x007f_ffff;
 const ROOT_HALF: u32 = 0x3f35_04f3;
 
@@ -201,7 +201,7 @@ pub fn ln<T: Single>(x: T) -> T {
     let is_small = x.less(c(f32::MIN_POSITIVE));
     let raised = T::select(is_small, x * c(8_388_608.0), x);
     let bits = raised.to_bits().plus(Bits::splat(0_u32.wrapping_sub(ROOT_HALF)));
-    // The exponent is below 0 where the sum above wrapped: its sign is kept by way of a number that is not.
+    // The exponent is negative if the sum above wrapped: an offset keeps its sign.
     let exponent = T::from_whole(bits.plus(Bits::splat(1 << 30)).right::<23>()) - c(128.0);
     let exponent = T::select(is_small, exponent - c(23.0), exponent);
     let m = T::from_bits(bits.and(Bits::splat(MANTISSA)).plus(Bits::splat(ROOT_HALF))) - T::one();
@@ -239,11 +239,11 @@ pub fn powf<T: Single>(base: T, exponent: T) -> T {
     )
 }
 
-/// The same by way of f64, as a logarithm in f32 would not do: an exponent of a thousand magnifies its error as much.
-/// Without branches, so that compilers turn it into lanes.
+/// The same in f64, because an exponent of a thousand would magnify the error of an f32 logarithm as much. Branchless, so
+/// that compilers vectorise it.
 #[inline(always)]
 fn power(base: f64, exponent: f64) -> f64 {
-    /// 1.5 · 2⁵²: added to a number it leaves the nearest whole one in the lowest bits.
+    /// 1.5 · 2⁵²: adding it leaves the nearest integer in the lowest bits.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
     const LN_2: f64 = std::f64::consts::LN_2;
@@ -270,11 +270,11 @@ fn power(base: f64, exponent: f64) -> f64 {
     }
 }
 
-/// What π/2 in f32 is too large by; twice that for π.
+/// Excess of π/2 in f32; twice that for π.
 const FRAC_PI_2_EXCESS: f32 = 4.371_139e-8;
 
-/// The angle of the vector (`x`, `y`), both finite, in radians, in [−π, π]: within two units in the last place. 0 where both
-/// are.
+/// Angle of the vector (`x`, `y`), both finite, in radians, in [−π, π], within two units in the last place; 0 for the zero
+/// vector.
 #[inline(always)]
 pub fn atan2<T: Single>(y: T, x: T) -> T {
     let (width, height) = (x.abs(), y.abs());
@@ -284,7 +284,7 @@ pub fn atan2<T: Single>(y: T, x: T) -> T {
     let t = less / more.max(c(f32::MIN_POSITIVE));
     let square = t * t;
     let fourth = square * square;
-    // Of (atan(t)/t − 1)/t² over t² in [0, 1]: minimax.
+    // Minimax polynomial of (atan(t)/t − 1)/t² over t² in [0, 1].
     let low = (c::<T>(-0.333_331_02) + c::<T>(0.199_926_96) * square)
         + (c::<T>(-0.142_027_36) + c::<T>(0.106_347_93) * square) * fourth;
     let high = (c::<T>(-0.074_890_09) + c::<T>(0.042_504_99) * square)

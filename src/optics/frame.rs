@@ -27,8 +27,8 @@ pub fn frame_from_normal<T: Real>(normal: Vec3<T>) -> Frame<T> {
     }
 }
 
-/// A frame around a unit normal whose tangent is `tangent` made perpendicular and turned by `rotation_rad` about the
-/// normal; any tangent where the given one is parallel to the normal.
+/// A frame around a unit normal with `tangent` made perpendicular and rotated by `rotation_rad` about the normal; any
+/// tangent if the given one is parallel to the normal.
 #[inline(always)]
 pub fn frame_from_tangent<T: Real>(normal: Vec3<T>, tangent: Vec3<T>, rotation_rad: T) -> Frame<T> {
     let fallback = frame_from_normal(normal).tangent;

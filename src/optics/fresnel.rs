@@ -15,24 +15,25 @@ named! {
     }
 }
 
-/// What the Fresnel factor depends on, besides the angle.
+/// Parameters of the Fresnel factor, besides the angle.
 #[derive(Clone, Copy, Debug)]
 pub struct FresnelTerms<T> {
-    /// The model.
+    /// Equation of the Fresnel factor.
     pub model: Fresnel,
     /// Reflectance at normal incidence of the metal, linear RGB.
     pub metal_f0: Vec3<T>,
     /// 0 for a dielectric, 1 for a metal.
     pub metalness: T,
-    /// Tint: of the reflectance at normal incidence where the model is Schlick's for a dielectric, else of all of it.
+    /// Tint, linear RGB: of the reflectance at normal incidence in Schlick's model for a dielectric, else of the whole
+    /// factor.
     pub tint: Vec3<T>,
-    /// Factor of a metal's reflection, where the model has metalness: tint times weight, or 1 where those spare metals.
+    /// Factor of a metal's reflection: tint times weight, or 1 if those spare metals.
     pub metal_tint: Vec3<T>,
-    /// What the metal's reflection is multiplied by near 82 degrees; 1 leaves it as it is.
+    /// Factor of a metal's reflection near 82 degrees; 1 for none.
     pub edge_tint: Vec3<T>,
     /// Share of the reflection that is kept at any angle, in [0, 1]; a metal's is in `metal_tint`.
     pub weight: T,
-    /// Index of refraction of the dielectric against what surrounds it.
+    /// Relative index of refraction of the dielectric.
     pub ior: T,
     /// Conductor: real part of the index of refraction a channel.
     pub eta: Vec3<T>,
@@ -74,8 +75,8 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
     }
 }
 
-/// The cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose its digits
-/// where they are nearly opposite, and Fresnel's factor is steepest there.
+/// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
+/// nearly opposite directions, where the Fresnel factor is steepest.
 #[inline(always)]
 pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
     (T::from_f64(0.5) * (wo + wi).length()).min(T::one())
@@ -110,7 +111,7 @@ pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec
     Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
 }
 
-/// What [`edge_shape`] is multiplied by, so that at a cosine of 1/7 the tint is what is left.
+/// Factor of [`edge_shape`] that leaves exactly the tint at a cosine of 1/7.
 #[inline(always)]
 pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
     let seventh = T::from_f64(1.0 / 7.0);
@@ -118,7 +119,7 @@ pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
     fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::one() / edge_shape(seventh))
 }
 
-/// How the darkening towards the edge depends on the angle: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
+/// Angular shape of the darkening towards the edge: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
 #[inline(always)]
 pub fn edge_shape<T: Real>(cosine: T) -> T {
     let c = cosine.clamp(T::zero(), T::one());
@@ -149,8 +150,8 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     let c = cosine.clamp(T::zero(), T::one());
     let cos2 = c * c;
     let sin2 = (T::one() - c) * (T::one() + c);
-    // (a + ib)² = t0 + iu, so written that nothing cancels, neither at grazing for η near 1 nor head-on for η near 0; its
-    // size without the squares, which would overflow.
+    // (a + ib)² = t0 + iu, written without cancellation, at grazing for η near 1 and head-on for η near 0. Its magnitude
+    // without squares, which would overflow.
     let half = T::from_f64(0.5);
     let real = T::select(cos2.less(half), refracted_square(c, eta), eta * eta - sin2);
     let t0 = real - k * k;
@@ -166,8 +167,7 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     );
     let t1 = a2_plus_b2 + cos2;
     let t2 = T::from_f64(2.0) * a * c;
-    // Where both are 0 there is nothing to divide by: no wave at all behind, or head-on, where there is no plane of
-    // incidence and both polarisations are alike.
+    // Avoids 0/0: no wave behind the surface, or normal incidence, where both polarisations are alike.
     let tiny = T::from_f64(1e-37);
     let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
@@ -178,9 +178,9 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     (half * (perpendicular + parallel)).clamp(T::zero(), T::one())
 }
 
-/// What the facet leaves over of the light that it refracts, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which
-/// refracts nothing, so written that it keeps its digits where nearly everything is reflected. `cosine` between the facet's normal and the view, `behind` between
-/// it and the refracted direction, both in [0, 1].
+/// Transmittance of a facet, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which refracts nothing. Written to keep
+/// precision if nearly everything is reflected. `cosine` is between the facet's normal and the view, `behind` between it and
+/// the refracted direction, both in [0, 1].
 #[inline(always)]
 pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
     let white = Vec3::splat(T::one());

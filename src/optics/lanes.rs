@@ -1,8 +1,8 @@
-//! Eight or sixteen f32 side by side: how the processor renders, if it has AVX2 or better, or NEON. What they hold is what
-//! f32 would, to the last bit, with any of the instruction sets.
+//! SIMD lanes: vectors of eight or sixteen f32, with which the CPU renders if it has AVX2 or better, or NEON. Each lane
+//! equals f32 to the last bit with any instruction set.
 //!
-//! Numbers in lanes must be computed with in functions that are compiled for their instruction set, else each operation is
-//! a call and costs ten times as much: [`in_lanes`] leads there, [`Real::vectorize`] within.
+//! Code on lanes must be compiled for their instruction set, or each operation is a call and costs ten times as much:
+//! [`in_lanes`] is the entry, and [`Real::vectorize`] is for functions within.
 
 use std::fmt;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -12,11 +12,11 @@ use fearless_simd::{Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, Si
 use super::elementary::{self, Bits, Single};
 use super::real::{Mask, Real, by_arithmetic};
 
-/// What is done with numbers in lanes.
+/// A computation that is generic over SIMD lanes. A trait, because closures cannot be generic.
 pub trait InLanes {
-    /// What comes of it.
+    /// Result type.
     type Output;
-    /// Does it.
+    /// Runs the computation with `T` as lanes.
     fn run<T: Real<Scalar = f32>>(self) -> Self::Output;
 }
 
@@ -25,7 +25,7 @@ pub fn in_lanes<I: InLanes>(level: Level, what: I) -> I::Output {
     match level {
         #[cfg(all(target_arch = "x86_64", any(feature = "every-level", not(debug_assertions))))]
         Level::Avx512(_) => what.run::<sixteen::Lanes<fearless_simd::Avx512>>(),
-        // Of sixteen numbers each takes two of AVX2's sixteen registers, too few for what shading keeps.
+        // Sixteen lanes would take two of AVX2's sixteen registers each, too few for shading.
         #[cfg(target_arch = "x86_64")]
         Level::Avx2(_) => what.run::<eight::Lanes<fearless_simd::Avx2>>(),
         #[cfg(target_arch = "aarch64")]
@@ -39,7 +39,7 @@ pub fn in_lanes<I: InLanes>(level: Level, what: I) -> I::Output {
 #[inline(always)]
 fn token<S: Simd>() -> S {
     const { assert!(size_of::<S>() == 0) };
-    // SAFETY: a proof has no bytes. `Lanes<S>` is named by `in_lanes` alone, where the level says that S is there.
+    // SAFETY: the token has no bytes. Only `in_lanes` names `Lanes<S>`, where the level proves that S is available.
     unsafe { std::mem::zeroed() }
 }
 
@@ -180,7 +180,7 @@ macro_rules! lanes {
                 }
                 #[inline(always)]
                 fn min(self, other: Self) -> Self {
-                    // Of other processors' instructions a NaN on either side makes one.
+                    // Other CPUs' instructions return NaN for a NaN on either side.
                     if cfg!(target_arch = "x86_64") {
                         Self(self.0.min(other.0))
                     } else {

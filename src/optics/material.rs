@@ -1,11 +1,10 @@
-//! The material as the integrators see it: a specular lobe over a base that is Lambertian, or refracts, or is a mixture
-//! of both, and covers over all. What each layer does with light is said in [`layer`](super::layer).
+//! The material as the integrators see it: a specular lobe over a base, which is Lambertian, refracts, or mixes both; covers
+//! lie over all. [`layer`](super::layer) describes each layer.
 //!
-//! The specular lobe reflects the Fresnel share; what it leaves over reaches the base. How much that is on average over
-//! the lobe, its albedo, is tabulated for each material ([`albedo_table`]), so that a white base under any lobe reflects
-//! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
-//! views from within, from where the base's light is refracted into the solid, so that all of it gets out again. Lobes made
-//! of facets refract at each facet what that facet does not reflect.
+//! The specular lobe reflects the Fresnel share; the rest reaches the base. Its mean over the lobe, the albedo, is tabulated
+//! per material ([`albedo_table`]), so that a white base under any lobe reflects or transmits all light: layering conserves
+//! energy. A material that transmits has a second table for views from within, because the base's light is refracted into
+//! the solid and must get out again. Microfacet lobes refract at each facet the share that it does not reflect.
 
 use super::curve::Curve;
 use super::frame::{Frame, frame_from_normal};
@@ -65,13 +64,13 @@ impl<U> Cast<U> for [u32; 4] {
 /// A field of [`Material`] as the GPU reads it.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
-    /// Its name.
+    /// Name of the field.
     pub name: &'static str,
-    /// Its type in Rust, whose numbers are `T`.
+    /// Rust type, with numbers of type `T`.
     pub of_type: &'static str,
-    /// Where it begins, bytes.
+    /// Offset in bytes.
     pub offset: usize,
-    /// Its length, bytes.
+    /// Size in bytes.
     pub size: usize,
 }
 
@@ -105,7 +104,7 @@ macro_rules! material {
 }
 
 material! {
-    /// A material with its tables' places. The f32 form is what the GPU reads, byte for byte. A vector is followed by a
+    /// A material with the positions of its tables. The GPU reads the f32 form, byte for byte. Each vector is followed by a
     /// number or an index, and the whole fills rows of 16 bytes.
     Material {
         /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
@@ -132,7 +131,7 @@ material! {
         transmission_tint: Vec3<T>,
         /// Share of the base that refracts, in [0, 1].
         transmission_weight: T,
-        /// What a length of 1 of the interior absorbs, as the negative logarithm of what it lets through; linear RGB.
+        /// Absorption coefficient of the interior per unit of length, linear RGB.
         absorption: Vec3<T>,
         /// Roughness of the refraction in [0, 1].
         transmission_roughness: T,
@@ -146,17 +145,17 @@ material! {
         horizon: u32,
         /// [`Fresnel`] as a number.
         fresnel: u32,
-        /// Where the custom curve's table begins.
+        /// Start of the custom curve's table.
         curve_table: u32,
-        /// Where the albedo table begins.
+        /// Start of the albedo table.
         albedo_table: u32,
-        /// Where the albedo table for views from within begins.
+        /// Start of the albedo table for views from within.
         inner_albedo_table: u32,
-        /// What the metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+        /// Factor of a metal's reflection near 82 degrees, linear RGB in [0, 1].
         edge_tint: Vec3<T>,
         /// Share of light that the surface stops, in [0, 1].
         opacity: T,
-        /// What a coat of weight 1 leaves of the light that crosses it twice, linear RGB in [0, 1].
+        /// Transmittance of a coat of weight 1 in and out, linear RGB in [0, 1].
         coat_color: Vec3<T>,
         /// Share of the surface that has a coat, in [0, 1].
         coat_weight: T,
@@ -164,37 +163,37 @@ material! {
         coat_roughness: T,
         /// Index of refraction of the coat.
         coat_ior: T,
-        /// Where the coat's albedo table begins.
+        /// Start of the coat's albedo table.
         coat_table: u32,
         /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
         light_luminance: T,
-        /// Textures of base colour, roughness, normal, emission; [`NO_TEXTURE`] where there is none.
+        /// Textures of base colour, roughness, normal, emission, or [`NO_TEXTURE`].
         textures: [u32; 4],
         /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
         opacity_texture: u32,
-        /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+        /// Opacity cutoff of a masked material; negative for blended opacity.
         alpha_cutoff: T,
         /// Scales the slopes of the normal texture.
         normal_strength: T,
-        /// 1 where the surface is metal in part or changes from point to point: the albedo tables go over the roughness too
+        /// 1 if the surface is partly metal or varies: then the albedo tables extend over roughness
         /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
         has_rough_tables: u32,
-        /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
+        /// Roughness that the texture multiplies; GGX's roughness if there is a `roughness_table`.
         texture_roughness: T,
-        /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
+        /// Start of the table from GGX's roughness to the lobe's, or [`NO_TEXTURE`] if both are the same.
         roughness_table: u32,
         /// [`VERTEX_BASE`] and the others.
         flags: u32,
-        /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
-        /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
+        /// Slope of a spot's ramp over the cosine to its axis ([`spot_share`](crate::scene::light::spot_share)); 0 for
+        /// emission in all directions.
         spot_scale: T,
-        /// See `spot_scale`.
+        /// Offset of a spot's ramp; 1 for emission in all directions.
         spot_offset: T,
         /// The texture of the metalness, or [`NO_TEXTURE`].
         metalness_texture: u32,
         /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
         coat_texture: u32,
-        /// 1 where a texture lies on the surface as on a box.
+        /// 1 if a texture uses box projection.
         has_box_projection: u32,
     }
 }
@@ -243,15 +242,15 @@ impl<T: Real> Material<T> {
         }
     }
 
-    /// The index of refraction behind the surface over that before it: inverted where a material that transmits is seen
-    /// from within.
+    /// Relative index of refraction, behind over before the surface: inverted if a transmitting material is seen from
+    /// within.
     #[inline(always)]
     pub fn ior_ahead(&self, is_inside: T::Mask) -> T {
         T::select(is_inside & self.transmits(), T::one() / self.ior, self.ior)
     }
 
-    /// The Fresnel factor's terms. From within, weight and tint have no effect: the interface is the bare dielectric, so
-    /// that what is reflected totally keeps its energy.
+    /// Terms of the Fresnel factor. From within, weight and tint have no effect: the interface is the bare dielectric, so
+    /// that total reflection conserves energy.
     #[inline(always)]
     pub fn fresnel_terms(&self, is_inside: T::Mask) -> FresnelTerms<T> {
         let is_bare = is_inside & self.transmits();
@@ -273,21 +272,21 @@ impl<T: Real> Material<T> {
         }
     }
 
-    /// The material where its textures make it the least metallic: what calls for a base or for transmission.
+    /// The material at the lowest metalness of its textures, which decides whether there is a base or transmission.
     pub fn least_metallic(&self) -> Self {
         let is_fixed = self.metalness_texture == NO_TEXTURE;
         let metalness = if is_fixed { self.metalness } else { T::zero() };
         Self { metalness, ..*self }
     }
 
-    /// True where a texture is looked up.
+    /// True if textured.
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
         let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
         others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4]
     }
 
-    /// True where some light may go straight on, as if the surface were not there.
+    /// True if some light may pass straight through the surface.
     #[inline(always)]
     pub fn has_holes(&self) -> bool {
         let is_masked = self.opacity.less(self.alpha_cutoff);
@@ -296,32 +295,32 @@ impl<T: Real> Material<T> {
         is_masked.any() || is_clear.any() || is_varied
     }
 
-    /// True where this flag is set.
+    /// True if the flag is set.
     #[inline(always)]
     pub fn has_flag(&self, flag: u32) -> bool {
         self.flags & flag != 0
     }
 
-    /// True where it changes from point to point: by a texture, or between the vertices.
+    /// True if it varies over the surface: by a texture or vertex colours.
     #[inline(always)]
     pub fn is_varied(&self) -> bool {
         self.is_textured() || self.has_flag(VERTEX_BASE | VERTEX_EMISSION)
     }
 
-    /// True where a Lambertian base shows.
+    /// Lanes with a visible Lambertian base.
     #[inline(always)]
     pub fn has_base(&self) -> T::Mask {
         let is_opaque = self.transmission_weight.less(T::one());
         is_opaque & self.metalness.less(T::one()) & T::zero().less(self.base_color.max_component())
     }
 
-    /// True where light goes through the surface.
+    /// Lanes that transmit.
     #[inline(always)]
     pub fn transmits(&self) -> T::Mask {
         T::zero().less(self.transmission_weight) & self.metalness.less(T::one())
     }
 
-    /// True where the specular lobe reflects anything: if not from without, then from within.
+    /// Lanes where the specular lobe reflects, from outside or from within.
     #[inline(always)]
     pub fn has_specular(&self) -> T::Mask {
         let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
@@ -330,24 +329,24 @@ impl<T: Real> Material<T> {
     }
 }
 
-/// The registry's entry with this index; the first one where there is none.
+/// The registry's entry with this index, or the first one.
 #[inline(always)]
 pub(super) fn by_index<E: Copy>(all: &[E], index: u32) -> E {
     all[(index as usize).min(all.len() - 1)]
 }
 
-/// How a surface point is lit and seen.
+/// Geometry of shading at a surface point.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<T: Real> {
     /// The shading frame, on the side of the viewer.
     pub frame: Frame<T>,
     /// The geometric normal, on the side of the viewer.
     pub normal: Vec3<T>,
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub wo: Vec3<T>,
     /// The shading normal without the normal texture, on the side of the viewer: a coat is smooth over it.
     pub coat_normal: Vec3<T>,
-    /// True where the viewer is on the back of the triangle: within the solid, if its mesh is closed.
+    /// True if the viewer is on the triangle's back: inside the solid, for a closed mesh.
     pub is_inside: T::Mask,
 }
 

@@ -1,5 +1,5 @@
-//! What the microfacet lobes share: GGX's distribution and the height-correlated Smith masking that goes with it.
-//! All vectors in the local frame, n = +z. Source: Walter et al. 2007; Heitz 2014 and 2018.
+//! Common part of the microfacet lobes: GGX's distribution and its height-correlated Smith masking. All vectors in the local
+//! frame, n = +z. Source: Walter et al. 2007; Heitz 2014 and 2018.
 
 use super::frame::{Frame, local_from_world};
 use super::fresnel::half_vector_cosine;
@@ -38,18 +38,18 @@ pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
 /// View, light and half vector in the local frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Facet<T> {
-    /// Towards the viewer.
+    /// Unit direction to the viewer.
     pub wo: Vec3<T>,
-    /// Towards the light.
+    /// Unit direction to the light.
     pub wi: Vec3<T>,
-    /// The facet's normal.
+    /// Unit normal of the facet.
     pub h: Vec3<T>,
     /// The cosine between the facet's normal and either direction, in [0, 1].
     pub cosine: T,
 }
 
-/// The facet that reflects `wi` to `wo`. Where they are nearly opposite their sum is short: it is taken before the
-/// rounding of the frame, which would turn it.
+/// The facet that reflects `wi` to `wo`. For nearly opposite directions their sum is short: it is computed before the
+/// rounding of the frame, which would rotate it.
 #[inline(always)]
 pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
     let h = normalize_or(wo + wi, frame.normal);
@@ -61,7 +61,7 @@ pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
     }
 }
 
-/// D(h) of GGX, so written that the tangential components are not lost where α is small.
+/// D(h) of GGX, written to keep the tangential components' precision for small α.
 #[inline(always)]
 pub fn ggx_distribution<T: Real>(alpha: Alpha<T>, h: Vec3<T>) -> T {
     let (x, y) = (h.x / alpha.x, h.y / alpha.y);
@@ -82,7 +82,7 @@ pub fn smith_g1_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>) -> T {
     T::from_f64(2.0) / (wo.z.abs() + smith_length(alpha, wo)).max(T::from_f64(1e-12))
 }
 
-/// Height-correlated masking and shadowing over cosθo: G2/cosθo; 0 where either direction is below the horizon.
+/// Height-correlated masking and shadowing over cosθo: G2/cosθo; 0 if either direction is below the horizon.
 #[inline(always)]
 pub fn smith_g2_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let sum = wo.z * smith_length(alpha, wi) + wi.z * smith_length(alpha, wo);

@@ -19,8 +19,8 @@ pub fn log1p<T: Real>(x: T) -> T {
     T::select(x.abs().less(c(0.01)), series, (T::one() + x).ln())
 }
 
-/// How often a layer with this share in [0, 1] of the light is sampled: as often, but one time in twenty at least, whichever
-/// of the two is small. Continuous where a share vanishes, so that it does not matter how 0 was rounded.
+/// Sampling probability of a layer with this share in [0, 1] of the light: the share itself, but at least 1/20 for the
+/// smaller side. Continuous at a share of 0, so that its rounding does not matter.
 #[inline(always)]
 pub fn sampled_share<T: Real>(share: T) -> T {
     let is_small = share.less(T::from_f64(0.5));
@@ -33,7 +33,7 @@ fn raised<T: Real>(small: T) -> T {
     small.max((T::from_f64(20.0) * small).min(T::from_f64(0.05)))
 }
 
-/// `v` scaled to length 1, or `fallback` where `v` is so short that its direction is rounding noise.
+/// `v` normalised, or `fallback` if `v` is so short that its direction is rounding noise.
 #[inline(always)]
 pub fn normalize_or<T: Real>(v: Vec3<T>, fallback: Vec3<T>) -> Vec3<T> {
     let square = v.dot(v);

@@ -1,11 +1,11 @@
-//! Colours by other primaries brought to those that all light here is counted in: linear Rec. 709 with a white of D65.
+//! Conversion of colour spaces to the working space: linear Rec. 709 with a white of D65.
 
 /// The places of a colour space's primaries and of its white on the CIE diagram (x, y).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Chromaticities {
     /// Red, green, blue.
     pub primaries: [[f64; 2]; 3],
-    /// What equal parts of them are.
+    /// Chromaticity of white: equal parts of the primaries.
     pub white: [f64; 2],
 }
 
@@ -30,11 +30,12 @@ const CONES_FROM_XYZ: Matrix = [
 pub struct NoSpace;
 
 impl Chromaticities {
-    /// Linear Rec. 709 from linear colours of this space; `None` where it is Rec. 709 to four digits. Its white becomes white;
-    /// but XYZ itself is no space with a white of its own, and is taken as it is.
+    /// Matrix to linear Rec. 709 from linear colours of this space; `None` if it is Rec. 709 to four digits. White maps to
+    /// white; but XYZ has no white of its own and is taken as it is.
     ///
     /// # Errors
-    /// Where its primaries span no space.
+    ///
+    /// If its primaries span no space.
     pub fn rec709_from(&self) -> Result<Option<Matrix>, NoSpace> {
         if self.is_near(&REC709.primaries) && is_near(self.white, REC709.white) {
             return Ok(None);
@@ -50,10 +51,11 @@ impl Chromaticities {
         is_finite.then_some(Some(matrix)).ok_or(NoSpace)
     }
 
-    /// The luminance of each primary, where white has 1.
+    /// Luminance of each primary, with white at 1.
     ///
     /// # Errors
-    /// Where its primaries span no space, or green is dark.
+    ///
+    /// If its primaries span no space, or green is dark.
     pub fn luminances(&self) -> Result<[f64; 3], NoSpace> {
         let [_, luminances, _] = self.xyz_from_rgb()?;
         (luminances[1] > 1e-3).then_some(luminances).ok_or(NoSpace)
@@ -64,12 +66,13 @@ impl Chromaticities {
         std::iter::zip(self.primaries, primaries).all(|(own, other)| is_near(own, *other))
     }
 
-    /// CIE XYZ from linear colours of this space.
+    /// Matrix to CIE XYZ from linear colours of this space.
     ///
     /// # Errors
-    /// Where its primaries span no space.
+    ///
+    /// If its primaries span no space.
     pub fn xyz_from_rgb(&self) -> Result<Matrix, NoSpace> {
-        // Not over y: of the primaries of XYZ two have none.
+        // Not divided by y, which is 0 for two primaries of XYZ.
         let columns = self.primaries.map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
         let strengths = transformed(&inverse(&unscaled)?, white_xyz(self.white));
@@ -96,8 +99,8 @@ pub fn transformed(matrix: &Matrix, color: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| (0..3).map(|i| row[i] * color[i]).sum())
 }
 
-/// What turns linear Rec. 709 in which one colour is white into linear Rec. 709 in which another is, by Bradford's adaptation;
-/// nothing changes where a colour is too dark to be white.
+/// Bradford's chromatic adaptation in linear Rec. 709 from one white to another; the identity if a colour is too dark to be
+/// white.
 pub fn rec709_adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
     let matrix = REC709
         .xyz_from_rgb()
@@ -105,8 +108,8 @@ pub fn rec709_adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
     matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 }
 
-/// What scales the cones' responses such that the white `from` becomes the white `to`, both and the result in the colours from
-/// which `cones_from` leads.
+/// Scaling of the cones' responses from the white `from` to the white `to`, both and the result in the space of
+/// `cones_from`.
 fn adaptation(cones_from: &Matrix, from: [f64; 3], to: [f64; 3]) -> Result<Matrix, NoSpace> {
     let [from, to] = [from, to].map(|white| transformed(cones_from, white));
     let gain: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { to[i] / from[i] } else { 0.0 }));

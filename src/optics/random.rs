@@ -1,14 +1,14 @@
-//! Counter-based random numbers: (pixel, sample, dimension) gives the same bits on every processor.
+//! Counter-based random numbers: (pixel, sample, dimension) gives the same bits on every CPU and GPU.
 //!
-//! A *dimension* counts the pairs of numbers that a path draws. Two sequences: `Independent` hashes the three counters;
-//! `Sobol` takes the first two dimensions of Sobol's sequence, shuffled and Owen-scrambled for each pixel and pair by
-//! the hash of Laine and Karras (Burley, "Practical hash-based Owen scrambling", JCGT 2020; constants by Vegdahl).
+//! A *dimension* counts a path's pairs of numbers. Two sequences: `Independent` hashes the three counters; `Sobol` takes the
+//! first two dimensions of the Sobol sequence, shuffled and Owen-scrambled per pixel and pair by the hash of Laine and
+//! Karras (Burley, "Practical hash-based Owen scrambling", JCGT 2020; constants by Vegdahl).
 
 use super::real::Real;
 use crate::named::named;
 
 named! {
-    /// Which numbers a render draws.
+    /// Random sequence of a render.
     #[derive(Default)]
     Sequence {
         #[default]
@@ -38,9 +38,9 @@ pub fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) 
     }
 }
 
-/// The stream of sample number `sample` of a render. Even and odd samples are two independent randomisations of Sobol's
-/// points, each in its order: so the difference of their means tells the error of the whole, which the samples' spread
-/// does not where they are not independent (docs/MATHEMATICS.md, section 8).
+/// Random state of sample number `sample` of a render. Even and odd samples are two independent randomisations of the Sobol
+/// sequence, each in its order. So the difference of their means gives the error of the whole, which the samples' spread
+/// does not if they are dependent (docs/MATHEMATICS.md, section 8).
 #[inline(always)]
 pub fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) -> RandomState {
     let state = random_state(x, y, seed, sample, sequence);
@@ -147,7 +147,7 @@ fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
     ]
 }
 
-/// The same of some paths at once, by their keys and samples. Written so that compilers turn it into lanes.
+/// The same for several paths, by their keys and samples. Written so that compilers vectorise it.
 #[inline(always)]
 fn random_pairs_bits<T: Real>(
     keys: &T::Each<u32>,

@@ -1,9 +1,9 @@
-//! The number type that the optics are written over: f32 to render with, f64 as the tests' oracle, and eight or sixteen f32
-//! side by side ([`lanes`](super::lanes)), which is how the processor renders.
+//! The number type of the optics: f32 to render with, f64 as the tests' oracle, and SIMD lanes of eight or sixteen f32
+//! ([`lanes`](super::lanes)), with which the CPU renders.
 //!
-//! Comparisons give a [`Mask`] and choices go through [`Real::select`]. What is generic over [`Real`] serves all three: where
-//! it branches, it asks whether a mask holds in *any* lane, and keeps what each lane needs by `select`. What can only be done
-//! for one number at a time is generic over [`Scalar`], and lanes call it one by one.
+//! Comparisons return a [`Mask`], and selections use [`Real::select`]. Code generic over [`Real`] serves all three: its
+//! branches test whether a mask holds in *any* lane, and `select` keeps each lane's value. Code for one number at a time is
+//! generic over [`Scalar`]; lanes call it one by one.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -49,7 +49,7 @@ impl Mask for bool {
     }
 }
 
-/// A real number with the elementary functions that the optics need; one a lane, where there are several.
+/// A real number, or one per lane, with the elementary functions that the optics need.
 pub trait Real:
     Copy
     + Debug
@@ -64,14 +64,14 @@ pub trait Real:
     + Neg<Output = Self>
     + AddAssign
 {
-    /// What comparisons of this type give.
+    /// Result type of comparisons.
     type Mask: Mask;
     /// The number in one lane.
     type Scalar: Scalar;
     /// Something for each lane.
     type Each<E: Copy + Default>: Copy + AsRef<[E]>;
 
-    /// How many numbers go side by side.
+    /// Number of lanes.
     const LANES: usize;
 
     /// The nearest value of this type, the same in each lane.
@@ -80,9 +80,9 @@ pub trait Real:
     fn less(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// The smaller of the two; `other` where one is NaN, as one instruction has it.
+    /// Minimum; `other` if either is NaN, as a single instruction computes it.
     fn min(self, other: Self) -> Self;
-    /// The larger of the two; `other` where one is NaN.
+    /// Maximum; `other` if either is NaN.
     fn max(self, other: Self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
@@ -103,7 +103,7 @@ pub trait Real:
     /// The largest integer that is not above `self`.
     fn floor(self) -> Self;
 
-    /// What `f` says for each lane.
+    /// The results of `f` per lane.
     fn each<E: Copy + Default>(f: impl FnMut(usize) -> E) -> Self::Each<E>;
     /// The numbers of the lanes.
     fn from_each(numbers: &Self::Each<Self::Scalar>) -> Self;
@@ -111,14 +111,14 @@ pub trait Real:
     fn to_each(self) -> Self::Each<Self::Scalar>;
     /// The first numbers of a list, which has as many as there are lanes or more.
     fn load(numbers: &[Self::Scalar]) -> Self;
-    /// Puts the numbers of the lanes first in a list.
+    /// Stores the lanes at the start of a slice.
     fn store(self, numbers: &mut [Self::Scalar]);
-    /// Runs `f`, compiled for the instructions that these numbers need. A function that is not inlined must begin with it, as
-    /// what it is inlined into is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
+    /// Runs `f`, compiled for the lanes' instruction set. A function that is not inlined must start with it, because its
+    /// caller is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
     fn vectorize<R>(f: impl FnOnce() -> R) -> R;
 
-    /// Result of `f`, which is compiled out of line: it stands once in the machine code for each type of number, however
-    /// many callers it has. A compiler's time grows faster than the size of a function (docs/BUILD.md).
+    /// Runs `f` out of line: it is compiled once per number type, however many callers it has. A compiler's time grows
+    /// faster than the size of a function (docs/BUILD.md).
     #[inline(never)]
     fn out_of_line<R>(f: impl FnOnce() -> R) -> R {
         Self::vectorize(f)
@@ -144,17 +144,17 @@ pub trait Real:
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
-    /// √max(0, x): the square root of what rounding may have pushed below zero.
+    /// √max(0, x), for values that rounding may have made negative.
     #[inline(always)]
     fn safe_sqrt(self) -> Self {
         self.max(Self::zero()).sqrt()
     }
-    /// `self ≠ other`; false where one is NaN.
+    /// `self ≠ other`; false if either is NaN.
     #[inline(always)]
     fn differs(self, other: Self) -> Self::Mask {
         self.less(other) | other.less(self)
     }
-    /// Where the lane holds no number.
+    /// Lanes with NaN.
     #[inline(always)]
     fn is_nan(self) -> Self::Mask {
         let below = self.less(Self::one());
@@ -281,7 +281,7 @@ macro_rules! by_the_system {
     };
 }
 
-/// Those of [`elementary`], which lanes have as well: the same bits.
+/// The functions of [`elementary`], which SIMD lanes use as well: the same bits.
 macro_rules! by_arithmetic {
     ($type:ident) => {
         by_arithmetic! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }

@@ -1,10 +1,9 @@
-//! Refraction at a dielectric interface: of a direction, and at each of the facets of a rough surface.
+//! Refraction at a dielectric interface: of a direction, and at the facets of a rough surface.
 //!
-//! `eta` is the index of refraction behind the surface (on the side away from `wo`) over that before it. What is carried
-//! along a path is the basic radiance, radiance over the square of the index of refraction: it does not change where
-//! light is refracted, so that no factor of `eta`² appears (Nicodemus 1963; Veach 1997, section 5.2). Source of the
-//! facets' density and weight: Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007,
-//! equations 16, 17 and 21.
+//! `eta` is the relative index of refraction: behind the surface (the side away from `wo`) over before it. Paths carry basic
+//! radiance, radiance over the square of the index of refraction. Refraction does not change it, so that no factor of `eta`²
+//! appears (Nicodemus 1963; Veach 1997, section 5.2). Source of the facets' density and weight: Walter et al., "Microfacet
+//! models for refraction through rough surfaces", EGSR 2007, equations 16, 17 and 21.
 
 use super::frame::{Frame, local_from_world};
 use super::lobe::{Facets, LobeShape};
@@ -16,14 +15,14 @@ use super::vector::Vec3;
 /// A refracted direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Refracted<T: Real> {
-    /// Behind the surface; straight on where the reflection is total.
+    /// Unit direction behind the surface; undeviated under total reflection.
     pub wi: Vec3<T>,
-    /// True where all light is reflected.
+    /// Lanes of total reflection.
     pub is_total: T::Mask,
 }
 
-/// `eta`² cos² of the refracted angle for the cosine before the surface; negative under total reflection. So written
-/// that nothing cancels where both sides are alike.
+/// `eta`² cos² of the refracted angle, from the cosine before the surface; negative under total reflection. Written without
+/// cancellation for similar indices.
 #[inline(always)]
 pub fn refracted_square<T: Real>(cosine: T, eta: T) -> T {
     (eta - T::one()) * (eta + T::one()) + cosine * cosine
@@ -41,14 +40,14 @@ pub fn refracted<T: Real>(wo: Vec3<T>, axis: Vec3<T>, eta: T) -> Refracted<T> {
     }
 }
 
-/// What the facet that mirrors `wo` to `mirrored` refracts.
+/// Refraction at the facet that mirrors `wo` to `mirrored`.
 #[inline(always)]
 pub fn facet_refracted<T: Real>(wo: Vec3<T>, mirrored: Vec3<T>, eta: T) -> Refracted<T> {
     refracted(wo, normalize_or(wo + mirrored, wo), eta)
 }
 
-/// The vector along the normal of the facet that refracts `wo` to `wi`, on the side of `wo` where there is such a facet;
-/// its length is |wo·h + eta wi·h|.
+/// Normal (not unit) of the facet that refracts `wo` to `wi`, on the side of `wo` if such a facet exists; its length is
+/// |wo·h + eta wi·h|.
 #[inline(always)]
 pub fn refracting_normal<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> Vec3<T> {
     let sum = wo + wi * eta;
@@ -63,9 +62,9 @@ pub fn refracting_cosines<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> [T; 2] {
     [wo.dot(h).clamp(zero, one), (-wi.dot(h)).clamp(zero, one)]
 }
 
-/// What turns the density of the direction that a facet mirrors `wo` to into the density of the refracted `wi`, per
-/// steradian: dωh/dωi = eta² |wi·h|/(wo·h + eta wi·h)² over dωh/dω of the mirrored one, 1/(4 wo·h). 0 where no facet
-/// refracts one to the other, and where `wi` is not below the shading normal's horizon: such samples are lost. `along`: that facet's [`refracting_normal`].
+/// Factor from the density of a facet's mirror direction of `wo` to that of the refracted `wi`, per steradian: dωh/dωi =
+/// eta² |wi·h|/(wo·h + eta wi·h)² over dωh/dω of the mirrored one, 1/(4 wo·h). 0 if no facet refracts one to the other, and
+/// if `wi` is not below the shading normal's horizon: such samples are lost. `along`: that facet's [`refracting_normal`].
 #[inline(always)]
 pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>, eta: T, along: Vec3<T>) -> T {
     let square = along.dot(along).max(T::from_f64(1e-30));
@@ -78,9 +77,9 @@ pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>,
     T::select(is_refracted, value, T::zero())
 }
 
-/// Evaluate over density of a direction refracted at a facet, Fresnel's share left aside: Smith's masking of both
-/// directions, each by itself as they are on different sides, over that of the drawn normals. 0 where `wi` is not below
-/// the shading normal's horizon.
+/// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
+/// directions, separately as they are on different sides, over that of the sampled normals. 0 if `wi` is not below the
+/// shading normal's horizon.
 #[inline(always)]
 pub fn facet_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let alpha = if shape.lobe.is_anisotropic() {

@@ -1,12 +1,12 @@
-//! Tables of materials: all of them lie in one array of numbers, each beginning at a multiple of [`NODE_LENGTH`], since the
-//! GPU loads so many at once (`table_numbers` in `shaders/scene/layout.wgsl`).
+//! Tables of materials, all in one array of numbers. Each starts at a multiple of [`NODE_LENGTH`], which the GPU loads at
+//! once (`table_numbers` in `shaders/scene/layout.wgsl`).
 
 use super::real::Real;
 
 /// Numbers of a node.
 pub const NODE_LENGTH: usize = 4;
 
-/// Puts a table behind the others, and returns where it begins.
+/// Appends a table and returns its start.
 pub fn append_table(tables: &mut Vec<f32>, table: &[f32]) -> u32 {
     let first = tables.len();
     tables.extend(table);
@@ -20,8 +20,7 @@ pub fn look_up_number<const NUMBER: usize, T: Real>(table: &[f32], node: T) -> T
     T::look_up(&table[NUMBER..], T::from_f64(NODE_LENGTH as f64) * node)
 }
 
-/// The last of the equidistant nodes that is not above a value in [0, 1], at most the last but one, and how far the value is
-/// beyond it.
+/// The last equidistant node not above a value in [0, 1], at most the last but one, and the offset of the value beyond it.
 #[inline(always)]
 pub fn node_below<T: Real>(value: T, nodes: usize) -> [T; 2] {
     let last = T::from_f64(nodes as f64 - 1.0);

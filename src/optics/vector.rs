@@ -1,5 +1,5 @@
-//! Three numbers: a direction, a point or a linear RGB colour. Generic where glam is not, so that one formula serves
-//! f32 and f64.
+//! A vector of three numbers: a direction, a point or a linear RGB colour. Unlike glam's it is generic, so that one formula
+//! serves f32 and f64.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -66,7 +66,7 @@ impl<T: Real> Vec3<T> {
         let (x, y, z) = (self.x.to_each(), self.y.to_each(), self.z.to_each());
         T::each(|lane| vec3(x.as_ref()[lane], y.as_ref()[lane], z.as_ref()[lane]))
     }
-    /// True where a component is not 0.
+    /// Lanes with a component other than 0.
     #[inline(always)]
     pub fn is_any(self) -> T::Mask {
         let zero = T::zero();

@@ -20,9 +20,9 @@ pub fn uniform_disc<T: Real>(xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
-/// Whether `number` in [0, 1) lies below `share`, and where in its part of [0, 1) it lies, stretched to [0, 1) again. So
-/// one number chooses (a layer, a kind of light) and draws from what it chose: of numbers that are spread evenly, as
-/// Sobol's points are, each choice gets numbers that are. Chosen by another number they would be picked at random.
+/// Whether `number` in [0, 1) is below `share`, and the number remapped to [0, 1) within its part. So one number chooses (a
+/// layer, a kind of light) and is used again. Of well distributed numbers, as the Sobol sequence, each choice gets well
+/// distributed ones. With a separate number for the choice they would be picked at random.
 #[inline(always)]
 pub fn split<T: Real>(number: T, share: T) -> (T::Mask, T) {
     let is_below = number.less(share);

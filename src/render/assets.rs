@@ -1,4 +1,4 @@
-//! What documents name and sessions keep: models, their textures and geometry, environments.
+//! Cache of assets: models, their textures and geometry, environments.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
@@ -13,22 +13,22 @@ use crate::scene::picture::read_texture;
 use crate::scene::texture::{Pack, TextureAssignment, Textures};
 use crate::scene::{self, Budget, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource, Texture};
 
-/// What a geometry is made of: model, ground, area lights, hidden objects.
+/// Key of a geometry: model, ground, area lights, hidden objects.
 type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
 
-/// A model's file, and what is shown of it.
+/// Key of a model: source and options.
 type ModelKey = (ModelSource, ModelOptions);
 
-/// A picture's file, and whether its numbers are read as colours.
+/// Key of a texture map: file, and whether it is read as colours.
 type PictureKey = (PathBuf, bool);
 
 /// A model's textures, and the user's own, each with whether its green channel is flipped.
 type PackKey = (ModelKey, Vec<(PictureKey, bool)>);
 
-/// An environment's file, and what its numbers stand for.
+/// Key of an environment: source and encoding.
 type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
 
-/// Memory budget in bytes. The most recently used asset of each kind is kept whatever its size.
+/// Memory budget in bytes. The most recently used asset of each kind is kept at any size.
 const MEMORY: usize = 1 << 30;
 
 /// Geometries kept per model: each position of a dragged light makes a new one, built from one that is kept.
@@ -37,23 +37,23 @@ const GEOMETRIES_OF_MODEL: usize = 2;
 /// Texture assignments that are kept.
 const TEXTURES: usize = 8;
 
-/// What was asked for lately: an edit that leaves a source alone costs nothing, and neither does going back and forth between
-/// two, as comparisons and studies do. Within 1 GiB; what was not used for longest goes first. Clones share what they
-/// keep, so that two sessions with the same scene load it once.
+/// A cache of recently used assets, up to 1 GiB, least recently used first out. An edit that keeps a source costs nothing,
+/// nor does alternating between two, as comparisons and studies do. Clones share their contents, so that two sessions with
+/// the same scene load it once.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     kept: Arc<Mutex<Kept>>,
     loading: Loading,
 }
 
-/// What files hold after they were read again.
+/// Assets after a reload.
 #[derive(Clone, Debug)]
 pub struct Reloaded {
-    /// The model as it was, where it is known.
+    /// The model before, if known.
     pub before: Option<Arc<Model>>,
-    /// The model.
+    /// The reloaded model.
     pub model: Arc<Model>,
-    /// The environment.
+    /// The reloaded environment.
     pub environment: Arc<Environment>,
 }
 
@@ -108,10 +108,11 @@ impl Assets {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The model of a source, loaded unless it is kept.
+    /// The model of a source, loaded if not cached.
     ///
     /// # Errors
-    /// Names the file, what is wrong with it and what to do.
+    ///
+    /// One line with the file, the fault and the remedy.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, SessionError> {
         let mut kept = self.kept();
         let model = kept.model(&(source.clone(), options.clone()), &self.loading)?;
@@ -119,9 +120,10 @@ impl Assets {
         Ok(model)
     }
 
-    /// The textures of a source, and those of the user's own on its slots, packed. Missing ones are reported.
+    /// The packed textures of a source, with users' maps on its slots. Missing ones are reported.
     ///
     /// # Errors
+    ///
     /// As [`Assets::model`].
     pub fn textures(
         &self,
@@ -154,10 +156,11 @@ impl Assets {
         Ok(geometry)
     }
 
-    /// The environment of a source.
+    /// The environment of a source, loaded if not cached.
     ///
     /// # Errors
-    /// Names the file, what is wrong with it and what to do.
+    ///
+    /// One line with the file, the fault and the remedy.
     pub fn environment(
         &self,
         source: &EnvironmentSource,
@@ -169,7 +172,7 @@ impl Assets {
         Ok(environment)
     }
 
-    /// Keeps a model under a name of its own, as if it had been loaded from there.
+    /// Inserts a model as if it had been loaded from `source`.
     pub fn keep_model(&self, source: ModelSource, model: Model) {
         let key = (source, ModelOptions::default());
         let mut kept = self.kept();
@@ -188,10 +191,11 @@ impl Assets {
         kept.environments.put(key, Arc::new(environment), now);
     }
 
-    /// Reads the files of a model and of an environment again and forgets all others; what they hold now, and the model
-    /// before. Where either cannot be read, all stays as it is.
+    /// Reloads a model and an environment and drops all others. Returns them, and the model before. If either fails, nothing
+    /// changes.
     ///
     /// # Errors
+    ///
     /// As [`Assets::model`] and [`Assets::environment`].
     pub fn reload(
         &self,
@@ -258,7 +262,7 @@ impl Kept {
         Ok(textures)
     }
 
-    /// The texels of a model's and the user's own textures, whatever their placement.
+    /// The packed texels of a model's and users' maps, for any mapping.
     fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment], loading: &Loading) -> Arc<Pack> {
         let now = self.now();
         let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
@@ -323,8 +327,8 @@ impl Kept {
         Ok(environment)
     }
 
-    /// Lets go what was not used for longest, until what is kept fits the memory. Hierarchies, which are built when they are
-    /// first needed, count from then on.
+    /// Evicts the least recently used assets until the rest fits the memory budget. Hierarchies count from when they are
+    /// built.
     fn tidy(&mut self) {
         loop {
             let mut shelves: [&mut dyn Tidied; 6] = [

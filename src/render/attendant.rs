@@ -6,12 +6,12 @@ use super::progress::Progress;
 use super::session::Session;
 use crate::document::{Denoise, Document};
 
-/// By how much samples grow from one denoised picture to the next while its error is aimed at.
+/// Factor by which samples grow between denoised images, while their error is the goal.
 const GROWTH: f64 = 1.5;
 
-/// Denoises what a session renders: at its end, and on the way where rendering stops at the error of what is shown.
+/// Denoises a session's render: at its end, and repeatedly if its error is the stop criterion.
 pub struct Attendant {
-    /// `None` where nothing is denoised, or nothing can be.
+    /// `None` without denoising.
     denoiser: Option<Denoiser>,
     how: Denoise,
     /// Samples a pixel at which the error is looked at next.
@@ -20,8 +20,7 @@ pub struct Attendant {
 }
 
 impl Attendant {
-    /// The denoiser that a document asks for. Where there is none, a warning says why, once, and the samples are shown
-    /// as they are.
+    /// The denoiser that a document requests. If there is none, it warns once, and the samples are shown.
     pub fn new(document: &Document) -> Self {
         let mut attendant = Self {
             denoiser: None,
@@ -38,14 +37,15 @@ impl Attendant {
         attendant
     }
 
-    /// To be called after each step: tells the session how far the denoised picture is from the truth, where that is
-    /// what it aims at and a round is over.
+    /// Call after each step. At the end of a round, it reports the denoised image's error to the session, if that is the
+    /// goal.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn attend(&mut self, session: &mut Session, progress: &Progress) -> Result<(), SessionError> {
         let is_due = progress.noise_wanted.is_some()
-            && progress.aims_at_denoised
+            && progress.targets_denoised
             && progress.mean_samples >= self.next_samples.max(2.0)
             && session.is_between_rounds()
             && !progress.is_done;
@@ -56,9 +56,10 @@ impl Attendant {
         Ok(())
     }
 
-    /// The denoised picture, where there is one; its time includes that of those before it.
+    /// The denoised image, if requested; its time includes earlier ones.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn finish(&mut self, session: &mut Session) -> Result<Option<Denoised>, SessionError> {
         self.next_samples = 0.0;
@@ -75,7 +76,7 @@ impl Attendant {
             Ok(denoised) => {
                 self.seconds += denoised.seconds;
                 if let Some(error) = denoised.error {
-                    session.note_denoised(error);
+                    session.set_denoised_error(error);
                 }
                 Ok(Some(denoised))
             }

@@ -7,10 +7,10 @@ use std::time::Duration;
 
 use crate::panics::caught;
 
-/// How long to wait before looking whether work that is held may go on.
+/// Interval at which held work checks whether to continue.
 const HOLD_STEP: Duration = Duration::from_millis(25);
 
-/// Answers queries on a thread of its own. A query that has not been begun when the next one comes is forgotten.
+/// Answers queries on a thread of its own. A query that has not been started is replaced by the next one.
 pub struct Background<Q, A> {
     shared: Arc<Shared<Q, A>>,
 }
@@ -32,28 +32,28 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the work reports to.
-pub struct Desk<'a, Q, A> {
+/// Handle through which the work reports.
+pub struct Responder<'a, Q, A> {
     shared: &'a Shared<Q, A>,
     repaint: &'a dyn Fn(),
 }
 
-impl<Q, A> Desk<'_, Q, A> {
+impl<Q, A> Responder<'_, Q, A> {
     /// Shows an answer, which may be followed by a better one.
     pub fn publish(&self, answer: A) {
         *lock(&self.shared.answer) = Some(answer);
         (self.repaint)();
     }
 
-    /// Waits while `hold` is set; false once the answer is no longer wanted.
-    pub fn may_go_on(&self, hold: &AtomicBool) -> bool {
+    /// Waits while `hold` is set. Returns false once superseded.
+    pub fn wait_while_held(&self, hold: &AtomicBool) -> bool {
         while hold.load(Ordering::Relaxed) && !self.is_superseded() {
             std::thread::sleep(HOLD_STEP);
         }
         !self.is_superseded()
     }
 
-    /// Whether the answer is no longer wanted.
+    /// Whether a newer query has superseded this one.
     pub fn is_superseded(&self) -> bool {
         let orders = lock(&self.shared.orders);
         orders.quit || orders.query.is_some()
@@ -68,7 +68,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
     pub fn spawn(
         name: &str,
         repaint: impl Fn() + Send + 'static,
-        mut work: impl FnMut(Q, &Desk<'_, Q, A>) + Send + 'static,
+        mut work: impl FnMut(Q, &Responder<'_, Q, A>) + Send + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
             orders: Mutex::new(Orders {
@@ -84,13 +84,13 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
             while let Some(query) = next(&of_thread) {
-                let desk = Desk {
+                let responder = Responder {
                     shared: &of_thread,
                     repaint: &repaint,
                 };
                 *lock(&of_thread.failure) = None;
                 let _at_work = super::quiet::at_work();
-                if let Err(why) = caught(|| work(query, &desk)) {
+                if let Err(why) = caught(|| work(query, &responder)) {
                     *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
                 }
                 // Free again before the window looks.
@@ -101,7 +101,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         Ok(Self { shared })
     }
 
-    /// Asks.
+    /// Submits a query.
     pub fn ask(&self, query: Q) {
         lock(&self.shared.orders).query = Some(query);
         self.shared.ordered.notify_one();
@@ -112,7 +112,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         lock(&self.shared.answer).clone()
     }
 
-    /// Why the latest query came to nothing, where the work panicked; the thread goes on.
+    /// The panic's message of the latest query, if the work panicked; the thread continues.
     pub fn failure(&self) -> Option<String> {
         lock(&self.shared.failure).clone()
     }
@@ -165,9 +165,9 @@ mod tests {
 
     #[test]
     fn a_panic_is_told_and_leaves_the_thread_free() {
-        let work = |query: u32, desk: &Desk<'_, u32, u32>| {
+        let work = |query: u32, responder: &Responder<'_, u32, u32>| {
             assert!(query != 2, "two, on purpose");
-            desk.publish(query);
+            responder.publish(query);
         };
         let background = Background::spawn("failing", || {}, work).expect("a thread");
         background.ask(1);

@@ -1,8 +1,8 @@
-//! Which of the engines, and which way for rays, is the fastest on this machine?
+//! Calibration: the fastest engine and traversal on this machine.
 //!
-//! Measured on a small picture of the default document while nothing else is at work, by turns, and remembered for this
-//! adapter, driver and version: without a hardware GPU the processor's engine and software Vulkan, and on any adapter that
-//! has ray queries those and our own traversal. Where pictures render at rates that say otherwise, it is measured again.
+//! Measured in interleaved trials on a small image of the default document while the process is idle, and stored per
+//! adapter, driver and version. Without a hardware GPU the candidates are the CPU engine and software Vulkan; on adapters
+//! with ray queries, those and our own traversal. If rates of real renders contradict the result, it is measured again.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,24 +18,24 @@ use crate::document::Document;
 use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
 use crate::job::Job;
 
-/// Side of the picture that is measured on, in pixels.
+/// Side of the measured image, in pixels.
 const SIZE: u32 = 96;
-/// How often the candidates are measured in turns, and how long each time: three of them take less than a second of turns and
-/// rests; warming kernels that the driver has in its cache takes about another.
+/// Number of interleaved trials and length of each: three candidates take less than a second with pauses. Warming cached
+/// kernels takes about another second.
 const TURNS: usize = 5;
 const DURATION: Duration = Duration::from_millis(40);
-/// How long it must have been quiet before a turn, and how often is looked.
+/// Quiet time needed before a trial, and the polling interval.
 const REST: Duration = Duration::from_millis(50);
 const GLANCE: Duration = Duration::from_millis(20);
-/// By how much software Vulkan must be slower than the processor on the same picture for another measurement.
+/// Factor by which software Vulkan must be slower than the CPU engine on the same image to trigger another measurement.
 const DOUBT: f64 = 1.1;
 /// Machines that are remembered: an adapter each, with one driver.
 const REMEMBERED: usize = 8;
 
-/// What is measured against each other.
+/// Candidates of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 enum Candidate {
-    /// The processor's engine.
+    /// The CPU engine.
     Processor,
     /// The GPU's, for rays that go this way.
     Gpu(Traversal),
@@ -45,7 +45,7 @@ impl Candidate {
     const OWN: Self = Self::Gpu(Traversal::Own);
     const QUERIES: Self = Self::Gpu(Traversal::RayQueries);
 
-    /// All that there are with an adapter.
+    /// All candidates for an adapter.
     fn with(adapter: &GpuAdapter) -> Vec<Self> {
         let mut all = vec![Self::OWN];
         if adapter.is_software() {
@@ -57,7 +57,7 @@ impl Candidate {
         all
     }
 
-    /// Its name beside others, the processor's engine among them or not.
+    /// Its name; `is_software` if the CPU engine is among the candidates.
     fn name(self, is_software: bool) -> &'static str {
         match (self, is_software) {
             (Self::Processor, _) => "the processor engine",
@@ -69,8 +69,8 @@ impl Candidate {
     }
 }
 
-/// Opens whichever engine is faster. Where that is to be measured and the caller must not wait, the processor's is opened:
-/// compiling a kernel to measure takes software Vulkan some seconds, and what is found counts the next time.
+/// Opens the faster engine. If that is unknown and the caller must not wait, opens the CPU engine and measures for the next
+/// start: compiling a kernel takes software Vulkan seconds.
 pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     let Ok(adapter) = GpuAdapter::find(AdapterKind::Software) else {
         return cpu("there is no Vulkan driver".to_owned());
@@ -78,7 +78,7 @@ pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     let failed = || cpu("software Vulkan does not run the renderer".to_owned());
     let verdict = match remembered(&adapter) {
         Some(verdict) => verdict,
-        // Who waits does nothing else.
+        // A caller that waits does nothing else.
         None if may_wait => match measured_and_remembered(&adapter, &Quiet::new()) {
             Some(verdict) => verdict,
             None => return failed(),
@@ -104,9 +104,8 @@ pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     }
 }
 
-/// Which way rays go on an adapter, and what there is to say about it: ray queries where they were chosen or measured to be
-/// faster. Where that is to be measured and the caller must not wait, it is measured for the next time. Software Vulkan is
-/// measured where it stands for election against the processor alone.
+/// Traversal on an adapter, with its reason: ray queries if chosen or measured to be faster. If that is unknown and the
+/// caller must not wait, measures for the next start. Software Vulkan is measured together with the CPU engine.
 pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, String) {
     let said = |traversal, what: &str| (traversal, what.to_owned());
     match (RayQueries::chosen(), adapter.has_ray_queries()) {
@@ -135,8 +134,8 @@ pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, Str
     }
 }
 
-/// Takes note of how fast software Vulkan renders a picture beside the processor, both in samples a second: where the
-/// processor is faster, what was measured does not hold, and is measured again.
+/// Compares the rates of software Vulkan and the CPU engine on a render, in samples per second. If the CPU engine is faster,
+/// the stored measurement is invalid and is repeated.
 pub(super) fn compare_rates(software: f64, processor: f64) {
     if is_doubtful(software, processor) && measure_when_quiet(AdapterKind::Software) {
         log::info!(
@@ -150,7 +149,7 @@ fn is_doubtful(software: f64, processor: f64) -> bool {
     software > 0.0 && processor > DOUBT * software
 }
 
-/// What the measurement holds for.
+/// Key of a measurement.
 fn machine(adapter: &GpuAdapter) -> String {
     format!(
         "{} | {} | {} threads | {} | in a quiet time",
@@ -161,7 +160,7 @@ fn machine(adapter: &GpuAdapter) -> String {
     )
 }
 
-/// Measures on a thread of its own; false where that is under way, or was done since the start.
+/// Measures on a background thread. Returns false if that is in progress or was done since the start.
 fn measure_when_quiet(kind: AdapterKind) -> bool {
     static IS_MEASURED: AtomicBool = AtomicBool::new(false);
     if IS_MEASURED.swap(true, Ordering::Relaxed) {
@@ -179,17 +178,17 @@ fn measure_when_quiet(kind: AdapterKind) -> bool {
     spawned.is_ok()
 }
 
-/// What was measured.
+/// A measurement.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Verdict {
     /// Adapter, driver, threads, version.
     machine: String,
-    /// Those that worked, each with its samples a second over those of the first.
+    /// Working candidates, each with its rate relative to the first.
     ratios: Vec<(Candidate, f64)>,
 }
 
 impl Verdict {
-    /// The same of some of the candidates.
+    /// The measurement of some candidates.
     fn of(mut self, is_wanted: impl Fn(Candidate) -> bool) -> Self {
         self.ratios.retain(|(candidate, _)| is_wanted(*candidate));
         self
@@ -239,12 +238,12 @@ impl Verdict {
 struct Contestant {
     candidate: Candidate,
     engine: Engine,
-    /// Threads of its own for the processor, as software Vulkan has its own, of the same priority.
+    /// Threads for the CPU engine, as software Vulkan has its own, of the same priority.
     threads: Option<rayon::ThreadPool>,
 }
 
 impl Contestant {
-    /// `None` where it does not work here.
+    /// `None` if it does not work here.
     fn open(candidate: Candidate, adapter: &GpuAdapter, job: &Arc<Job>) -> Option<Self> {
         let (engine, threads) = match candidate {
             Candidate::Processor => {
@@ -274,11 +273,11 @@ impl Contestant {
     }
 }
 
-/// Measures, and remembers it; `None` where the GPU does not render.
+/// Measures and stores the result; `None` if the GPU does not render.
 fn measured_and_remembered(adapter: &GpuAdapter, quiet: &Quiet) -> Option<Verdict> {
     let verdict = measured(adapter, quiet)?;
     let written = verdict_path().and_then(|path| write_verdict(&path, &verdict));
-    // A cache: where it can't be written, the next start measures again.
+    // A cache: if it cannot be written, the next start measures again.
     if written.is_none() {
         log::debug!("the engines' measurement could not be cached");
     }
@@ -305,8 +304,8 @@ fn measured(adapter: &GpuAdapter, quiet: &Quiet) -> Option<Verdict> {
     })
 }
 
-/// The rates of so many candidates over that of the first, the middle one of several turns: each turn measures all of them,
-/// every other one backwards. Turns wait until it has been quiet for a while, and those that work fell into do not count.
+/// Rates of `count` candidates relative to the first: medians of interleaved trials, every other one in reverse order.
+/// Trials wait for a quiet period, and disturbed ones do not count.
 fn ratios_by_turns(quiet: &Quiet, count: usize, mut rate: impl FnMut(usize) -> Option<f64>) -> Option<Vec<f64>> {
     let mut turns: Vec<Vec<f64>> = Vec::new();
     while turns.len() < TURNS {
@@ -373,12 +372,12 @@ fn verdict_path() -> Option<PathBuf> {
     )
 }
 
-/// What is known of an adapter.
+/// The stored measurement of an adapter.
 fn remembered(adapter: &GpuAdapter) -> Option<Verdict> {
     read_verdict(&verdict_path()?, &machine(adapter))
 }
 
-/// The verdicts that a file holds, the oldest first; none where it can't be read.
+/// The stored measurements, oldest first; empty if the file cannot be read.
 fn read_verdicts(path: &Path) -> Vec<Verdict> {
     let text = std::fs::read(path).ok();
     text.and_then(|text| serde_json::from_slice(&text).ok())
@@ -392,7 +391,7 @@ fn read_verdict(path: &Path, machine: &str) -> Option<Verdict> {
         .find(|verdict| verdict.machine == machine)
 }
 
-/// Writes a verdict in the place of that of the same machine; `None` where the file can't be written.
+/// Stores a measurement in place of the same machine's; `None` if the file cannot be written.
 fn write_verdict(path: &Path, verdict: &Verdict) -> Option<()> {
     let mut verdicts = read_verdicts(path);
     verdicts.retain(|other| other.machine != verdict.machine);

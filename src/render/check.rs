@@ -28,14 +28,14 @@ const LEVEL: f64 = 1e-3;
 const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
 
-/// How long pictures are rendered before it is asked whether to stop.
+/// Render time between two checks for a stop.
 const STEP: Duration = Duration::from_millis(200);
 
-/// What the weight of an f64 sample may differ from evaluate / density, relative to itself.
+/// Relative tolerance of an f64 sample's weight against evaluate / density.
 const WEIGHT_ERROR: f64 = 1e-9;
 
-/// Kinds of cases: the policy below the horizon, the relative index of refraction (0 where the lobe reflects), and which
-/// part of the grid a quick check takes: one case in so many.
+/// Kinds of cases: horizon policy, relative index of refraction (0 for reflection), and the stride of a quick check through
+/// the grid.
 const KINDS: [(Horizon, f32, usize); 4] = [
     (Horizon::Mirror, 0.0, 5),
     (Horizon::Absorb, 0.0, 5),
@@ -46,15 +46,15 @@ const KINDS: [(Horizon, f32, usize); 4] = [
 /// One thing that was checked.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// Which kind of check: `samples`, `energy`, `weights`, `furnace`, `engines`, `strategies`, `soundness`.
+    /// Group of the check: `samples`, `energy`, `weights`, `furnace`, `engines`, `strategies`, `soundness`.
     pub group: &'static str,
-    /// What was checked.
+    /// Name of the case.
     pub name: String,
-    /// What the value is: `p`, `error`, `sigma`, `count`.
+    /// Measure of the value: `p`, `error`, `sigma`, `count`.
     pub measure: &'static str,
-    /// What came out.
+    /// Measured value.
     pub value: f64,
-    /// What it is held against.
+    /// Limit of the value.
     pub limit: f64,
     /// Whether it is on the right side of it.
     pub passed: bool,
@@ -91,11 +91,11 @@ impl std::fmt::Display for Check {
 /// The checks of a group.
 #[derive(Clone, Debug)]
 pub struct GroupSummary {
-    /// Which.
+    /// Name of the group.
     pub group: &'static str,
-    /// How many passed.
+    /// Number of passed checks.
     pub passed: usize,
-    /// How many failed.
+    /// Number of failed checks.
     pub failed: usize,
     /// The one closest to failing, or furthest beyond.
     pub worst: Check,
@@ -124,7 +124,7 @@ pub fn summaries(checks: &[Check]) -> Vec<GroupSummary> {
     checks.chunk_by(|a, b| a.group == b.group).filter_map(summary).collect()
 }
 
-/// What to check.
+/// Options of the checks.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckOptions {
     /// The engine to check.
@@ -133,16 +133,16 @@ pub struct CheckOptions {
     pub thorough: bool,
 }
 
-/// The cases of the χ² tests: every lobe and curve, stretched where it can be, reflecting and refracting.
+/// Cases of the χ² tests: every lobe and curve, anisotropic if supported, reflecting and refracting.
 pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
     let mut cases = Vec::new();
     for (horizon, eta, quick_part) in KINDS {
-        // Unless all of it is wanted: each lobe at some places of the grid, each place with some lobes.
+        // A quick check tests each lobe at some grid points, and each grid point with some lobes.
         let part = if thorough { 1 } else { quick_part };
         for (number, (lobe, curve, anisotropy)) in shapes().into_iter().enumerate() {
             for (i, &roughness) in ROUGHNESS.iter().enumerate() {
                 for (j, &view_angle_deg) in VIEW_ANGLES_DEG.iter().enumerate() {
-                    // Beyond the critical angle narrow lobes made of facets refract next to nothing.
+                    // Beyond the critical angle, narrow microfacet lobes refract almost nothing.
                     let is_dark =
                         eta < 1.0 && view_angle_deg > 41.0 && roughness < 0.3 && lobe.facets() != Facets::None;
                     if !(i + 2 * j + number).is_multiple_of(part) || (eta != 0.0 && is_dark) {
@@ -212,17 +212,18 @@ pub fn chi_square(
         .collect();
     samples.resize(samples.len() + cloud.absorbed as usize, None);
     let density = |wi: Vec3<f64>| {
-        // What the model itself loses below the horizon counts as absorbed, not as density.
+        // The model's own loss below the horizon counts as absorbed, not as density.
         let [value, density] = lobe_evaluate(&shape, &frame, frame.normal, wo, wi);
         if value > 0.0 { density * density_factor(wi) } else { 0.0 }
     };
     test_samples(&grid, &samples, &[frame.normal], density).p_value
 }
 
-/// Runs the checks; `progress` receives the name of each group before it starts. `None` where `stop` was set meanwhile.
+/// Runs the checks; `progress` receives the name of each group before it starts. `None` if `stop` was set.
 ///
 /// # Errors
-/// Where the engine can't be opened or fails.
+///
+/// If the engine cannot be opened or fails.
 pub fn run(
     options: CheckOptions,
     stop: &AtomicBool,
@@ -247,7 +248,7 @@ pub fn run(
     Ok(Some(checks))
 }
 
-/// What is done with each case, unless the checks are stopped.
+/// The result of `work`; `None` if the checks are stopped.
 fn unless_stopped<T>(stop: &AtomicBool, work: impl FnOnce() -> T) -> Option<T> {
     (!stop.load(Ordering::Relaxed)).then(work)
 }
@@ -276,7 +277,7 @@ fn describe(case: &ScatterRequest) -> String {
     } else {
         String::new()
     };
-    // In the precision in which they were given.
+    // In the precision of the input.
     let [roughness, anisotropy] = [case.model.roughness, case.model.anisotropy].map(|x| x as f32);
     let stretch = if anisotropy == 0.0 {
         String::new()
@@ -343,7 +344,7 @@ fn of_all_cases(stop: &AtomicBool, check: impl Fn(&ScatterRequest) -> Check + Sy
     sample_cases(true).par_iter().filter_map(checked).collect()
 }
 
-/// That a sample's weight is evaluate / density where it landed.
+/// Checks that a sample's weight equals evaluate / density of its direction.
 fn weights(stop: &AtomicBool) -> Vec<Check> {
     let check = |case: &ScatterRequest| {
         let frame = ScatterRequest::frame::<f64>();
@@ -378,7 +379,7 @@ fn document(model: ModelSource, light: EnvironmentSource, samples: u32) -> Docum
     document
 }
 
-/// What has been rendered when it is done, or the checks are stopped.
+/// The finished render's film; `None` if the checks are stopped.
 fn film(engine: EngineChoice, document: &Document, stop: &AtomicBool) -> Result<Film, SessionError> {
     let mut session = Session::open(engine)?;
     session.submit(document)?;

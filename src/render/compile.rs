@@ -20,21 +20,21 @@ use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::medium::medium_at;
-use crate::scene::texture::{OwnPicture, Textures};
+use crate::scene::texture::{Textures, UserTextureFile};
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
-/// What materials and tables depend on: settings, textures, and the slots of area lights with how each shines.
+/// Key of materials and tables: settings, textures, and the slots of area lights with their emission profiles.
 type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 
-/// What the table of emitting triangles depends on: geometry, and the emission of each slot.
+/// Key of the emitters' table: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
 
-/// Where a shadow catcher's table begins, and the tables with it at their end.
+/// Start of a shadow catcher's table, and all tables with it at the end.
 type WithCatcher = (u32, Arc<Vec<f32>>);
 
-/// What a shadow catcher's table depends on, and the tables in front of it.
+/// Key of a shadow catcher's table, with the tables before it.
 #[derive(Debug)]
 struct CatcherKey {
     environment: Arc<Environment>,
@@ -56,7 +56,7 @@ impl CatcherKey {
     }
 }
 
-/// The textures of a document whose materials are those of the model's slots.
+/// Textures of a document with the materials of the model's slots.
 fn textures_of(
     document: &Document,
     slots: &[MaterialSettings],
@@ -65,12 +65,14 @@ fn textures_of(
     assets.textures(&document.model, &document.import, &texture_assignments(slots))
 }
 
-/// The pictures of the user's own that a document's materials look up, read or not.
-pub(super) fn own_pictures(document: &Document, assets: &Assets) -> Result<Vec<OwnPicture>, SessionError> {
+/// Users' texture maps of a document's materials, readable or not.
+pub(super) fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, SessionError> {
     let document = &*without_what_is_off(document);
     let model = assets.model(&document.model, &document.import)?;
     let slots = slot_materials(document, model.slots.len());
-    Ok(textures_of(document, &slots[..model.slots.len()], assets)?.own.clone())
+    Ok(textures_of(document, &slots[..model.slots.len()], assets)?
+        .user_textures
+        .clone())
 }
 
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
@@ -236,14 +238,14 @@ impl Compiler {
     }
 }
 
-/// Of an angle in degrees.
+/// Cosine and sine of an angle in degrees.
 fn cosine_and_sine(angle_deg: f32) -> [f64; 2] {
     let (sine, cosine) = f64::from(angle_deg).to_radians().sin_cos();
     [cosine, sine]
 }
 
-/// One material a slot, the last one repeated where the document has too few, the ground's where there is one, and those
-/// of the area lights.
+/// One material per slot: the document's (the last one repeated if there are too few), the ground's if there is one, and
+/// those of the area lights.
 pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();

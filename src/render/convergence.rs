@@ -1,4 +1,4 @@
-//! When a session looks at the error of its picture, what it saw, and what it renders next.
+//! Schedule of error measurements of a session, their history, and the goals of the next round.
 
 use crate::analysis::adaptive::{Round, next_goals};
 use crate::analysis::noise::{Noise, noise};
@@ -6,55 +6,54 @@ use crate::document::RenderSettings;
 use crate::job::film::Film;
 use crate::job::tiles::Schedule;
 
-/// Looking at the error takes at most this share of the time; near its end twice as much, not to go too far.
+/// Largest share of time for error measurements; twice as much near the end, so that the render does not overshoot.
 const COST_SHARE: f64 = 0.015;
-/// What a look and a plan cost where samples are counted, in samples of the pixels looked at: measured, of a simple scene.
+/// Cost of a measurement with planning, in samples of the measured pixels, if rounds are counted in samples: measured on a
+/// simple scene.
 const LOOK_SAMPLES: f64 = 0.25;
-/// By how much samples grow from one look to the next: while only watched; on the way to a noise; where tiles rest; and
-/// at least, by what looks cost.
+/// Growth of samples between measurements: while only observed; towards a noise goal; if tiles pause; and at least, by the
+/// measurement's cost.
 const GROWTH_WATCHED: f64 = 1.1;
 const GROWTH_MIN: [f64; 2] = [1.02, 1.1];
-const GROWTH_AIMED: f64 = 1.5;
+const GROWTH_TARGETED: f64 = 1.5;
 const GROWTH_ADAPTIVE: f64 = 1.25;
-/// And at most after the first look: what it took and what the first samples took, all of them cold, says little of what
-/// looks and samples cost.
+/// Largest growth after the first measurement, because cold caches make the first times unreliable.
 const GROWTH_COLD: f64 = 8.0;
 
-/// The error of a picture at some point of its render.
+/// An error measurement during a render.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// The engine's own time until then, seconds.
     pub engine_seconds: f64,
-    /// Samples per pixel until then, averaged over the picture.
+    /// Samples per pixel at that time, averaged over the image.
     pub samples_per_pixel: f64,
-    /// What was seen.
+    /// Estimated error.
     pub noise: Noise,
 }
 
-/// What the length of a round goes by.
+/// Inputs for the length of a round.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pacing {
-    /// The engine's own time until now, seconds; `None` where rounds end by the number of samples alone. On the CPU they
-    /// do where tiles rest or a noise is to be reached, so that the same render twice is the same picture: tiles rest, and
-    /// rendering stops, where a round ends.
+    /// Engine time so far, in seconds; `None` if rounds end by samples alone. The CPU engine does so with adaptive sampling
+    /// or a noise limit: tiles pause, and rendering stops, at the end of a round. So the same render twice gives the same image.
     pub(super) engine_seconds: Option<f64>,
-    /// The picture is denoised at the end of each round, and rendering stops where that is exact enough.
+    /// True if the image is denoised after each round, and its error is the stop criterion.
     pub(super) is_denoised: bool,
 }
 
-/// Rounds of rendering, with a look at the error after each.
+/// Rounds of rendering, each followed by an error measurement.
 #[derive(Debug, Default)]
 pub(super) struct Convergence {
     /// Samples a pixel that each tile is to have at the end of the round.
     pub(super) goals: Vec<u32>,
-    /// What was seen, oldest first.
+    /// Measurements, oldest first.
     pub(super) history: Vec<Measurement>,
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
-    /// What a look and a plan take, seconds: the least seen, as the machine may do something else in between.
-    look_seconds: Option<f64>,
+    /// Time of a measurement with planning in seconds: the minimum so far, because other work may disturb it.
+    measure_seconds: Option<f64>,
     plan_seconds: Option<f64>,
-    /// What all looks and plans took, seconds.
+    /// Total time of measurements and planning, in seconds.
     pub(super) total_seconds: f64,
 }
 
@@ -72,8 +71,8 @@ impl Convergence {
         self.history.last().map(|measurement| measurement.noise)
     }
 
-    /// Factor, at least 1, by which the true error may be below the estimate. Aiming at the estimate itself would render
-    /// too much half of the time, and far too much where the estimate rests on few pixels or samples.
+    /// Safety factor of at least 1 by which the true error may be below the estimate. Aiming at the estimate itself would
+    /// render too much half of the time, and far too much if it rests on few pixels or samples.
     fn doubt(&self) -> f64 {
         let ratio = self.noise().map_or(1.0, |noise| noise.relative / noise.low);
         if ratio.is_finite() { ratio.max(1.0) } else { 1.0 }
@@ -87,7 +86,7 @@ impl Convergence {
     /// Records how long estimating the error took.
     pub(super) fn looked(&mut self, seconds: f64) {
         self.total_seconds += seconds;
-        self.look_seconds = lesser(self.look_seconds, seconds);
+        self.measure_seconds = lesser(self.measure_seconds, seconds);
     }
 
     /// Records how long setting the goals took.
@@ -96,7 +95,7 @@ impl Convergence {
         self.plan_seconds = lesser(self.plan_seconds, seconds);
     }
 
-    /// Looks at the error, of the part that is rendered.
+    /// Measures the error of the rendered part.
     pub(super) fn measure(&mut self, film: &Film, schedule: &Schedule, settings: &RenderSettings, engine_seconds: f64) {
         self.measured_samples = schedule.pixel_samples();
         let grid = schedule.grid();
@@ -113,22 +112,24 @@ impl Convergence {
         }
     }
 
-    /// By how much samples grow in a round that is so long that the look at its end takes no more than its share.
+    /// Growth of samples in a round that is long enough for its measurement to stay within its share of time.
     fn paced(&self, schedule: &Schedule, settings: &RenderSettings, pacing: Pacing) -> f64 {
         let look = match pacing.engine_seconds {
-            Some(seconds) => (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9),
+            Some(seconds) => {
+                (self.measure_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9)
+            }
             None => LOOK_SAMPLES / rendered_samples(schedule, settings).max(1.0),
         };
         let most = match (pacing.is_denoised && settings.noise.is_some(), self.history.len()) {
-            (true, _) => GROWTH_AIMED,
+            (true, _) => GROWTH_TARGETED,
             (false, 0 | 1) => GROWTH_COLD,
             (false, _) => f64::INFINITY,
         };
         (1.0 + look / COST_SHARE).min(most)
     }
 
-    /// Sets the goals of the next round: no pixel more than `settings.samples`, and none outside the part that is
-    /// rendered. `film` is read where tiles may rest.
+    /// Sets the goals of the next round: at most `settings.samples` per pixel, and none outside the rendered part. `film` is
+    /// read if tiles may pause.
     pub(super) fn next_round(
         &mut self,
         film: Option<&Film>,
@@ -156,8 +157,8 @@ impl Convergence {
         let samples = schedule.samples();
         let most = samples.iter().copied().max().unwrap_or(0);
         let least = settings.least_samples();
-        let is_aimed = settings.noise.is_some() || settings.is_adaptive();
-        if is_aimed && fewest_samples(schedule, settings) < least {
+        let has_target = settings.noise.is_some() || settings.is_adaptive();
+        if has_target && fewest_samples(schedule, settings) < least {
             self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
             return;
         }
@@ -171,7 +172,7 @@ impl Convergence {
         if let Some(film) = film.filter(|_| settings.is_adaptive()) {
             let round = Round {
                 growth: [growth_min, paced.max(GROWTH_ADAPTIVE)],
-                noise: settings.noise.map(|wanted| wanted * self.doubt()),
+                noise: settings.noise.map(|target_noise| target_noise * self.doubt()),
                 samples_max: settings.samples,
                 region: settings.region,
             };
@@ -180,9 +181,9 @@ impl Convergence {
         }
         let growth = match (settings.noise, self.noise()) {
             // The error falls as 1/√n; rather a little short of the target than beyond it.
-            (Some(wanted), Some(noise)) => {
-                let aim = wanted * self.doubt();
-                (noise.relative / aim).powi(2).min(paced.max(GROWTH_AIMED))
+            (Some(target_noise), Some(noise)) => {
+                let target = target_noise * self.doubt();
+                (noise.relative / target).powi(2).min(paced.max(GROWTH_TARGETED))
             }
             _ => paced.max(GROWTH_WATCHED),
         };
@@ -208,7 +209,7 @@ fn lesser(least: Option<f64>, seconds: f64) -> Option<f64> {
     Some(least.map_or(seconds, |least| least.min(seconds)))
 }
 
-/// Samples per pixel, averaged over the picture.
+/// Samples per pixel, averaged over the image.
 pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
     let grid = schedule.grid();
     let pixels = u64::from(grid.width) * u64::from(grid.height);
@@ -237,7 +238,7 @@ mod tests {
             convergence.next_round(None, &schedule, &settings, COUNTED);
             assert_eq!(convergence.goals, [goal; 2]);
         }
-        schedule.aim(&[2; 2]);
+        schedule.set_goals(&[2; 2]);
         let limits = SliceLimits {
             pass_samples: [2; 2],
             tiles: [2; 2],

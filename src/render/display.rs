@@ -1,4 +1,4 @@
-//! The picture as a screen shows it.
+//! Display-referred images.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::store::lut;
 /// Luminance of middle grey.
 pub const MIDDLE_GREY: f64 = 0.18;
 
-/// Luminances that count for the automatic exposure: what is darker is taken for this.
+/// Lower bound of luminances for automatic exposure.
 const LUMINANCE_MIN: f64 = 1e-4;
 
 /// The factor on radiance. The automatic one brings the geometric mean of the luminance to middle grey (Reinhard et al.

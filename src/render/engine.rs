@@ -1,4 +1,4 @@
-//! Which engine renders.
+//! Choice and opening of the engine.
 
 use std::fmt;
 use std::str::FromStr;
@@ -34,7 +34,7 @@ impl FromStr for EngineChoice {
 }
 
 named! {
-    /// An engine.
+    /// Kind of engine: CPU or GPU.
     EngineKind {
         Gpu, "gpu", "GPU", "Compute shaders on an adapter.";
         Cpu, "cpu", "CPU", "Rust on the processor's cores.";
@@ -50,20 +50,20 @@ impl From<EngineKind> for EngineChoice {
     }
 }
 
-/// What renders, and why it was chosen.
+/// The engine in use, and why it was chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EngineInfo {
-    /// Which of the two.
+    /// Kind of the engine.
     pub kind: EngineKind,
-    /// The adapter's or processor's name.
+    /// Name of the adapter or CPU.
     pub adapter: String,
-    /// The adapter's driver; empty for the processor.
+    /// Driver of the adapter; empty for the CPU.
     pub driver: String,
     /// Why this engine, in words.
     pub reason: String,
-    /// How it finds what rays meet.
+    /// How rays are traced on the engine.
     pub traversal: Traversal,
-    /// True where the work is done by the processor, whatever the engine.
+    /// True if the CPU does the work, by either engine.
     pub is_software: bool,
 }
 
@@ -73,7 +73,7 @@ impl fmt::Display for EngineInfo {
     }
 }
 
-/// The numbers that the processor shades with; the GPU knows f32 only. Sums are f64 in either case.
+/// Precision of shading on the CPU; the GPU has f32 only. Sums are f64 in either case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 pub enum Precision {
     /// f32.
@@ -95,8 +95,8 @@ pub(super) enum Engine {
 const CHOSEN: &str = "chosen by you";
 
 impl Engine {
-    /// Opens what was asked for. Where it is not known yet which engine is faster it is measured, for seconds, or else
-    /// (`may_wait` false) beside the processor's engine and for the next time.
+    /// Opens the requested engine. If the faster engine is unknown, it is measured for seconds; or, with `may_wait` false,
+    /// in the background for the next start.
     pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Self, EngineInfo), GpuError> {
         match choice {
             EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
@@ -129,7 +129,7 @@ impl Engine {
         }
     }
 
-    /// The GPU's device, where it renders.
+    /// The GPU's device, if it renders.
     pub(super) fn device(&self) -> Option<&GpuDevice> {
         match self {
             Engine::Cpu(_) => None,
@@ -144,7 +144,7 @@ impl Engine {
         }
     }
 
-    /// How long the job was rendered by the GPU's own clock; `None` without one.
+    /// GPU time of the job by its own clock, in seconds; `None` without one.
     pub(super) fn gpu_seconds(&self) -> Option<f64> {
         match self {
             Engine::Cpu(_) => None,
@@ -185,7 +185,7 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
     Ok((Engine::Gpu(Box::new(GpuEngine::new(device)?)), info))
 }
 
-/// The processor's own name where the system tells it.
+/// Name of the CPU, if the system reports it.
 fn processor_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
@@ -197,8 +197,7 @@ fn processor_name() -> String {
     )
 }
 
-/// An adapter's engine, for the reason `why`, with rays going whichever way is to be taken there; by our own traversal where
-/// its ray queries fail.
+/// An adapter's engine, chosen for the reason `why`, with its preferred traversal; with our own if ray queries fail.
 fn on_adapter(adapter: &GpuAdapter, why: &str, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
     let (traversal, about_it) = calibration::traversal(adapter, may_wait);
     let reason = match about_it.as_str() {
@@ -222,11 +221,11 @@ fn auto(may_wait: bool) -> (Engine, EngineInfo) {
     }
 }
 
-/// The device on which single functions run; nothing where the processor runs them: `auto` takes it where there is no
-/// hardware GPU.
+/// The device for single functions; `None` for the CPU, which `auto` uses without a hardware GPU.
 ///
 /// # Errors
-/// Where a GPU was asked for and fails.
+///
+/// If a GPU was requested and fails.
 pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
@@ -241,17 +240,18 @@ pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDev
 
 /// Draws samples of lobes with the function that the chosen engine renders with.
 pub enum Sampler {
-    /// The processor's.
+    /// On the CPU.
     Cpu,
-    /// The shader's.
+    /// On the GPU.
     Gpu(Box<Scatterer>),
 }
 
 impl Sampler {
-    /// Opens what was asked for; `auto` takes the processor where there is no hardware GPU.
+    /// Opens the requested engine; `auto` uses the CPU without a hardware GPU.
     ///
     /// # Errors
-    /// Where a GPU was asked for and fails.
+    ///
+    /// If a GPU was requested and fails.
     pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
         Ok(match device_for_functions(choice)? {
             Some(device) => Self::Gpu(Box::new(Scatterer::new(device)?)),

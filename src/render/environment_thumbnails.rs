@@ -1,4 +1,4 @@
-//! Small pictures of environments, made beside the window and kept on disk.
+//! Thumbnails of environments, made in the background and cached on disk.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -16,27 +16,26 @@ pub const SIZE: [u32; 2] = [256, 128];
 /// Version of the thumbnails: raise it when the same environment is drawn differently.
 const VERSION: u32 = 2;
 
-/// An environment whose picture is wanted.
+/// A requested thumbnail.
 #[derive(Clone)]
 pub struct Wanted {
-    /// Where it comes from.
+    /// Source of the environment.
     pub source: EnvironmentSource,
-    /// The environment where it has been loaded already: a large file is then not read twice.
+    /// The environment, if loaded already: avoids reading a large file twice.
     pub loaded: Option<Arc<Environment>>,
 }
 
-/// A picture: opaque red, green, blue and alpha of 8 bits, [`SIZE`] pixels from the top; `None` where the environment
-/// can't be loaded.
+/// A thumbnail: opaque RGBA, 8 bits each, [`SIZE`] pixels, rows from the top; `None` if the environment cannot be loaded.
 pub type EnvironmentThumbnail = Option<Arc<Vec<u8>>>;
-/// Thumbnails by what they show.
+/// Thumbnails by source.
 pub type EnvironmentThumbnails = Arc<HashMap<EnvironmentSource, EnvironmentThumbnail>>;
-/// Makes the thumbnails of the latest request, in its order; each answer holds those made so far.
+/// Background worker for the latest request, in its order; each answer has all thumbnails made so far.
 pub type EnvironmentThumbnailWorker = Background<Vec<Wanted>, EnvironmentThumbnails>;
 
-/// Starts the worker; `folder` keeps the pictures from one start to the next. Nothing is made while `hold` is set: the
-/// viewport goes first.
+/// Starts the worker; `folder` caches thumbnails between starts. It pauses while `hold` is set, for the viewport.
 ///
 /// # Errors
+///
 /// If no thread can be started.
 pub fn spawn_environment_thumbnails(
     folder: Option<PathBuf>,
@@ -44,9 +43,9 @@ pub fn spawn_environment_thumbnails(
     repaint: impl Fn() + Send + 'static,
 ) -> io::Result<EnvironmentThumbnailWorker> {
     let mut made: HashMap<EnvironmentSource, (u64, EnvironmentThumbnail)> = HashMap::new();
-    Background::spawn("environments", repaint, move |queue: Vec<Wanted>, desk| {
+    Background::spawn("environments", repaint, move |queue: Vec<Wanted>, responder| {
         for wanted in queue {
-            if !desk.may_go_on(&hold) {
+            if !responder.wait_while_held(&hold) {
                 return;
             }
             let key = key(&wanted.source);
@@ -60,7 +59,7 @@ pub fn spawn_environment_thumbnails(
                 }
                 None => make(&wanted),
             };
-            // Reported where the environment is chosen.
+            // The error is reported when the environment is selected.
             let picture = picture.unwrap_or_else(|error| {
                 log::debug!("no small picture: {error}");
                 None
@@ -69,7 +68,7 @@ pub fn spawn_environment_thumbnails(
             let pictures = made
                 .iter()
                 .map(|(source, (_, picture))| (source.clone(), picture.clone()));
-            desk.publish(Arc::new(pictures.collect()));
+            responder.publish(Arc::new(pictures.collect()));
         }
     })
 }
@@ -82,7 +81,7 @@ fn make(wanted: &Wanted) -> Result<Option<Vec<u8>>, EnvironmentError> {
     })
 }
 
-/// Changes with what a file holds, as far as its size and date tell.
+/// Cache key: changes with a file's size and date.
 fn key(source: &EnvironmentSource) -> u64 {
     let mut hasher = DefaultHasher::new();
     (VERSION, env!("CARGO_PKG_VERSION"), source).hash(&mut hasher);

@@ -17,7 +17,7 @@ pub enum SessionError {
     /// The GPU can't be used.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The picture does not fit the memory; nothing has been begun.
+    /// The image does not fit into memory; nothing was started.
     #[error(transparent)]
     TooLarge(#[from] memory::TooLarge),
 }

@@ -20,31 +20,31 @@ mod words;
 pub struct PathAccount {
     /// Column and row from the top left.
     pub pixel: [u32; 2],
-    /// Width and height of the picture.
+    /// Width and height of the image, in pixels.
     pub image_size: [u32; 2],
     /// Number of the sample in its pixel, from 0.
     pub sample: u32,
-    /// The render's seed.
+    /// Seed of the render.
     pub seed: u32,
-    /// Where random numbers come from.
+    /// Random sequence.
     pub sequence: Sequence,
-    /// How light is found.
+    /// Light strategy.
     pub strategy: Strategy,
     /// Bounces that a path may have.
     pub bounces: u32,
-    /// What each slot is, for the events' `slot`.
+    /// Names of the slots, for the events' `slot`.
     pub surfaces: Vec<String>,
-    /// What happened, in order.
+    /// Events in order.
     pub events: Vec<Event>,
-    /// What the engine adds to the picture: to the bit the sum of the contributions in their order.
+    /// Radiance of the sample: to the bit the sum of the contributions in their order.
     pub radiance: [f32; 3],
-    /// 0 where the path met nothing but a transparent background.
+    /// Coverage in [0, 1]: 0 if the path saw only transparent background.
     pub alpha: f32,
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u32,
     /// Luminance that limiting fireflies took.
     pub clamped: f32,
-    /// True where the radiance is not finite or negative: such samples are left out of the picture.
+    /// True if the radiance is not finite or is negative: such samples are dropped.
     pub is_dropped: bool,
 }
 
@@ -73,7 +73,7 @@ pub fn explain(document: &Document, model: &Model, job: &Job, pixel: [u32; 2], s
 }
 
 impl PathAccount {
-    /// What was added to the sample, in order.
+    /// Contributions to the sample, in order.
     pub fn contributions(&self) -> impl Iterator<Item = (Source, [f32; 3])> + '_ {
         self.events.iter().filter_map(|event| match event {
             Event::Contribution { source, added, .. } => Some((*source, *added)),
@@ -93,7 +93,7 @@ impl PathAccount {
     }
 }
 
-/// What each slot of a job is: the model's, then the ground and the area lights.
+/// Names of a job's slots: the model's, then the ground and the area lights.
 fn surfaces(document: &Document, model: &Model) -> Vec<String> {
     let materials = slot_materials(document, model.slots.len());
     let lights = (1..).zip(&document.lighting.area_lights);

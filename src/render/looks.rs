@@ -1,4 +1,4 @@
-//! Two materials compared: a ball of each in the studio, and how far their pictures differ.
+//! Comparison of two materials: a ball of each in the studio, and the difference of the renders.
 
 use std::time::Duration;
 
@@ -13,29 +13,30 @@ use crate::job::film::Film;
 use crate::plot::scale_color;
 use crate::scene::ModelSource;
 
-/// Columns and rows of each picture.
+/// Width and height of each render, in pixels.
 pub const SIDE: u32 = 64;
-/// Samples a pixel.
+/// Samples per pixel.
 const SAMPLES: u32 = 64;
 /// Step of the session.
 const STEP: Duration = Duration::from_millis(100);
-/// Difference over the mean brightness that has the brightest color of the map.
+/// Relative difference with the brightest colour of the map.
 const BRIGHTEST: f64 = 0.5;
 
-/// What came of the comparison.
+/// Result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// The first, the second, and a map of their difference: dark where there is none, yellow from half the mean brightness.
+    /// The first render, the second, and a map of their difference: dark for none, yellow from half the mean brightness.
     pub pictures: [RgbImage; 3],
     /// Root mean square of the difference of luminance over the mean luminance, free of noise: the two halves of the samples
     /// err independently, so that the mean of their differences' product does not.
     pub difference: f64,
 }
 
-/// Renders a ball of each material in the studio, on the processor.
+/// Renders a ball of each material in the studio on the CPU.
 ///
 /// # Errors
-/// What the session says.
+///
+/// The session's.
 pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionError> {
     let mut session = Session::open(EngineChoice::Cpu)?;
     let [first, second] = [
@@ -70,7 +71,7 @@ fn luminance(film: &Film, pixel: usize, half: Option<usize>) -> f64 {
         .mean_luminance()
 }
 
-/// A ball of a material in the studio, which stays visible: what glass refracts is seen against something.
+/// A ball of a material in the studio. The studio stays visible, because glass needs something to refract.
 pub(super) fn ball(material: &MaterialSettings, side: u32, samples: u32, denoise: Denoise) -> Document {
     Document {
         model: ModelSource::Sphere,

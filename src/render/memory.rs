@@ -1,4 +1,4 @@
-//! Whether a picture fits the memory there is, asked before it is begun.
+//! Check, before a render, whether it fits into memory.
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
@@ -7,22 +7,22 @@ use crate::job::effect::EffectId;
 use crate::job::film::Extras;
 pub use crate::scene::LIMIT_VARIABLE;
 
-/// Bytes a pixel beside the film: the mean picture, what of it is shown, and what is written to a file.
+/// Bytes per pixel besides the film: the mean image, the display image and the file's image.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;
-/// And where it is denoised: both halves with a guide each, and results. Measured, as the two below, by the peak of pictures of 512 to
-/// 3072 pixels a side.
+/// Additional bytes per pixel with denoising: both halves with guides, and results. Measured, like the two below, by the
+/// peak memory of renders of 512 to 3072 pixels a side.
 const DENOISED_BYTES: u64 = 184;
-/// What the library itself takes meanwhile, up to the size from which it works in tiles.
+/// Bytes per pixel of the library itself, up to the size from which it uses tiles.
 const DENOISER_BYTES: u64 = 640;
 const DENOISER_BYTES_MOST: u64 = 1_600 << 20;
-/// And where the GPU's memory is the processor's: the sums since they were last taken over.
+/// Additional bytes per pixel if the GPU shares the CPU's memory: the GPU's sums.
 const SOFTWARE_GPU_BYTES: u64 = 56;
-/// The share of the free memory that a picture may take: the rest of the program and other programs live on.
+/// Share of the free memory that a render may use: other parts and programs need the rest.
 const SHARE: f64 = 0.9;
-/// The share of that which the files of one import may take: the scene is made of them, and the picture comes after.
+/// Share of that for the files of one import: the scene is built from them, and the render follows.
 const IMPORT_SHARE: f64 = 0.5;
 
-/// A picture that is too large.
+/// The render is too large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "a picture of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
@@ -33,15 +33,15 @@ pub struct TooLarge {
     height: u32,
     needed_mib: u64,
     allowed_mib: u64,
-    /// The side of the largest square picture that fits.
+    /// Side of the largest square image that fits, in pixels.
     side: u64,
     remedy: &'static str,
 }
 
-/// Refuses a job whose picture takes more than what is `allowed`; `is_software_gpu` says that the processor's memory is
-/// the GPU's, too.
+/// Refuses a job that needs more than `allowed` bytes. `is_software_gpu`: the GPU shares the CPU's memory.
 ///
 /// # Errors
+///
 /// [`TooLarge`], with the remedy.
 pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), TooLarge> {
     let needs = Needs::of(job, is_software_gpu);
@@ -64,7 +64,7 @@ pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<()
     })
 }
 
-/// What a job's picture takes until it is shown and written.
+/// Memory of a job's render, including display and output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Needs {
     pixels: u64,
@@ -99,7 +99,7 @@ impl Needs {
         self.pixels * self.pixel_bytes + if self.is_denoised { of_library } else { 0 }
     }
 
-    /// The most pixels of such pictures that fit so many bytes.
+    /// Number of pixels that fit into `bytes`.
     fn pixels_within(&self, bytes: u64) -> u64 {
         if !self.is_denoised {
             return bytes / self.pixel_bytes;
@@ -121,14 +121,14 @@ pub(super) fn of_import() -> u64 {
     limit().unwrap_or_else(|| (IMPORT_SHARE * free(0) as f64) as u64)
 }
 
-/// The bytes that the process may take besides what it has, where it has a limit (`ulimit -v`).
+/// Remaining bytes of the process's limit, if any (`ulimit -v`).
 #[cfg(target_os = "linux")]
 fn of_process() -> u64 {
     let mut limit = libc::rlimit {
         rlim_cur: 0,
         rlim_max: 0,
     };
-    // SAFETY: it writes into what it is given.
+    // SAFETY: it writes into the given struct.
     let is_known = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) } == 0;
     if !is_known || limit.rlim_cur == libc::RLIM_INFINITY {
         return u64::MAX;
@@ -141,7 +141,7 @@ fn of_process() -> u64 {
             .parse::<u64>()
             .ok()
     });
-    // Nothing is left where it is full; 0 would say that it is not known.
+    // At least 1, because 0 means unknown.
     limit.rlim_cur.saturating_sub(taken_kib.unwrap_or(0) << 10).max(1)
 }
 
@@ -151,7 +151,7 @@ fn of_process() -> u64 {
     u64::MAX
 }
 
-/// The bytes that a picture may take where none are named. `held` is what goes when it is begun.
+/// Default memory of a render in bytes. `held` is memory that is freed when it starts.
 pub(super) fn free(held: u64) -> u64 {
     let ram = MemoryRefreshKind::nothing().with_ram();
     let Ok(system) = System::new_with_specifics(RefreshKind::nothing().with_memory(ram)) else {

@@ -1,6 +1,6 @@
-//! The session over an engine: what the window, the command line and the tests all drive.
+//! The session over an engine, which the window, the command line and the tests use.
 //!
-//! `submit` a document, `step` with a budget of time until `progress` says that it is done, read `film` or `image`.
+//! `submit` a document, `step` with a time budget until `progress` is done, read `film` or `image`.
 
 mod assets;
 mod attendant;

@@ -1,4 +1,4 @@
-//! Pictures written to files.
+//! Image output.
 
 use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ use crate::store::picture::png_bytes;
 use crate::store::project::own_text;
 use crate::store::replace::save_by;
 
-/// Why a picture can't be written.
+/// Errors of image output.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The extension is not that of a format that can be written.
@@ -36,7 +36,7 @@ pub enum OutputError {
     File(#[from] FileError),
 }
 
-/// A picture to write.
+/// An image to write.
 #[derive(Clone, Copy, Debug)]
 pub struct Rendered<'a> {
     /// The mean of the samples, linear.
@@ -70,14 +70,14 @@ impl<'a> From<&'a Layers> for Rendered<'a> {
     }
 }
 
-/// A picture with the per-pixel quantities that are written as layers.
+/// An image with per-pixel layers (AOVs).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
-    /// The linear picture.
+    /// The linear image.
     pub image: Image,
-    /// The same denoised.
+    /// The denoised image.
     pub denoised: Option<Arc<Image>>,
-    /// What the camera sees first.
+    /// First-hit features.
     pub features: Features,
     /// Samples in each pixel's mean.
     pub samples: Vec<f32>,
@@ -86,7 +86,7 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// The layers of a film, apart from what is seen at each pixel.
+    /// The layers of a film, with given first-hit features.
     pub fn of(film: &Film, features: Features) -> Self {
         let pixels = 0..film.pixel_count();
         Self {
@@ -125,12 +125,12 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
         .ok_or_else(|| OutputError::Format { path: path.to_owned() })
 }
 
-/// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
-/// and the document itself inside. A denoised picture takes the samples' place; in an .exr file it stands beside them, as
-/// `denoised.R`, `.G`, `.B`, and so do layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`;
-/// `variance.Y`) and sums.
+/// Writes an image of a document in the format of the file extension. A .png has the document's exposure and tone curve, and
+/// contains the document. A denoised image replaces the samples; in an .exr file it is added as `denoised.R`, `.G`, `.B`,
+/// and so are layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`) and sums.
 ///
 /// # Errors
+///
 /// [`OutputError`] naming the file.
 pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result<(), OutputError> {
     let shown = rendered.denoised.unwrap_or(rendered.image);
@@ -164,7 +164,7 @@ fn png(path: &Path, image: &Image, document: &Document) -> io::Result<Vec<u8>> {
     png_bytes([image.width, image.height], &pixels, text.as_deref().ok()).map_err(io::Error::other)
 }
 
-/// Writes a picture's layers as named channels.
+/// Writes an image's layers as named channels.
 fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes: LayerAttributes) -> io::Result<()> {
     let mut channels = color_channels("", rendered.image, &COLORS);
     if let Some(denoised) = rendered.denoised {
@@ -185,7 +185,7 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
     } else {
         Encoding::FAST_LOSSLESS
     };
-    // Tiles in order of completion would make a different file of the same picture each time.
+    // In scan-line order: tiles in order of completion would make a different file each time.
     let encoding = Encoding {
         line_order: LineOrder::Increasing,
         ..encoding
@@ -210,7 +210,7 @@ fn rec709() -> exr::meta::attribute::Chromaticities {
 
 const COLORS: [&str; 4] = ["R", "G", "B", "A"];
 
-/// The first of a picture's colours and its opacity, as named channels.
+/// An image's channels (colours and alpha) by name.
 fn color_channels(prefix: &str, image: &Image, names: &[&str]) -> Vec<(String, Vec<f32>)> {
     let values = |i: usize| image.pixels.iter().map(|pixel| pixel[i]).collect();
     let named = names.iter().enumerate();

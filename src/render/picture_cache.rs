@@ -1,4 +1,4 @@
-//! Small pictures kept on disk from one start to the next.
+//! Disk cache of thumbnails.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -7,8 +7,8 @@ use image::{ImageFormat, RgbaImage};
 
 use crate::store::replace::save_atomically;
 
-/// The picture that was kept, or else the one that is made, which is kept then; `None` where none could be made. A cache:
-/// where it can't be written, the next start makes it again.
+/// The cached thumbnail, or a new one, which is cached; `None` if none could be made. If the cache cannot be written, the
+/// next start makes it again.
 pub(super) fn kept_or_made<E>(
     path: &Path,
     size: [u32; 2],
@@ -26,8 +26,8 @@ pub(super) fn kept_or_made<E>(
     Ok(made)
 }
 
-/// The pixels of a picture that was kept: red, green, blue and alpha of 8 bits, alpha not premultiplied, row by row from
-/// the top; `None` where there is none of this size (columns, rows).
+/// Pixels of a cached thumbnail: RGBA, 8 bits each, alpha not premultiplied, rows from the top; `None` if there is none of
+/// this size (columns, rows).
 fn read(path: &Path, size: [u32; 2]) -> Option<Vec<u8>> {
     let bytes = std::fs::read(path).ok()?;
     let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Png).ok()?;
@@ -35,7 +35,7 @@ fn read(path: &Path, size: [u32; 2]) -> Option<Vec<u8>> {
     (picture.dimensions() == size.into()).then(|| picture.into_raw())
 }
 
-/// Keeps a picture; its folder is made where it is not there.
+/// Writes a thumbnail; creates its folder if needed.
 pub(super) fn write(path: &Path, [width, height]: [u32; 2], pixels: &[u8]) -> Result<(), String> {
     let picture = RgbaImage::from_raw(width, height, pixels.to_vec()).ok_or("not the size of a thumbnail")?;
     let mut bytes = Cursor::new(Vec::new());

@@ -1,4 +1,4 @@
-//! The map of what in a picture's numbers is not to be trusted, made beside the window.
+//! The map of numerical trouble, made in the background.
 
 use std::io;
 use std::sync::Arc;
@@ -19,14 +19,14 @@ pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
 /// # Errors
 /// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
-    Background::spawn("precision", repaint, |job: Arc<Job>, desk| {
-        if let Some(map) = precision(&job, map_size(job.settings.image_size), || desk.is_superseded()) {
-            desk.publish(Arc::new(map));
+    Background::spawn("precision", repaint, |job: Arc<Job>, responder| {
+        if let Some(map) = precision(&job, map_size(job.settings.image_size), || responder.is_superseded()) {
+            responder.publish(Arc::new(map));
         }
     })
 }
 
-/// The picture's shape in no more than [`SIDE_MAX_PX`].
+/// Size of the map: the image's aspect within [`SIDE_MAX_PX`].
 fn map_size([width, height]: [u32; 2]) -> [u32; 2] {
     let longest = width.max(height).max(1);
     let kept = SIDE_MAX_PX.min(longest);

@@ -1,12 +1,11 @@
 //! Rendering gives way to the window: on machines without a GPU both run on the same cores.
 
-/// The niceness of threads that render, and of those that compute beside them.
+/// Niceness of rendering threads and of background threads.
 const NICENESS: i32 = 10;
 const APART: i32 = 19;
 
-/// Lowers the calling thread's priority, and with it that of the threads it starts later (a software driver's and the
-/// denoiser's among them). Once: what was lowered already stays as it is, so that threads which a lowered one starts are
-/// not starved by it. Does nothing where the system has no such notion for threads.
+/// Lowers the priority of the calling thread and of threads that it starts later (among them a software driver's and the
+/// denoiser's). Only once: threads of a lowered one are not lowered again. No effect if the system has no thread priorities.
 pub(super) fn lower_thread_priority() {
     lower_to(NICENESS);
 }
@@ -25,8 +24,8 @@ fn lower_to(niceness: i32) {
     let _ = niceness;
 }
 
-/// Has what this thread computes in parallel run on threads of its own from now on, half as many as there are cores,
-/// which give way to those that render: on the common ones it would hold up pictures and loading.
+/// Runs this thread's parallel work on its own pool from now on, with half as many threads as cores and low priority: on the
+/// common pool it would delay renders and loading.
 pub fn work_apart() {
     if rayon::current_thread_index().is_some() {
         return;
@@ -37,16 +36,16 @@ pub fn work_apart() {
         .num_threads(threads)
         .use_current_thread();
     match pool.build() {
-        // It lasts as long as the thread.
+        // The pool lasts as long as the thread.
         Ok(pool) => std::mem::forget(pool),
         Err(error) => log::warn!("what is computed beside the window holds up rendering: {error}"),
     }
 }
 
-/// Makes the cores' worker threads, which all rendering on the processor uses, give way to the window. Only the first
-/// call has an effect, and only before those threads are used.
+/// Creates the common pool with lowered priority, so that CPU rendering yields to the window. Only the first call has an
+/// effect, before the pool is used.
 pub fn let_rendering_give_way() {
-    // Fails where the threads run already: then they keep their priority.
+    // Fails if the pool exists already: then it keeps its priority.
     let _ = rayon::ThreadPoolBuilder::new()
         .start_handler(|_| lower_thread_priority())
         .build_global();

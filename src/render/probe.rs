@@ -12,17 +12,18 @@ use crate::optics::vector::Vec3;
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {
-    /// The processor's.
+    /// On the CPU.
     Cpu,
-    /// The shader's.
+    /// On the GPU.
     Gpu(Box<Probe>),
 }
 
 impl Prober {
-    /// Opens what was asked for; `auto` takes the processor where there is no hardware GPU.
+    /// Opens the requested engine; `auto` uses the CPU without a hardware GPU.
     ///
     /// # Errors
-    /// Where a GPU was asked for and fails.
+    ///
+    /// If a GPU was requested and fails.
     pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
         Ok(match device_for_functions(choice)? {
             Some(device) => Self::Gpu(Box::new(Probe::new(device)?)),
@@ -30,10 +31,11 @@ impl Prober {
         })
     }
 
-    /// What lobes draw, and their values and densities.
+    /// Samples, values and densities of lobes.
     ///
     /// # Errors
-    /// If the GPU fails; so do all that follow.
+    ///
+    /// If the GPU fails; so do all later calls.
     pub fn lobes(&self, scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Result<Vec<LobeAnswer>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_lobe(scene, questions)),
@@ -78,9 +80,10 @@ impl Prober {
         }
     }
 
-    /// What rays meet.
+    /// Hits of rays.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
         match self {

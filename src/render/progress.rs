@@ -1,9 +1,9 @@
-//! How far a render has come, and what ended it.
+//! Progress of a render, and its stop reason.
 
 use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
 
-/// What ended a render.
+/// Reason for the end of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StopReason {
@@ -11,66 +11,65 @@ pub enum StopReason {
     Samples,
     /// The time is over.
     Time,
-    /// The picture is as exact as was asked for.
+    /// The target error is reached.
     Noise,
 }
 
-/// How far a render has come.
+/// Progress of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Completed samples a pixel, where there are most.
+    /// Completed samples per pixel: the maximum over tiles.
     pub samples_per_pixel: u32,
     /// Samples a pixel to reach.
     pub samples_wanted: u32,
-    /// Samples per pixel, averaged over the picture: fewer where tiles have been left at rest.
+    /// Samples per pixel, averaged over the image: fewer if tiles pause.
     pub mean_samples: f64,
     /// Pixel samples a second by the engine's own time, over the whole render.
     pub samples_per_second: f64,
-    /// Time spent on this picture, seconds.
+    /// Render time in seconds.
     pub render_seconds: f64,
-    /// Of it the engine's own: by the GPU's clock where it has one.
+    /// Engine's part of it in seconds, by the GPU's clock if it has one.
     pub engine_seconds: f64,
-    /// Of it the time for looking at the error.
+    /// Part of it for error measurements, in seconds.
     pub measure_seconds: f64,
     /// The error when it was last looked at.
     pub noise: Option<Noise>,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
-    /// The error of the denoised picture, as told to [`Session::note_denoised`](super::Session::note_denoised).
+    /// Estimated error of the denoised image, see [`Session::set_denoised_error`](super::Session::set_denoised_error).
     pub denoised: Option<Distance>,
-    /// The error to reach is that of the denoised picture, where it is the lesser.
-    pub aims_at_denoised: bool,
-    /// The processor draws, because the GPU's kernel is being compiled.
-    pub is_standing_in: bool,
-    /// How long the kernel took that was compiled last beside the picture, seconds.
+    /// True if the target also applies to the denoised image's error, if lower.
+    pub targets_denoised: bool,
+    /// True while the CPU engine renders because the GPU's kernel is being compiled.
+    pub is_fallback: bool,
+    /// Compile time of the latest kernel in the background, in seconds.
     pub kernel_seconds: Option<f64>,
-    /// Why nothing more is rendered.
+    /// Stop reason, once stopped.
     pub stopped_by: Option<StopReason>,
-    /// All that was asked for has been done.
+    /// True once the render is complete.
     pub is_done: bool,
 }
 
 impl Progress {
-    /// Whether the picture is as exact as was asked for.
+    /// Whether the target error is reached.
     pub fn is_converged(&self) -> bool {
-        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        let pair = self.stop_error().zip(self.noise_wanted);
         pair.is_some_and(|(error, wanted)| error <= wanted)
     }
 
-    /// The relative error that is compared with the target: the samples' or, where it counts and is lower, the denoised
-    /// picture's.
-    fn error_aimed_at(&self) -> Option<f64> {
+    /// Error used for the stop criterion: raw, or denoised if enabled and lower.
+    fn stop_error(&self) -> Option<f64> {
         let noisy = self.noise.map(|noise| noise.relative);
-        let denoised = self.denoised.filter(|_| self.aims_at_denoised).map(|error| error.value);
+        let denoised = self.denoised.filter(|_| self.targets_denoised).map(|error| error.value);
         noisy.into_iter().chain(denoised).reduce(f64::min)
     }
 
-    /// How much has been done of what is to be done, in [0, 1]: of samples, time and noise the one that is nearest.
+    /// Progress in [0, 1]: the maximum of samples, time and noise relative to their targets.
     pub fn share_done(&self, time_limit_s: Option<f64>) -> f64 {
         let by_samples = f64::from(self.samples_per_pixel) / f64::from(self.samples_wanted.max(1));
         let by_time = time_limit_s.map_or(0.0, |limit| self.render_seconds / limit);
-        // The time that a noise takes goes with the inverse of its square.
-        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        // The time to a noise level is proportional to its inverse square.
+        let pair = self.stop_error().zip(self.noise_wanted);
         let by_noise = pair.map_or(0.0, |(error, wanted)| (wanted / error.max(1e-30)).powi(2));
         by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }

@@ -1,4 +1,4 @@
-//! Renders that go on beside the window, one after the other, on a thread and by a session of their own.
+//! Queue of renders in the background, one after the other, with their own thread and session.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,57 +19,57 @@ use crate::panics::caught;
 use crate::store::FileError;
 use crate::store::replace::check_saving;
 
-/// How long a render gives way at once while something moves in the window.
+/// Pause of a render while something moves in the window.
 const GIVES_WAY: Duration = Duration::from_millis(50);
 
-/// Something to render.
+/// A queued task.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Task {
-    /// A document as a picture, of its own size.
+    /// A document as an image of its own size.
     Picture {
-        /// The document.
+        /// Document, rendered at its own size.
         document: Box<Document>,
-        /// The picture's file.
+        /// File of the image.
         path: PathBuf,
     },
     /// A document turned once.
     Turntable(Box<Turntable>),
 }
 
-/// How a task stands.
+/// State of a task.
 #[derive(Clone, Debug, PartialEq)]
 pub enum State {
     /// Others are before it.
     Waiting,
     /// The share of it that is done, in [0, 1].
     Rendering(f64),
-    /// What came of it.
+    /// Finished, with a summary.
     Done(String),
-    /// Why nothing came of it.
+    /// Failed, with the reason.
     Failed(String),
-    /// The user called it off; what is there.
+    /// Cancelled by the user, with a summary of its output.
     Cancelled(String),
 }
 
 /// A task as it is listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Never used again.
+    /// Unique id.
     pub id: u64,
-    /// What it is called: its file's name, with a number where another one is called so.
+    /// Name: its file's, with a number if taken.
     pub name: String,
-    /// How it stands.
+    /// Whether it waits, renders, or how it ended.
     pub state: State,
 }
 
 impl Entry {
-    /// Whether nothing more happens to it.
+    /// Whether it is finished, failed or cancelled.
     pub fn is_over(&self) -> bool {
         !matches!(self.state, State::Waiting | State::Rendering(_))
     }
 }
 
-/// The list, and the thread that works through it. Dropping it cancels what is waiting or in progress.
+/// The queue and its thread. Dropping it cancels all tasks.
 pub struct Queue {
     shared: Arc<Shared>,
 }
@@ -83,7 +83,7 @@ struct Shared {
 #[derive(Default)]
 struct Book {
     entries: Vec<Entry>,
-    /// Those of the entries that wait.
+    /// Waiting tasks.
     tasks: Vec<(u64, Task, EngineChoice)>,
     /// Ends of tasks not yet reported.
     news: Vec<Result<String, String>>,
@@ -96,7 +96,7 @@ struct Book {
     quits: bool,
 }
 
-/// Why a task came to nothing.
+/// Errors of a task.
 #[derive(Debug, thiserror::Error)]
 enum TaskError {
     #[error(transparent)]
@@ -110,7 +110,7 @@ enum TaskError {
 }
 
 impl Shared {
-    /// What a panic left is whole: every change is a single assignment.
+    /// Locks the list, poisoned or not: it stays consistent, as every change is a single assignment.
     fn book(&self) -> MutexGuard<'_, Book> {
         self.book.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -132,8 +132,8 @@ impl Shared {
         }
     }
 
-    /// Tells how far a task has come, and waits while it has to; false where it is to end.
-    fn goes_on(&self, id: u64, share: f64) -> bool {
+    /// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
+    fn report(&self, id: u64, share: f64) -> bool {
         let mut book = self.book();
         book.set(id, State::Rendering(share));
         if book.gives_way {
@@ -180,14 +180,14 @@ impl Queue {
             while let Some((id, task, engine)) = of_thread.next() {
                 repaint();
                 let _at_work = quiet::at_work();
-                let mut go_on = |share: f64| {
-                    let goes_on = of_thread.goes_on(id, share);
+                let mut on_progress = |share: f64| {
+                    let continues = of_thread.report(id, share);
                     repaint();
-                    goes_on
+                    continues
                 };
                 let rendered = caught(|| {
                     let session = opened(&mut session, engine, &assets)?;
-                    render(session, engine, &task, &mut go_on)
+                    render(session, engine, &task, &mut on_progress)
                 });
                 let ended = match rendered {
                     Ok(Ok(words)) => Ok(words),
@@ -224,12 +224,12 @@ impl Queue {
         self.shared.changed.notify_all();
     }
 
-    /// All tasks, those under way and waiting in their order.
+    /// All tasks, in order.
     pub fn entries(&self) -> Vec<Entry> {
         self.shared.book().entries.clone()
     }
 
-    /// Ends of tasks since this was last asked: what came of them, or why nothing did.
+    /// Results of tasks that ended since the last call: summaries or errors.
     pub fn take_news(&self) -> Vec<Result<String, String>> {
         std::mem::take(&mut self.shared.book().news)
     }
@@ -242,8 +242,8 @@ impl Queue {
     /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
         let mut book = self.shared.book();
-        let is_under_way = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
-        if book.entries.iter().any(is_under_way) {
+        let is_rendering = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
+        if book.entries.iter().any(is_rendering) {
             book.is_cancelled = true;
         } else {
             book.entries.retain(|entry| entry.id != id);
@@ -253,12 +253,12 @@ impl Queue {
         self.shared.changed.notify_all();
     }
 
-    /// Takes those that are over from the list.
+    /// Removes ended tasks.
     pub fn remove_over(&self) {
         self.shared.book().entries.retain(|entry| !entry.is_over());
     }
 
-    /// Puts a waiting task before all that wait.
+    /// Moves a waiting task to the front.
     pub fn put_first(&self, id: u64) {
         let mut book = self.shared.book();
         if let Some(from) = book.tasks.iter().position(|(of, ..)| *of == id) {
@@ -275,7 +275,7 @@ impl Queue {
         }
     }
 
-    /// Stops rendering where it is, or goes on.
+    /// Pauses or resumes rendering.
     pub fn pause(&self, is_paused: bool) {
         self.shared.book().is_paused = is_paused;
         self.shared.changed.notify_all();
@@ -286,7 +286,7 @@ impl Queue {
         self.shared.book().is_paused
     }
 
-    /// Leaves most of the time to the window, or takes it again.
+    /// Yields most of the time to the window, or stops yielding.
     pub fn give_way(&self, gives_way: bool) {
         self.shared.book().gives_way = gives_way;
     }
@@ -300,7 +300,7 @@ impl Drop for Queue {
 }
 
 impl Task {
-    /// The name of what it makes.
+    /// Name of its output.
     fn name(&self) -> String {
         let path = match self {
             Self::Picture { path, .. } => Some(path),
@@ -311,7 +311,7 @@ impl Task {
     }
 }
 
-/// A name that no entry has yet: with a number behind it where it is taken.
+/// A unique name: with a number if taken.
 fn free_name(entries: &[Entry], name: &str) -> String {
     let numbered = (2..).map(|number| format!("{name} ({number})"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
@@ -334,20 +334,20 @@ fn opened<'a>(
     })
 }
 
-/// Renders a task; what came of it.
+/// Renders a task and returns its summary.
 fn render(
     session: &mut Session,
     engine: EngineChoice,
     task: &Task,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    on_progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<String, TaskError> {
     match task {
-        Task::Picture { document, path } => picture(session, engine, document, path, go_on),
+        Task::Picture { document, path } => picture(session, engine, document, path, on_progress),
         Task::Turntable(table) => {
             let outcome = turntable::render(session, engine, table, &mut |progress| {
-                go_on((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
+                on_progress((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
             })?;
-            Ok(told(table, outcome.frames))
+            Ok(summary(table, outcome.frames))
         }
     }
 }
@@ -357,7 +357,7 @@ fn picture(
     engine: EngineChoice,
     document: &Document,
     path: &Path,
-    go_on: &mut dyn FnMut(f64) -> bool,
+    on_progress: &mut dyn FnMut(f64) -> bool,
 ) -> Result<String, TaskError> {
     output::format_of(path)?;
     check_saving(path)?;
@@ -365,7 +365,7 @@ fn picture(
     let limit_s = document.render.time_s;
     let mut attendant = Attendant::new(document);
     let ended = step_to_end(session, engine, document, &mut attendant, &mut |progress| {
-        go_on(progress.share_done(limit_s))
+        on_progress(progress.share_done(limit_s))
     })?;
     if !ended.progress.is_done {
         return Ok(format!("{} cancelled: nothing was written", path.display()));
@@ -384,7 +384,7 @@ fn picture(
 }
 
 /// The outcome of a turntable, by the number of frames rendered.
-fn told(table: &Turntable, frames: u32) -> String {
+fn summary(table: &Turntable, frames: u32) -> String {
     let is_whole = frames >= table.frames;
     let all = match is_whole {
         true => format!("turntable: {frames} frames"),

@@ -2,14 +2,14 @@
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// What is at work in this process.
+/// Work of this process.
 static COMMON: Quiet = Quiet::new();
 
 /// Work that is under way, counted.
 #[derive(Debug, Default)]
 pub struct Quiet {
     at_work: AtomicUsize,
-    /// How often work was begun.
+    /// Number of times that work started.
     begun: AtomicU64,
 }
 
@@ -17,7 +17,7 @@ pub struct Quiet {
 #[derive(Debug)]
 pub struct AtWork<'a>(&'a Quiet);
 
-/// Counts work of this process as under way until what is returned is dropped.
+/// Marks this process as busy until the guard is dropped.
 pub fn at_work() -> AtWork<'static> {
     COMMON.work()
 }
@@ -28,7 +28,7 @@ pub(super) fn common() -> &'static Quiet {
 }
 
 impl Quiet {
-    /// With nothing under way.
+    /// Idle.
     pub const fn new() -> Self {
         Self {
             at_work: AtomicUsize::new(0),
@@ -36,7 +36,7 @@ impl Quiet {
         }
     }
 
-    /// Counts work as under way until what is returned is dropped.
+    /// Marks it as busy until the guard is dropped.
     pub fn work(&self) -> AtWork<'_> {
         self.begun.fetch_add(1, Ordering::SeqCst);
         self.at_work.fetch_add(1, Ordering::SeqCst);

@@ -1,4 +1,4 @@
-//! Whether the GPU finds by itself what rays meet.
+//! Use of hardware ray queries.
 
 use std::str::FromStr;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use crate::named::{Named, named};
 
 named! {
-    /// Whether kernels ask the adapter what rays meet, in place of our own traversal.
+    /// Whether kernels use ray queries instead of our own traversal.
     #[derive(Default)]
     RayQueries {
         #[default]
@@ -16,7 +16,7 @@ named! {
     }
 }
 
-/// What was chosen, for the whole process, as a number.
+/// The process-wide choice, as a number.
 static CHOSEN: AtomicU32 = AtomicU32::new(RayQueries::Auto as u32);
 
 impl RayQueries {
@@ -25,7 +25,7 @@ impl RayQueries {
         CHOSEN.store(self as u32, Relaxed);
     }
 
-    /// What was chosen last.
+    /// The latest choice.
     pub fn chosen() -> Self {
         let number = CHOSEN.load(Relaxed);
         let is_it = |choice: &&Self| **choice as u32 == number;

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use super::background::{Background, Desk};
+use super::background::{Background, Responder};
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
@@ -21,14 +21,14 @@ const AZIMUTHS: u32 = 48;
 /// Samples from which the share below the surface is counted.
 const BELOW_COUNT: u32 = 1 << 16;
 
-/// What to draw and to compute.
+/// A query of lobe samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampleQuery {
     /// The engine whose function draws.
     pub engine: EngineChoice,
     /// The samples.
     pub request: ScatterRequest,
-    /// Whether to look for the Phong and GGX lobes of equal look, which takes a second.
+    /// Whether to match the Phong and GGX lobes, which takes a second.
     pub compare: bool,
 }
 
@@ -48,16 +48,16 @@ pub struct AnglePlot {
 pub struct OtherLobe {
     /// Which.
     pub lobe: Lobe,
-    /// At what roughness, and how far apart the two still are.
+    /// Matched roughness and remaining distance.
     pub nearest: Nearest,
     /// (α in radians, density per radian).
     pub analytic: Vec<[f64; 2]>,
 }
 
-/// What came of a query.
+/// Answer to a query.
 #[derive(Clone, Debug)]
 pub struct SampleReport {
-    /// What was asked for.
+    /// The query that this answers.
     pub query: SampleQuery,
     /// The samples.
     pub cloud: ScatterCloud,
@@ -70,7 +70,7 @@ pub struct SampleReport {
 /// The answer to a query so far, or why there is none.
 pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 
-/// Draws samples on a thread of its own; the latest query wins.
+/// Background worker for samples; the latest query wins.
 pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 
 /// Starts the thread; `repaint` is called when there is something new to show.
@@ -79,17 +79,17 @@ pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 /// If no thread can be started.
 pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
-    Background::spawn("samples", repaint, move |query: SampleQuery, desk| {
+    Background::spawn("samples", repaint, move |query: SampleQuery, responder| {
         match draw(&mut sampler, &query) {
             Ok(report) => {
-                desk.publish(Ok(Arc::new(report.clone())));
+                responder.publish(Ok(Arc::new(report.clone())));
                 if query.compare {
-                    compare(report, desk);
+                    compare(report, responder);
                 }
             }
             Err(why) => {
                 sampler = None;
-                desk.publish(Err(why));
+                responder.publish(Err(why));
             }
         }
     })
@@ -134,17 +134,17 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
 }
 
 /// Adds the lobes of equal look, one after the other, unless something else is asked for meanwhile.
-fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>) {
+fn compare(mut report: SampleReport, responder: &Responder<'_, SampleQuery, SampleAnswer>) {
     let request = report.query.request.clone();
     let target = &request.model;
     if !target.has_density() {
         return;
     }
     for lobe in [Lobe::Phong, Lobe::Ggx].into_iter().filter(|lobe| *lobe != target.lobe) {
-        if desk.is_superseded() {
+        if responder.is_superseded() {
             return;
         }
-        // Looks are matched head-on, where every model is at its most comparable.
+        // Matched at normal incidence, where the models are most comparable.
         let wo = view_direction(0.0);
         let profile = |wi: Vec3<f64>| Measure::Density.of(target, wo, wi);
         let other = LobeModel::new(lobe, 0.5, Curve::Smooth);
@@ -155,11 +155,11 @@ fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>)
             nearest,
             analytic: analytic(&matched, &request),
         });
-        desk.publish(Ok(Arc::new(report.clone())));
+        responder.publish(Ok(Arc::new(report.clone())));
     }
 }
 
-/// The density of the angle to the mirror direction; nothing where the lobe is a mirror.
+/// Density of the angle to the mirror direction; empty for a mirror.
 fn analytic(model: &LobeModel, request: &ScatterRequest) -> Vec<[f64; 2]> {
     if !model.has_density() {
         return Vec::new();

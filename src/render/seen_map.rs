@@ -1,4 +1,4 @@
-//! Which object and which material slot is seen at each pixel, made beside the window: what outlines are drawn from.
+//! Map of the object and material slot at each pixel, made in the background: for outlines.
 
 use std::io;
 use std::sync::Arc;
@@ -12,24 +12,24 @@ use crate::scene::camera::camera_ray;
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 1024;
-/// Marks pixels where nothing is seen.
+/// Marks background pixels.
 pub const NOTHING: u32 = NO_OBJECT;
-/// Rows between two checks whether the map is still wanted.
+/// Rows between two checks for cancellation.
 const ROWS: usize = 32;
 
 /// Makes maps of jobs; the latest job wins.
 pub type SeenMaps = Background<Arc<Job>, Arc<SeenMap>>;
 
-/// What is seen first through the middle of each pixel.
+/// Object and slot hit through each pixel's centre.
 #[derive(Clone, Debug)]
 pub struct SeenMap {
-    /// What it was made of.
+    /// Source job.
     pub job: Arc<Job>,
     /// Columns.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Object and slot, row by row from the top; [`NOTHING`] where there is none.
+    /// Object and slot, or [`NOTHING`]; rows from the top.
     pub seen: Vec<[u32; 2]>,
 }
 
@@ -38,14 +38,14 @@ pub struct SeenMap {
 /// # Errors
 /// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
-    Background::spawn("outlines", repaint, |job: Arc<Job>, desk| {
-        if let Some(map) = seen_map(&job, || desk.is_superseded()) {
-            desk.publish(Arc::new(map));
+    Background::spawn("outlines", repaint, |job: Arc<Job>, responder| {
+        if let Some(map) = seen_map(&job, || responder.is_superseded()) {
+            responder.publish(Arc::new(map));
         }
     })
 }
 
-/// The map of a job; `None` if it is no longer wanted.
+/// The map of a job; `None` if superseded.
 pub fn seen_map(job: &Arc<Job>, is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
     let [columns, rows] = job.settings.image_size;
     let longest = columns.max(rows).max(1);
@@ -88,7 +88,7 @@ fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
 }
 
 impl SeenMap {
-    /// The pixels at the edges of what is chosen: those whose neighbours are not all of the same kind.
+    /// Pixels at the edges of the selection: those with neighbours of another kind.
     pub fn edges(&self, is_chosen: impl Fn([u32; 2]) -> bool + Sync) -> Vec<bool> {
         let (width, height) = (self.width as usize, self.height as usize);
         let chosen: Vec<bool> = self.seen.par_iter().map(|seen| is_chosen(*seen)).collect();

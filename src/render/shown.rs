@@ -1,4 +1,4 @@
-//! What of a render the window shows: the picture, or maps of what is known about each of its pixels.
+//! Views of a render in the window: the image, or maps of per-pixel quantities.
 
 use rayon::prelude::*;
 
@@ -16,39 +16,39 @@ const STOPS: f64 = 6.0;
 /// Share of the pixels above the brightest colour of a map of errors, and how many times smaller the darkest is.
 const ERRORS_ABOVE: f64 = 0.005;
 const ERRORS_SPAN: f64 = 300.0;
-/// What marks pixels that are clipped, bright and dark ones.
+/// Colours of pixels clipped at white and at black.
 pub const CLIPPED: [[u8; 3]; 2] = [[255, 40, 40], [40, 90, 255]];
-/// What stands for values that are not there.
+/// Colour of missing values.
 const NOTHING: [u8; 4] = [24, 24, 24, 255];
 
-/// What of a render is shown.
+/// A view of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Shown {
-    /// The picture itself.
+    /// The image.
     #[default]
     Picture,
     /// The estimated error of each pixel.
     Error,
     /// The samples of each pixel.
     Samples,
-    /// Where numbers are not to be trusted: made beside the picture, see [`super::precision`].
+    /// Numerical trouble: made in the background, see [`super::precision`].
     Precision,
     /// Luminance in stops.
     FalseColor,
-    /// The picture with what is too bright or too dark for the screen marked.
+    /// The image with clipped pixels marked.
     Clipping,
-    /// What the first surface reflects.
+    /// Albedo at the first hit.
     Albedo,
-    /// Where the first surface faces.
+    /// Normal at the first hit.
     Normal,
-    /// How far away the first surface is.
+    /// Depth of the first hit.
     Depth,
     /// Variance of each pixel's mean.
     Variance,
 }
 
 impl Shown {
-    /// All of them, with their labels and what they are.
+    /// All views, with labels and descriptions.
     pub const ALL: [(Self, &str, &str); 10] = [
         (Self::Picture, "Picture", "The picture itself."),
         (
@@ -99,19 +99,19 @@ impl Shown {
     ];
 }
 
-/// What the ends of a map's colours stand for.
+/// Value range of a map's colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// The darkest colour.
+    /// Value of the darkest colour.
     pub low: f64,
-    /// The brightest.
+    /// Value of the brightest colour.
     pub high: f64,
     /// Equal factors, not differences, are equally far apart.
     pub is_logarithmic: bool,
 }
 
 impl Scale {
-    /// Where a value lies between the ends, in [0, 1].
+    /// Relative position of a value in the range, in [0, 1].
     fn place(&self, value: f64) -> f64 {
         let place = if self.is_logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -122,29 +122,29 @@ impl Scale {
     }
 }
 
-/// What maps are made of.
+/// Inputs of maps.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
     /// The sums.
     pub film: &'a Film,
-    /// The linear picture that is shown.
+    /// The linear image shown.
     pub image: &'a Image,
-    /// How it is shown.
+    /// Display settings.
     pub view: &'a ViewSettings,
     /// Length of a unit of the geometry, scene units.
     pub world_units_per_unit: f64,
 }
 
-/// A map in opaque bytes as [`display`] gives them, and what its colours mean where they stand for numbers.
+/// A map as opaque RGBA, with the range of its colours if they represent numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// Red, green, blue and alpha of 8 bits, row by row from the top.
     pub rgba: Vec<u8>,
-    /// What the colours mean.
+    /// Value range, if numeric.
     pub scale: Option<Scale>,
 }
 
-/// What is shown in colours; `None` for the picture itself, and for what is made elsewhere.
+/// The map of a view; `None` for the image itself, and for maps made elsewhere.
 pub fn map(source: &Source<'_>, shown: Shown) -> Option<Map> {
     let film = source.film;
     Some(match shown {
@@ -283,19 +283,19 @@ fn with_clipping(mut rgba: Vec<u8>) -> Vec<u8> {
     rgba
 }
 
-/// What is known of each pixel of a picture.
+/// Per-pixel quantities of an image.
 #[derive(Clone, Debug, Default)]
 pub struct Facts {
-    /// Standard error of the luminance of what is shown, relative to the picture's mean.
+    /// Standard error of the shown luminance, relative to the image's mean.
     pub errors: Vec<f32>,
-    /// How many samples there are.
+    /// Samples per pixel.
     pub samples: Vec<u32>,
-    /// What is seen first.
+    /// First-hit features.
     pub features: Features,
 }
 
 impl Facts {
-    /// Of a film; errors of the denoised picture stand in for its own.
+    /// The quantities of a film; with the denoised image's errors, if given, instead of its own.
     pub fn of(source: &Source<'_>, denoised_errors: Option<&[f32]>) -> Self {
         let film = source.film;
         Self {

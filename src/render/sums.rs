@@ -1,9 +1,9 @@
-//! Films in `.exr` files: the sums behind a picture, so that parts of its samples can be rendered apart and joined.
+//! Films in `.exr` files: an image's sums, so that parts of its samples can be rendered separately and joined.
 //!
-//! Beside the picture's own channels a file has, for each half of the samples, `sums.even.R.high` and `.low` and so on: the
-//! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The sums of
-//! what the first samples of each half saw first are f32 (`sums.guides.even.…`), with their number. An attribute has
-//! the document and the numbers of the samples.
+//! Besides the image's channels, a file has `sums.even.R.high`, `.low` and so on for each half of the samples: the upper and
+//! lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold only 48 of its 53 bits. The sums of the
+//! guides of each half's first samples are f32 (`sums.guides.even.…`), with their number. An attribute has the document and
+//! the sample ranges.
 
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ const SAMPLES: &str = "glossmithSamples";
 const UNITS: &str = "glossmithWorldUnits";
 const HALVES: [&str; 2] = ["even", "odd"];
 const COLORS: [&str; 3] = ["R", "G", "B"];
-/// The channels of what is seen first, in the order of [`crate::job::guides::GuideSums`].
+/// Channels of the guides, in the order of [`crate::job::guides::GuideSums`].
 const GUIDES: [&str; 8] = [
     "albedo.R", "albedo.G", "albedo.B", "hits", "normal.X", "normal.Y", "normal.Z", "depth",
 ];
@@ -40,11 +40,11 @@ const GUIDES: [&str; 8] = [
 pub struct KeptFilm {
     /// The sums.
     pub film: Film,
-    /// What was rendered.
+    /// The rendered document.
     pub document: Document,
-    /// Which samples: the first and the one after the last, several where films were joined; in order.
+    /// Sample ranges (first, end) in order; several if films were joined.
     pub samples: Vec<[u32; 2]>,
-    /// How many samples of each half of a pixel are in the sums of what is seen first.
+    /// Guide samples per half of a pixel.
     guide_samples: Vec<[u32; 2]>,
     /// Units of the world in one of the geometry's: depths are summed in these.
     world_units_per_unit: f64,
@@ -58,15 +58,15 @@ pub enum SumsError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
-    /// A picture without sums.
+    /// An image without sums.
     #[error("{}: has no sums ({missing} is missing); render it with --keep-sums", path.display())]
     NoSums {
         /// The file.
         path: PathBuf,
-        /// What is missing.
+        /// The missing channel.
         missing: String,
     },
     /// The document inside is damaged.
@@ -78,14 +78,14 @@ pub enum SumsError {
          join one that begins at 0"
     )]
     NotSeen,
-    /// Another picture.
+    /// Sums of another image.
     #[error("{}: of another picture than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
     Differs {
         /// The file.
         path: PathBuf,
         /// The one that it is compared with.
         first: PathBuf,
-        /// In what.
+        /// The difference.
         differs: String,
     },
     /// Samples that are in both.
@@ -113,7 +113,7 @@ impl KeptFilm {
     /// A film of up to `samples` samples a pixel that was just rendered.
     pub fn of(film: Film, document: Document, samples: u32, world_units_per_unit: f64) -> Self {
         let first = document.render.first_sample;
-        // Of the first samples of either half so many lie before the first of these.
+        // Number of samples of either half before this range.
         let before = [first.div_ceil(2), first / 2];
         let most = match film.extras().guides {
             true => before.map(|before| (GUIDE_SAMPLES / 2).saturating_sub(before)),
@@ -130,20 +130,22 @@ impl KeptFilm {
         }
     }
 
-    /// What the camera sees first.
+    /// First-hit features.
     ///
     /// # Errors
-    /// [`SumsError::NotSeen`] where a pixel has samples, and none of the first among them.
+    ///
+    /// [`SumsError::NotSeen`] if a pixel has samples, but none of the first ones.
     pub fn features(&self) -> Result<Features, SumsError> {
         self.check_seen(|[even, odd], _| even + odd > 0)?;
         let samples = |pixel: usize| self.guide_samples[pixel].map(f64::from);
         Ok(Features::of_samples(&self.film, samples, self.world_units_per_unit))
     }
 
-    /// What the denoiser needs of it.
+    /// Input of the denoiser.
     ///
     /// # Errors
-    /// The same of each half by itself, as each is led by its own.
+    ///
+    /// The same for each half, as each is guided by its own samples.
     pub fn noisy(&self) -> Result<Noisy, SumsError> {
         self.check_seen(|seen, samples| (0..2).all(|half| seen[half] > 0 || samples[half] == 0.0))?;
         let samples = |pixel: usize| self.guide_samples[pixel].map(f64::from);
@@ -160,10 +162,11 @@ impl KeptFilm {
         }
     }
 
-    /// What a file at `path` tells beside its channels.
+    /// Attributes of a file at `path`.
     ///
     /// # Errors
-    /// Where the document has no place in a file.
+    ///
+    /// If the document cannot be written.
     pub fn attributes(&self, path: &Path) -> Result<LayerAttributes, FileError> {
         let samples: Vec<String> = self.samples.iter().map(|[from, to]| format!("{from}-{to}")).collect();
         let document = document_text(path, &self.document)?;
@@ -213,10 +216,11 @@ impl KeptFilm {
         channels
     }
 
-    /// The film in a file.
+    /// Reads a film from a file.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    ///
+    /// The fault of the file.
     pub fn read(path: &Path) -> Result<Self, SumsError> {
         let file = Sums::open(path)?;
         let [samples, units, document] = file.kept()?;
@@ -265,12 +269,12 @@ impl KeptFilm {
         })
     }
 
-    /// Samples a pixel, of those that have most.
+    /// Maximum samples per pixel.
     pub fn sample_count(&self) -> u32 {
         self.samples.iter().map(|[from, to]| to - from).sum()
     }
 
-    /// Whether both are samples of the same picture.
+    /// Whether both are samples of the same image.
     fn is_alike(&self, other: &Self) -> bool {
         let mut document = other.document.clone();
         document.render.first_sample = self.document.render.first_sample;
@@ -278,9 +282,10 @@ impl KeptFilm {
             && self.film.extras().coverage == other.film.extras().coverage
     }
 
-    /// Adds the samples of another film of the same picture. The paths are only named in messages.
+    /// Adds the samples of another film of the same image. The paths are for messages.
     ///
     /// # Errors
+    ///
     /// [`SumsError::Differs`], [`SumsError::Twice`].
     pub fn add(&mut self, other: &Self, path: &Path, first: &Path) -> Result<(), SumsError> {
         let differs = |differs: &str| SumsError::Differs {
@@ -390,7 +395,7 @@ impl<'a> Sums<'a> {
         channels.find(is_meant).map(|channel| &channel.sample_data)
     }
 
-    /// What the channels of a half's guides begin with: older files have the sums over both halves alone.
+    /// Prefix of a half's guide channels: older files have only the sums over both halves.
     fn guides_of(&self, half: &str) -> String {
         match self.find("guides.samples") {
             Some(_) => "guides.".to_owned(),

@@ -1,4 +1,4 @@
-//! Small pictures of materials, rendered beside the window and kept on disk.
+//! Thumbnails of materials, rendered in the background and cached on disk.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::attendant::Attendant;
-use super::background::{Background, Desk};
+use super::background::{Background, Responder};
 use super::denoise::Library;
 use super::display::display;
 use super::looks::ball;
@@ -20,21 +20,21 @@ use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
 pub const SIDE: u32 = 128;
-/// Samples a pixel: noise is below what is seen at this size, and nothing of it is left where it is denoised.
+/// Samples per pixel: the noise is invisible at this size, and removed if denoised.
 const SAMPLES: u32 = 24;
-/// How long to render before looking whether something else is wanted.
+/// Render time between two checks for a newer request.
 const STEP: Duration = Duration::from_millis(30);
-/// To be raised where thumbnails of the same material come out otherwise than before.
+/// Cache version: increase if thumbnails of the same material change.
 const VERSION: u32 = 4;
 
-/// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
+/// A thumbnail: RGBA, 8 bits each, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels, rows from the top.
 pub type Thumbnail = Arc<Vec<u8>>;
 /// Thumbnails by [`key`].
 pub type Thumbnails = Arc<HashMap<u64, Thumbnail>>;
 /// Renders the thumbnails of the materials that it was asked for last, in their order; answers grow.
 pub type ThumbnailWorker = Background<Vec<MaterialSettings>, Thumbnails>;
 
-/// The same for materials that look the same, whatever they are called.
+/// Cache key, equal for materials of equal appearance.
 pub fn key(material: &MaterialSettings) -> u64 {
     let nameless = MaterialSettings {
         name: String::new(),
@@ -50,10 +50,11 @@ pub fn key(material: &MaterialSettings) -> u64 {
     hasher.finish()
 }
 
-/// Starts the worker; `folder` keeps the pictures from one start to the next and is made where it is not there. Nothing
-/// is rendered while `hold` is set: the viewport goes first.
+/// Starts the worker; `folder`, created if needed, caches thumbnails between starts. It pauses while `hold` is set, for the
+/// viewport.
 ///
 /// # Errors
+///
 /// If no thread can be started.
 pub fn spawn_thumbnails(
     folder: PathBuf,
@@ -62,18 +63,19 @@ pub fn spawn_thumbnails(
 ) -> io::Result<ThumbnailWorker> {
     let mut studio: Option<Studio> = None;
     let mut made: HashMap<u64, Thumbnail> = HashMap::new();
-    Background::spawn("thumbnails", repaint, move |materials, desk| {
+    Background::spawn("thumbnails", repaint, move |materials, responder| {
         for material in materials {
             let key = key(&material);
             if made.contains_key(&key) {
                 continue;
             }
             let path = folder.join(format!("{key:016x}.png"));
-            let picture = picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, desk));
+            let picture =
+                picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, responder));
             match picture {
                 Ok(Some(pixels)) => {
                     made.insert(key, Arc::new(pixels));
-                    desk.publish(Arc::new(made.clone()));
+                    responder.publish(Arc::new(made.clone()));
                 }
                 Ok(None) => return,
                 Err(error) => log::warn!("no small picture of {}: {error}", material.name),
@@ -104,20 +106,20 @@ fn document(material: &MaterialSettings) -> Document {
     document
 }
 
-/// What thumbnails are made with.
+/// Renderer of thumbnails.
 struct Studio {
     session: Session,
     attendant: Attendant,
 }
 
-/// `None` where something else is wanted by now.
+/// `None` if superseded.
 fn make<A>(
     studio: &mut Option<Studio>,
     material: &MaterialSettings,
     hold: &AtomicBool,
-    desk: &Desk<'_, Vec<MaterialSettings>, A>,
+    responder: &Responder<'_, Vec<MaterialSettings>, A>,
 ) -> Result<Option<Vec<u8>>, SessionError> {
-    if !desk.may_go_on(hold) {
+    if !responder.wait_while_held(hold) {
         return Ok(None);
     }
     let document = document(material);
@@ -130,7 +132,7 @@ fn make<A>(
     };
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {
-        if !desk.may_go_on(hold) {
+        if !responder.wait_while_held(hold) {
             return Ok(None);
         }
     }
@@ -151,7 +153,7 @@ mod tests {
 
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {
-            // The middle of the picture: the sphere.
+            // The centre of the image: the sphere.
             let middle = (48..80).flat_map(|y| (48..80).map(move |x| 4 * (y * SIDE as usize + x) + channel));
             middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 1024.0
         })

@@ -10,41 +10,43 @@ use super::progress::Progress;
 use super::session::Session;
 use crate::document::Document;
 
-/// Step of the session between two looks at whether to go on.
+/// Session step between two checks for a stop.
 const STEP: Duration = Duration::from_millis(100);
 
-/// What a render came to.
+/// Result of a render.
 pub struct Ended {
-    /// How far it came: not to its end where it was stopped.
+    /// Progress; incomplete if stopped.
     pub progress: Progress,
-    /// The denoised picture, if it was requested and is available.
+    /// The denoised image, if requested and available.
     pub denoised: Option<Denoised>,
 }
 
-/// Hands a session a document. Where the GPU's device was lost it goes on with another, and on the processor after any other
-/// failure of it, unless the GPU was asked for by name.
+/// Submits a document to a session. After a lost GPU device it continues with another one; after any other GPU failure on
+/// the CPU, unless the GPU was requested by name.
 ///
 /// # Errors
-/// What the engine says, or the files that the document names.
+///
+/// Errors of the engine, or of the files that the document names.
 pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
     let submitted = session.submit(document).map(|_| ());
     or_fall_back(submitted, session, engine, document)
 }
 
-/// Steps until the document that was submitted is done, falling back as [`submit`] does, and denoises the picture where
-/// that is asked for. `go_on` receives the progress after every step and stops the render by returning `false`.
+/// Renders the submitted document to its end, falling back as [`submit`] does, and denoises it if requested. `on_progress`
+/// receives the progress after every step and stops the render by returning `false`.
 ///
 /// # Errors
-/// What the engine says.
+///
+/// Errors of the engine.
 pub fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
     attendant: &mut Attendant,
-    go_on: &mut dyn FnMut(&Progress) -> bool,
+    on_progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Ended, SessionError> {
     loop {
-        // Read back what the GPU has: if that fails, it can still be rendered again.
+        // Reads the GPU's sums back: if that fails, the render can still be repeated.
         let stepped = session.step(STEP).and_then(|progress| {
             if progress.is_done {
                 session.film()?;
@@ -54,7 +56,7 @@ pub fn step_to_end(
         or_fall_back(stepped, session, engine, document)?;
         attendant.attend(session, &session.progress())?;
         let progress = session.progress();
-        let is_stopped = !go_on(&progress);
+        let is_stopped = !on_progress(&progress);
         if progress.is_done {
             let denoised = attendant.finish(session)?;
             let progress = session.progress();

@@ -18,26 +18,26 @@ use crate::store::video::{Video, VideoError};
 /// Frames a second of a video at first.
 pub const FPS: f64 = 24.0;
 
-/// What a turntable is.
+/// A turntable render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turntable {
     /// Frame 0; the size and the samples of all.
     pub document: Document,
-    /// What turns.
+    /// What rotates.
     pub turn: Turn,
     /// Frames of a whole turn, at least 1.
     pub frames: u32,
-    /// The folder of the pictures, where they are wanted.
+    /// Folder of the frames, if requested.
     pub folder: Option<PathBuf>,
-    /// The file of the video, where one is wanted.
+    /// File of the video, if requested.
     pub video: Option<PathBuf>,
     /// Frames a second of the video.
     pub fps: f64,
-    /// A turn that is stopped leaves a video of the frames that there are; else none.
+    /// Whether a stopped turntable keeps a video of its finished frames.
     pub keeps_part: bool,
 }
 
-/// How far it has come.
+/// Progress of a turntable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurntableProgress {
     /// Frames written.
@@ -46,7 +46,7 @@ pub struct TurntableProgress {
     pub share: f64,
 }
 
-/// What it came to.
+/// Result of a turntable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurntableOutcome {
     /// Frames rendered.
@@ -66,10 +66,10 @@ pub enum TurntableError {
     /// The scene or the engine.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// A picture.
+    /// Errors of a frame.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The video.
+    /// Errors of the video.
     #[error(transparent)]
     Video(#[from] VideoError),
 }
@@ -80,7 +80,7 @@ pub fn frame_path(folder: &Path, number: u32) -> PathBuf {
 }
 
 impl Turntable {
-    /// Makes the folder, and begins the video: what fails here does so before anything is rendered.
+    /// Creates the folder and the video: errors occur before rendering.
     fn begin(&self) -> Result<Option<Video>, TurntableError> {
         if let Some(folder) = &self.folder {
             std::fs::create_dir_all(folder).map_err(|source| FileError::Write {
@@ -95,17 +95,17 @@ impl Turntable {
     }
 }
 
-/// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` receives the progress after
-/// every step, and stops the whole by `false`: pictures that were written stay, of a video what
-/// [`Turntable::keeps_part`] says.
+/// Renders the frames in order, falling back to another engine as [`submit`] does. `on_progress` receives the progress after
+/// every step, and stops the whole by `false`: written frames stay; for a video see [`Turntable::keeps_part`].
 ///
 /// # Errors
-/// [`TurntableError`] naming the file; frames before stay.
+///
+/// [`TurntableError`] naming the file; earlier frames stay.
 pub fn render(
     session: &mut Session,
     engine: EngineChoice,
     table: &Turntable,
-    go_on: &mut dyn FnMut(TurntableProgress) -> bool,
+    on_progress: &mut dyn FnMut(TurntableProgress) -> bool,
 ) -> Result<TurntableOutcome, TurntableError> {
     let mut video = table.begin()?;
     let mut outcome = TurntableOutcome::default();
@@ -121,7 +121,7 @@ pub fn render(
         let mut is_stopped = false;
         let ended = step_to_end(session, engine, &document, &mut attendant, &mut |progress| {
             let share = progress.share_done(document.render.time_s);
-            is_stopped = !go_on(TurntableProgress { done: frame, share });
+            is_stopped = !on_progress(TurntableProgress { done: frame, share });
             !is_stopped
         })?;
         if !ended.progress.is_done {
@@ -142,7 +142,7 @@ pub fn render(
             video.add(&display(denoised.unwrap_or(&image), &document.view))?;
         }
         outcome.frames = frame + 1;
-        // A frame that takes a single step is done in the step that was to be the last.
+        // A frame of a single step may be done in the last step.
         if is_stopped {
             break;
         }

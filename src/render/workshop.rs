@@ -1,7 +1,7 @@
-//! Kernels made ready beside the picture: while one is compiled for the scene's plan, the processor draws.
+//! Background compilation of kernels: while one is compiled for the scene's plan, the CPU engine renders.
 //!
-//! Each kernel has an engine and a device of its own, since software Vulkan compiles at the first dispatch, which would
-//! hold up every other dispatch of the device.
+//! Each kernel has an engine and a device of its own, because software Vulkan compiles at the first dispatch, which would
+//! block all other dispatches of the device.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -15,7 +15,7 @@ use crate::job::plan::Specialisation;
 /// Kernels that are kept besides the one in use.
 const KEPT: usize = 3;
 
-/// An engine being made ready on a thread of its own.
+/// An engine being prepared on a thread of its own.
 struct Preparation {
     specialisation: Specialisation,
     begun: Instant,
@@ -28,10 +28,10 @@ pub(super) struct Workshop {
     traversal: Traversal,
     /// An engine that is open and has no kernel yet.
     blank: Option<GpuEngine>,
-    /// Those that are ready, the one used last at the end.
+    /// Ready engines, the most recently used last.
     ready: Vec<GpuEngine>,
     in_work: Option<Preparation>,
-    /// How long the last kernel took.
+    /// Compile time of the latest kernel.
     compile_time: Option<Duration>,
 }
 
@@ -58,16 +58,17 @@ impl Workshop {
         self.blank.as_ref().map(GpuEngine::device)
     }
 
-    /// How long the kernel took that was compiled last.
+    /// Compile time of the latest kernel, in seconds.
     pub(super) fn compile_seconds(&self) -> Option<f64> {
         self.compile_time.as_ref().map(Duration::as_secs_f64)
     }
 
-    /// Begins a job with the GPU where a kernel is ready, else with the processor, until [`Self::finished`] gives one.
-    /// After an error the current engine goes on with what it had.
+    /// Starts a job on the GPU if its kernel is ready, else on the CPU until [`Self::finished`] returns one. After an error
+    /// the current engine continues.
     ///
     /// # Errors
-    /// What the GPU has against the job.
+    ///
+    /// The GPU's objection to the job.
     pub(super) fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
         if let Engine::Gpu(engine) = current
             && engine.has_kernel(job)
@@ -96,7 +97,7 @@ impl Workshop {
         Ok(())
     }
 
-    /// Compiles a job's kernel where nothing else is being compiled.
+    /// Compiles a job's kernel, unless another is being compiled.
     fn compile(&mut self, job: &Arc<Job>) {
         if self.in_work.is_some() {
             return;
@@ -114,7 +115,7 @@ impl Workshop {
                 engine.prepare(prepared)?;
                 Ok(engine)
             };
-            // Nobody waits any more where the session is gone.
+            // The session may be gone.
             let _ = sender.send(prepare());
         };
         if std::thread::Builder::new()
@@ -130,10 +131,11 @@ impl Workshop {
         }
     }
 
-    /// The engine that has taken this job, once its kernel is ready.
+    /// The engine with this job, once its kernel is ready.
     ///
     /// # Errors
-    /// What the driver said to the kernel, or the GPU to the job.
+    ///
+    /// The driver's objection to the kernel, or the GPU's to the job.
     pub(super) fn finished(&mut self, job: &Arc<Job>) -> Result<Option<GpuEngine>, GpuError> {
         let Some(preparation) = &self.in_work else {
             self.compile(job);
@@ -150,7 +152,7 @@ impl Workshop {
         self.compile_time = Some(preparation.begun.elapsed());
         self.in_work = None;
         let mut engine = match outcome {
-            // Another job's: this one has its own chance.
+            // Another job's error: this job is tried separately.
             Err(error) if !is_wanted && !error.is_lost() => {
                 log::warn!("{error}");
                 self.compile(job);

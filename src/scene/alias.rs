@@ -42,12 +42,12 @@ pub(super) fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
             small.push(giver);
         }
     }
-    // What is left in either list is 1 but for rounding, and so are the thresholds already.
+    // Entries left in either list are 1 up to rounding, which their thresholds already are.
     entries
 }
 
-/// The index of the cell of a grid of `size` columns and rows that a place in [0, 1)² falls in, and the place inside it,
-/// in [0, 1]². Two numbers for the cell, since of one of 24 bits a large table would leave few bits for each entry.
+/// Index of the grid cell (`size` is columns and rows) of a position in [0, 1)², and the position inside it, in [0, 1]². Two
+/// numbers select the cell, since one of 24 bits would leave few bits per entry of a large table.
 #[inline(always)]
 pub fn grid_place<T: Scalar>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
     let (cells, place) = grid_places(xi, size);

@@ -1,6 +1,6 @@
 //! Basis Universal, the texels of most KTX2 files, decoded by the basisu crate.
 
-/// Columns and rows of a picture, and red, green, blue and opacity of its texels, 8 bits each.
+/// Width and height of an image, and RGBA of its texels, 8 bits each.
 pub(super) type Codes = ([u32; 2], Vec<u8>);
 
 /// The level of so many that `level_of` chooses for columns and rows, of each of the faces: its columns and rows, and red,
@@ -15,7 +15,7 @@ pub(super) fn decode(
     level_of: impl Fn([u32; 2], u32) -> u32,
 ) -> Result<Vec<Codes>, String> {
     use basisu::{DecodeFlags, TargetFormat, Transcoder};
-    /// Texels that a byte may stand for, and beyond them.
+    /// Largest expansion in texels per byte, and additional texels.
     const GROWTH: [u64; 2] = [64, 1 << 20];
     let text = |error: basisu::Error| format!("Basis Universal: {error:?}");
     let transcoder = Transcoder::new(bytes).map_err(text)?;

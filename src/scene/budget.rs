@@ -1,4 +1,4 @@
-//! What one import may take of the memory: its files, archives and pictures together.
+//! Memory budget of one import: files, archives and images together.
 
 use std::io::{self, ErrorKind};
 use std::sync::Arc;
@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use super::loading::{Loading, USUAL};
 
-/// The environment variable that says how much memory a picture, and what is opened for it, may take, in MiB.
+/// Environment variable with the memory limit of a render and its imports, in MiB.
 pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
-/// The bytes that one import has taken, of those that it may. Clones are the same one.
+/// Bytes used and allowed of one import; clones share them.
 #[derive(Clone, Debug)]
 pub struct Budget(Arc<State>);
 
@@ -18,7 +18,7 @@ struct State {
     taken: AtomicU64,
 }
 
-/// An import that takes too much.
+/// An import exceeds its budget.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "it takes {} MiB, and {} are left of the {} MiB that everything of one import may take; make it smaller or leave others \
@@ -44,7 +44,7 @@ impl Default for Budget {
 }
 
 impl Budget {
-    /// A budget of so many bytes, of which nothing is taken.
+    /// A budget of `allowed` bytes, unused.
     pub fn new(allowed: u64) -> Self {
         let taken = AtomicU64::new(0);
         Self(Arc::new(State { allowed, taken }))
@@ -60,9 +60,10 @@ impl Budget {
         self.0.allowed.saturating_sub(self.0.taken.load(Relaxed))
     }
 
-    /// Whether so many bytes are left, for what takes them in passing.
+    /// Checks that `needed` bytes are left, for temporary use.
     ///
     /// # Errors
+    ///
     /// [`OverBudget`].
     pub fn check(&self, needed: u64) -> Result<(), OverBudget> {
         let (left, allowed) = (self.left(), self.0.allowed);
@@ -70,10 +71,11 @@ impl Budget {
         if needed <= left { Ok(()) } else { Err(over) }
     }
 
-    /// Takes so many bytes for what stays. Called in the order of the files and pictures, whichever is read first: what is left
-    /// out must not depend on the clock.
+    /// Takes `needed` bytes permanently. Called in the order of the files and images, whichever is read first: what is left
+    /// out must not depend on timing.
     ///
     /// # Errors
+    ///
     /// [`OverBudget`]; nothing is taken then.
     pub fn take(&self, needed: u64) -> Result<(), OverBudget> {
         self.check(needed)?;
@@ -92,9 +94,9 @@ mod tests {
         let same = budget.clone();
         budget.take(7 << 20).expect("it fits");
         assert_eq!(same.left(), 3 << 20);
-        let told = same.take(4 << 20).expect_err("it does not fit").to_string();
+        let message = same.take(4 << 20).expect_err("it does not fit").to_string();
         for words in ["takes 4 MiB", "3 are left of the 10 MiB", "GLOSSMITH_MEMORY"] {
-            assert!(told.contains(words), "{told}");
+            assert!(message.contains(words), "{message}");
         }
         same.take(3 << 20).expect("it fits exactly");
         assert_eq!(budget.left(), 0);

@@ -8,7 +8,7 @@ use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
 
 named! {
-    /// How the samples of a pixel are spread around its centre.
+    /// Pixel filter: distribution of a pixel's samples around its centre.
     #[derive(Default)]
     PixelFilter {
         Box = 0, "box", "Box", "Evenly over the pixel's square: what to compare renderers with.";
@@ -23,10 +23,10 @@ pub const PIXEL_DIMENSION: u32 = 0;
 pub const LENS_DIMENSION: u32 = 1;
 /// Radius at which the Gaussian is cut off, in pixels.
 pub const GAUSSIAN_RADIUS: f64 = 1.5;
-/// Its standard deviation in pixels.
+/// Standard deviation in pixels.
 pub const GAUSSIAN_SIGMA: f64 = 0.5;
 
-/// A camera in the geometry's units; the f32 form is what the GPU reads (`shaders/scene/layout.wgsl`).
+/// A camera in the geometry's units (thin lens). The GPU reads the f32 form (`shaders/scene/layout.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Camera<T> {
@@ -36,13 +36,13 @@ pub struct Camera<T> {
     pub lens_radius: T,
     /// Unit viewing direction.
     pub forward: Vec3<T>,
-    /// Distance along `forward` of what is sharp.
+    /// Focus distance along `forward`.
     pub focus_distance: T,
-    /// To the right, as long as half the picture is wide at distance 1.
+    /// Right vector, of half the image width at distance 1.
     pub right: Vec3<T>,
     /// [`PixelFilter`] as a number.
     pub filter_kind: u32,
-    /// Upwards, as long as half the picture is high at distance 1.
+    /// Up vector, of half the image height at distance 1.
     pub up: Vec3<T>,
     /// Fills the last 16 bytes.
     pub reserved: u32,
@@ -54,8 +54,8 @@ unsafe impl bytemuck::Zeroable for Camera<f32> {}
 unsafe impl bytemuck::Pod for Camera<f32> {}
 
 impl Camera<f64> {
-    /// A pinhole at `position` looking at `target` (in the geometry's units), +Y up; `fov_deg` is the vertical field of
-    /// view, `aspect` width over height. Straight up or down, −Z is up in the picture.
+    /// A pinhole camera at `position` looking at `target` (in the geometry's units), +Y up; `fov_deg` is the vertical field
+    /// of view, `aspect` width over height. If it looks straight up or down, −Z is up in the image.
     pub fn look_at(position: [f64; 3], target: [f64; 3], fov_deg: f64, aspect: f64, filter: PixelFilter) -> Self {
         let (position, target) = (DVec3::from_array(position), DVec3::from_array(target));
         let forward = (target - position).try_normalize().unwrap_or(DVec3::NEG_Z);
@@ -73,10 +73,10 @@ impl Camera<f64> {
         }
     }
 
-    /// The same camera turned clockwise about its line of sight, as its holder sees it.
+    /// The same camera rolled clockwise about its line of sight, seen by the viewer.
     pub fn rolled(self, roll_deg: f64) -> Self {
         let (sine, cosine) = roll_deg.to_radians().sin_cos();
-        // Half the picture's sides at distance 1.
+        // Half the image's sides at distance 1.
         let [width, height] = [self.right.length(), self.up.length()];
         let turned = |along: Vec3<f64>, other: Vec3<f64>, length: f64| (along * cosine + other * sine) * length;
         let [right, up] = [self.right * width.recip(), self.up * height.recip()];
@@ -103,8 +103,8 @@ impl Camera<f64> {
     }
 }
 
-/// Unit vectors to the right and upwards of a view along the unit vector `forward`, +Y up; straight up or down, −Z is
-/// up in the picture.
+/// Unit right and up vectors of a view along the unit vector `forward`, +Y up. If it looks straight up or down, −Z is up in
+/// the image.
 pub fn right_and_up(forward: DVec3) -> [DVec3; 2] {
     let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
     [right, right.cross(forward)]
@@ -117,8 +117,7 @@ pub fn orbit_direction(yaw_deg: f64, pitch_deg: f64) -> DVec3 {
     DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
 }
 
-/// Where in the picture a sample lies, relative to its pixel's centre, in pixels: drawn from the filter, so that every
-/// sample counts alike.
+/// Offset of a sample from its pixel's centre, in pixels. Sampled from the filter, so that all samples have equal weight.
 #[inline(always)]
 pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     let half = T::from_f64(0.5);
@@ -133,8 +132,8 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
-/// The ray of a sample through its `pixel`, two whole numbers, drawn with two pairs of numbers, for the place in the pixel and on the lens:
-/// (origin, unit direction).
+/// The camera ray of a sample: (origin, unit direction). `pixel` is two whole numbers; the two random pairs are for the
+/// positions in the pixel and on the lens.
 #[inline(always)]
 pub fn pixel_ray<T: Real>(
     camera: &Camera<T>,
@@ -148,7 +147,7 @@ pub fn pixel_ray<T: Real>(
     camera_ray(camera, place, image_size, xi_lens)
 }
 
-/// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).
+/// The ray through an image position, in pixels from the top left: (origin, unit direction).
 #[inline(always)]
 pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
     let two = T::from_f64(2.0);
@@ -167,10 +166,10 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
     ]
 }
 
-/// How much room a framed model is given.
+/// Framing distance relative to the tight one.
 const FRAME_MARGIN: f64 = 1.05;
 
-/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
+/// Distance at which the bounding sphere of radius 1 just fits the image's shorter side.
 pub fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
     let half_height = (0.5 * fov_deg.to_radians()).tan();
     let half = (half_height * aspect.min(1.0)).atan();

@@ -1,10 +1,10 @@
-//! What a shadow catcher compares with: the light that reaches its plane where nothing stands on it.
+//! Reference light of the shadow catcher: the light on its plane without objects.
 //!
-//! A shadow catcher shows the background times what light reaches a place over what would reach it were nothing there
-//! (Debevec 1998, "Rendering synthetic objects into real scenes", with a quotient in place of the difference, so that nothing
-//! becomes negative). What would reach it is a table, since any light may be near: a square of radiances that a white matt
-//! plane would have, its nodes close together below the model. In front of them stand how many there are along a side, and
-//! how much the plane reflects. The functions that start with `catcher_` have WGSL twins in `shaders/scene/catcher.wgsl`.
+//! A shadow catcher shows the background times the ratio of the light that arrives to the light without objects. This is the
+//! method of Debevec (1998), "Rendering synthetic objects into real scenes", with a quotient instead of the difference, so
+//! that nothing becomes negative. The reference is a table, since lights may be near: a square of radiances of a white
+//! diffuse plane, with nodes close together below the model. The table starts with its number of nodes per side and the
+//! plane's reflectance. Functions that start with `catcher_` have WGSL twins in `shaders/scene/catcher.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -18,19 +18,19 @@ use crate::optics::real::{Real, Scalar};
 use crate::optics::table::NODE_LENGTH;
 use crate::optics::vector::{Vec3, vec3};
 
-/// Nodes along each side where area lights shine; without them the light is the same all over.
+/// Nodes per side with area lights; without them the light is uniform.
 const SIDE: usize = 128;
 /// The share of the half side over which nodes are close together.
 pub const CATCHER_BEND: f32 = 0.15;
 /// Half a side of the table in bounding radii: the ground's.
 pub const CATCHER_HALF_SIDE: f32 = HALF_SIDE as f32;
-/// What glass of index 1.5 reflects straight on.
+/// Reflectance of glass of index 1.5 at normal incidence.
 pub const CATCHER_REFLECTANCE: f32 = 0.04;
 
-/// What shines on a shadow catcher.
+/// The lights on a shadow catcher.
 #[derive(Clone, Copy, Debug)]
 pub struct CatcherLight<'a> {
-    /// The environment.
+    /// The environment light.
     pub environment: &'a Environment,
     /// Cosine and sine of its rotation about +Y.
     pub rotation: [f64; 2],
@@ -43,9 +43,9 @@ pub struct CatcherLight<'a> {
 /// An area light that shines on a shadow catcher.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearLight {
-    /// Where it is.
+    /// Placement of the light.
     pub shape: AreaShape,
-    /// Its radiance, a spot's in the middle of its cone.
+    /// Radiance, linear RGB; a spot's on its axis.
     pub radiance: [f64; 3],
     /// The ramp of a spot's share over the cosine to the way it faces, see [`spot_share`](super::light::spot_share): scale and
     /// offset.
@@ -53,8 +53,8 @@ pub struct NearLight {
 }
 
 impl NearLight {
-    /// The mean share of its radiance that one of its triangles sends to a place: exact for what is linear or quadratic
-    /// over the triangle.
+    /// Mean share of its radiance that a triangle emits to a position: exact for functions up to quadratic over the
+    /// triangle.
     fn share(&self, place: DVec3, corners: &[DVec3; 3]) -> f64 {
         let [scale, offset] = self.spot;
         if scale == 0.0 {
@@ -70,8 +70,8 @@ impl NearLight {
     }
 }
 
-/// The table of a plane at this height that faces +Y, in the geometry's units; `reflection` is how much varnish lies on it.
-/// Its first node holds the number of nodes along a side and the reflection.
+/// The table of a plane at `height` facing +Y, in the geometry's units; `reflection` is the weight of its varnish. The first
+/// node has the nodes per side and the reflection.
 pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> Vec<f32> {
     let far = far_light(light.environment).map(|radiance| radiance * light.strength);
     let near: Vec<_> = light
@@ -105,7 +105,7 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
 }
 
 impl CatcherLight<'_> {
-    /// What the environment would send to a place from behind the middle of a triangle.
+    /// The environment's radiance that the middle of a triangle hides from a position.
     fn behind(&self, place: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
         let [x, y, z] = (corners.iter().sum::<DVec3>() / 3.0 - place)
             .normalize_or(DVec3::Y)
@@ -117,10 +117,10 @@ impl CatcherLight<'_> {
     }
 }
 
-/// So many triangles are parts enough: a disc's.
+/// Triangles from which no further subdivision is needed: a disc's.
 const MANY: usize = 16;
 
-/// Triangles each cut into four, so that the environment behind each part may be taken as that behind its middle.
+/// Triangles, each subdivided into four, so that the environment behind each part is nearly uniform.
 fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
     if triangles.len() >= MANY {
         return triangles.to_vec();
@@ -132,7 +132,7 @@ fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
     triangles.iter().flat_map(cut).collect()
 }
 
-/// Where a node is along an axis.
+/// Position of a node along an axis.
 fn node_place(number: usize, side: usize) -> f64 {
     if side == 1 {
         return 0.0;
@@ -142,8 +142,8 @@ fn node_place(number: usize, side: usize) -> f64 {
     HALF_SIDE * along * bend / (1.0 + bend - along.abs())
 }
 
-/// The mean of an environment over the upper hemisphere, weighed by the cosine to +Y: what a white matt plane shows of it.
-/// The map is turned about that axis alone, so that its rotation does not matter.
+/// The cosine-weighted mean of an environment over the upper hemisphere: the radiance of a white diffuse plane. The map
+/// rotates about +Y alone, so that its rotation does not matter.
 fn far_light(environment: &Environment) -> [f64; 3] {
     let columns = environment.width as usize;
     let row_mean = |row: &[[f32; 4]]| {
@@ -158,7 +158,7 @@ fn far_light(environment: &Environment) -> [f64; 3] {
         .par_chunks(columns)
         .map(row_mean)
         .collect();
-    // By the midpoint rule in the square of the sine, in which the weight is the same everywhere.
+    // Midpoint rule in the squared sine, in which the weight is uniform.
     let steps = (8 * height).max(4096);
     let mut sum = [0.0; 3];
     for step in 0..steps {
@@ -174,8 +174,8 @@ fn far_light(environment: &Environment) -> [f64; 3] {
     sum.map(|sum| sum / steps as f64)
 }
 
-/// The share of a horizontal place's hemisphere, weighed by the cosine, that a triangle takes up, whichever side it shows;
-/// what is below the horizon does not count (Lambert 1760; Baum, Rushmeier and Winget 1989, eq. 9).
+/// Form factor of a triangle, on either side, for a horizontal plane at a position; parts below the horizon do not count
+/// (Lambert 1760; Baum, Rushmeier and Winget 1989, eq. 9).
 fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
     let relative = corners.map(|corner| corner - place);
     let mut above = Vec::with_capacity(4);
@@ -192,7 +192,7 @@ fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
         let to = above[(index + 1) % above.len()];
         let across = from.cross(to);
         let sine = across.length();
-        // Without length there is no edge, and it counts nothing.
+        // An edge without length does not count.
         if sine > 0.0 {
             sine.atan2(from.dot(to)) * across.y / sine
         } else {
@@ -203,8 +203,7 @@ fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
     sum.abs() / (2.0 * PI)
 }
 
-/// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way: bilinear
-/// between the table's nodes.
+/// Radiance of a white diffuse plane at a position, lit by all lights without occluders: bilinear between the table's nodes.
 pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
     let side = tables[table as usize] as usize;
     let ((column, across), (row, down)) = (catcher_node(position.x, side), catcher_node(position.z, side));
@@ -226,14 +225,14 @@ fn catcher_node<T: Scalar>(along: T, side: usize) -> (usize, T) {
     (low.to_f64() as usize, place - low)
 }
 
-/// The radiance at a node; the last row and column stand for those beyond.
+/// Radiance at a node, clamped to the last row and column.
 fn catcher_radiance<T: Scalar>(tables: &[f32], table: u32, side: usize, row: usize, column: usize) -> Vec3<T> {
     let number = row.min(side - 1) * side + column.min(side - 1);
     let node = table as usize + NODE_LENGTH * (1 + number);
     Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
 }
 
-/// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).
+/// Reflectance of the plane at a cosine, in [0, 1] (Schlick 1994, eq. 15).
 #[inline(always)]
 pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T {
     let reflection = T::from_f64(f64::from(tables[table as usize + 1]));

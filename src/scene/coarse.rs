@@ -5,13 +5,13 @@ use rayon::prelude::*;
 
 use super::part::Part;
 
-/// The cosine of how far a normal may lean from its triangle: 6 degrees, beyond which what the triangle's own horizon cuts off
-/// is brighter than a tenth of light from straight above.
+/// Cosine of the largest lean of a normal from its triangle: 6 degrees. Beyond, the light cut off by the triangle's own
+/// horizon is brighter than a tenth of light from straight above.
 const LEAN_COSINE: f64 = 0.9945;
 /// The share of the surface that may lean further: poles, lips and tips. Of the built-in teapot 4 % do.
 const SHARE_MAX: f64 = 0.08;
 
-/// True where the normals of more than a twelfth of the surface lean far from their triangles.
+/// True if the normals of more than a twelfth of the surface lean far from their triangles.
 pub(super) fn is_coarse(part: &Part) -> bool {
     let areas = (0..part.triangles.len()).into_par_iter().map(|triangle| {
         let [a, b, c] = part

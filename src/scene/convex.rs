@@ -1,4 +1,4 @@
-//! Proof that a scene is one convex body, so that rays that leave it outwards meet nothing.
+//! Proof that a scene is one convex body: then rays that leave it outwards miss.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -7,10 +7,9 @@ use rayon::prelude::*;
 
 use super::loading::{Cancelled, Loading};
 
-/// How far a place may lie above a face's plane, in bounding radii: the rounding of f32 corners.
+/// Distance that a vertex may lie above a face's plane, in bounding radii: the rounding of f32 corners.
 const TOLERANCE: f64 = 1e-6;
-/// Places that are looked at together; they follow each other in the order of the hierarchy's leaves, so they are near
-/// each other.
+/// Vertices per cluster. They are consecutive in the order of the hierarchy's leaves, so that they are near each other.
 const CLUSTER: usize = 64;
 /// The most tests of a plane against a cluster or a place: a second on two cores. Beyond, the proof is given up.
 const EFFORT_MAX: usize = 1 << 29;
@@ -43,8 +42,8 @@ impl Cluster {
         }
     }
 
-    /// Whether nothing lies above the plane through `corner` with this unit normal. The box settles what lies in a plane of
-    /// two axes, which no sphere does. Adds to `effort` what was tested.
+    /// Whether no vertex lies above the plane through `corner` with this unit normal. The box decides for axis-aligned
+    /// planes, which no sphere does. Adds the tests made to `effort`.
     fn is_below(&self, corner: DVec3, normal: DVec3, effort: &mut usize) -> bool {
         *effort += 1;
         if (self.center - corner).dot(normal) + self.radius <= TOLERANCE
@@ -58,19 +57,20 @@ impl Cluster {
     }
 }
 
-/// True where no place lies above the plane of any face, seen from the side on which its corners run counter-clockwise.
-/// A ray that leaves a face on that side then meets nothing. Most bodies that are not convex are found out by their
-/// first faces; what takes too long to prove counts as not convex.
+/// True if no vertex lies above any face's plane, on the side from which its corners are anticlockwise. A ray that leaves a
+/// face on that side then misses. Most other bodies are found out by their first faces; if the proof takes too long, the
+/// body counts as not convex.
 ///
 /// # Errors
-/// Where it was cancelled.
+///
+/// If cancelled.
 pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]], loading: &Loading) -> Result<bool, Cancelled> {
     let effort = AtomicUsize::new(0);
     let is_proven = is_proven(positions, triangles, &effort, &|| loading.check().is_ok());
     loading.check().map(|()| is_proven)
 }
 
-/// The proof, with what it took: at most [`EFFORT_MAX`], but for the faces that are looked at just then.
+/// The proof and its effort: at most [`EFFORT_MAX`], but for the faces being tested.
 fn is_proven(
     positions: &[[f32; 3]],
     triangles: &[[u32; 3]],

@@ -1,4 +1,4 @@
-//! How steeply a scene's faces are seen from a place.
+//! Bounds of the view angles of a scene's faces.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use super::geometry::Geometry;
 use super::part::Vertex;
 
-/// How far a corner's normal may be from its face's, as 1 − cosine: the rounding of f32 normals.
+/// Deviation of a corner's normal from its face's, as 1 − cosine: the rounding of f32 normals.
 const TOLERANCE: f64 = 1e-6;
 
-/// A cosine that no face's normal falls below towards `eye` (in the geometry's units), from either side; 0 where a
-/// smooth surface's normals lean from its faces, and nothing is proven.
+/// Lower bound of the faces' view cosines from `eye` (in the geometry's units), from either side; 0 if smooth normals lean
+/// from their faces, so that nothing is proven.
 pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
     let eye = DVec3::from_array(eye);
     let of_face = |triangle: usize| {

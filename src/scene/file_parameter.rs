@@ -1,25 +1,25 @@
-//! What becomes of each number of a file's material: rows of the tables in docs/FORMATS.md, which importers read.
+//! Fates of material parameters in files: rows of the tables in docs/FORMATS.md, which importers read.
 
-/// A parameter of a file, and what becomes of it.
+/// A parameter of a file, and its fate.
 #[derive(Clone, Copy, Debug)]
 pub struct FileParameter {
-    /// Where a material has it.
+    /// Path in a material.
     pub place: &'static str,
-    /// What it is where a file leaves it out, as the format writes it; empty where it is then not there.
+    /// Default value in the format's notation; empty for none.
     pub default: &'static str,
     /// A value off its default, as the format writes it.
     pub example: &'static str,
-    /// The least and the largest number that is shown; others are taken as the nearer one, which the report tells.
+    /// Supported range; values outside are clamped and reported.
     pub range: Option<[f32; 2]>,
-    /// The parameter without which it shows nothing; empty where it always counts.
+    /// Weight parameter that it depends on; empty for none.
     pub layer: &'static str,
-    /// Where it goes.
+    /// Its destination.
     pub goes: Goes,
-    /// What is approximated; empty where it is shown as it is.
-    pub told: &'static str,
+    /// Approximation; empty for an exact import.
+    pub note: &'static str,
 }
 
-/// Where a parameter of a file goes.
+/// Destination of a file's parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goes {
     /// Into these parameters of a material.
@@ -40,28 +40,28 @@ impl FileParameter {
             range: None,
             layer: "",
             goes,
-            told: "",
+            note: "",
         }
     }
 
-    /// The same with the least and the largest number that is shown.
+    /// The parameter with a supported range.
     #[must_use]
     pub const fn within(mut self, least: f32, most: f32) -> Self {
         self.range = Some([least, most]);
         self
     }
 
-    /// The same as part of a layer, by the parameter that is its weight.
+    /// The parameter as part of a layer, by the layer's weight.
     #[must_use]
     pub const fn of(mut self, layer: &'static str) -> Self {
         self.layer = layer;
         self
     }
 
-    /// The same with what is approximated.
+    /// The parameter with a note on its approximation.
     #[must_use]
-    pub const fn told(mut self, told: &'static str) -> Self {
-        self.told = told;
+    pub const fn with_note(mut self, note: &'static str) -> Self {
+        self.note = note;
         self
     }
 }

@@ -12,29 +12,29 @@ use super::budget::Budget;
 use super::loading::Loading;
 use super::resource::{self, BYTES_MAX, Reach, is_elsewhere};
 
-/// From this size on what an archive holds may be [`PACKED_MOST`] times as large as it is packed.
+/// Size in bytes from which an archive's contents may be at most [`PACKED_MOST`] times their packed size.
 const PACKED_FROM: u64 = 64 << 20;
-/// Pictures and models are packed to a hundredth at best; what claims to be larger still is made to fill the memory.
+/// Largest packing ratio: images and models reach a hundredth at best; more is an attack on memory.
 const PACKED_MOST: u64 = 500;
 
-/// The files that a model may name, and what is told while it is read.
+/// The files that a model may name, and its import.
 #[derive(Debug)]
 pub(super) struct Files {
     place: Place,
     /// Files that were given with the model.
     given: Vec<PathBuf>,
-    /// What they are read for.
+    /// The import: files asked for, budget and progress.
     pub import: Import,
 }
 
-/// One import: what all its files have in common. Clones are the same one.
+/// State of one import, shared by all its files and clones.
 #[derive(Clone, Debug)]
 pub(super) struct Import {
     /// Files that were asked for, by the names that they have on the disk.
     pub asked: Seen,
-    /// What they may take together, with their pictures.
+    /// Memory budget of the files and images together.
     pub budget: Budget,
-    /// Who waits.
+    /// Progress and cancellation.
     pub loading: Loading,
 }
 
@@ -48,10 +48,11 @@ impl Import {
         }
     }
 
-    /// The contents of a file, which count for the import.
+    /// Contents of a file, counted against the budget.
     ///
     /// # Errors
-    /// As [`resource::read`], and where the import takes too much or was cancelled.
+    ///
+    /// As [`resource::read`], and if the budget is exceeded or loading cancelled.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.budget.take(resource::open(path)?.metadata()?.len())?;
         resource::read_watched(path, BYTES_MAX, &self.loading)
@@ -77,10 +78,9 @@ impl Seen {
     }
 }
 
-/// Where files that a model names are looked for.
+/// Search location of the files that a model names.
 #[derive(Debug)]
 enum Place {
-    /// In a folder.
     Folder(PathBuf),
     /// In an archive, below one of its folders (with a slash at its end, or empty).
     Archive(Box<Archive>, String),
@@ -110,7 +110,7 @@ impl Archive {
         Ok(Self { zip, names, found })
     }
 
-    /// The contents of a file; where none has this name, of one whose name is nearly the same.
+    /// Contents of a file, or of one with nearly the same name.
     fn read(&self, wanted: &str, import: &Import) -> io::Result<Vec<u8>> {
         let mut spelled = self.found.iter().zip(spellings(wanted));
         let place = spelled.find_map(|(by, spelling)| by.get(&spelling));
@@ -138,7 +138,7 @@ impl Archive {
     }
 }
 
-/// What a file of an archive is found by, the best first.
+/// Search keys of a file in an archive, best first.
 fn spellings(name: &str) -> [String; 3] {
     let lower = name.to_ascii_lowercase();
     let last = lower.rsplit('/').next().unwrap_or(&lower).to_owned();
@@ -146,7 +146,7 @@ fn spellings(name: &str) -> [String; 3] {
 }
 
 impl Files {
-    /// Those in a folder.
+    /// Files in a folder.
     pub(super) fn in_folder(folder: &Path, given: &[PathBuf], import: &Import) -> Self {
         Self {
             place: Place::Folder(folder.to_owned()),
@@ -155,7 +155,7 @@ impl Files {
         }
     }
 
-    /// Those in an archive.
+    /// Files in an archive.
     pub(super) fn in_archive(path: &Path, import: &Import) -> io::Result<Self> {
         Ok(Self {
             place: Place::Archive(Box::new(Archive::open(path)?), String::new()),
@@ -164,7 +164,7 @@ impl Files {
         })
     }
 
-    /// Every file, relative to where they are looked for: in a folder those directly in it, in an archive all.
+    /// All files, relative to the search location: directly in the folder, or anywhere in the archive.
     pub(super) fn names(&self) -> io::Result<Vec<String>> {
         let mut names: Vec<String> = match &self.place {
             Place::Folder(folder) => fs::read_dir(folder)?
@@ -178,7 +178,7 @@ impl Files {
         Ok(names)
     }
 
-    /// The same files seen from the folder of one of them.
+    /// The same files, relative to the folder of one of them.
     pub(super) fn seen_from(self, name: &str) -> Self {
         let place = match self.place {
             Place::Archive(archive, _) => {
@@ -190,8 +190,8 @@ impl Files {
         Self { place, ..self }
     }
 
-    /// The contents of a file. Where there is none of this name, one whose name differs in upper and lower case, that
-    /// lies beside the model instead of in another folder, or that was given with the model, is taken.
+    /// Contents of a file. Without an exact match: a name that differs in case, a file beside the model instead of in
+    /// another folder, or one given with the model.
     pub(super) fn read(&self, name: &str) -> io::Result<Vec<u8>> {
         let name = name.replace('\\', "/");
         match &self.place {
@@ -223,7 +223,7 @@ impl Files {
     }
 }
 
-/// Whether a file has this name, upper and lower case not told apart.
+/// Whether a file has this name, ignoring case.
 fn is_called(path: &Path, name: &str) -> bool {
     let known = path.file_name().and_then(|known| known.to_str());
     known.is_some_and(|known| known.eq_ignore_ascii_case(name))

@@ -1,14 +1,14 @@
-//! TIFF pictures of numbers with a point, 16, 32 or 64 bits, by the tiff crate: the image crate knows only colours of 32.
+//! Floating-point TIFF images of 16, 32 or 64 bits, by the tiff crate: the image crate only supports colours of 32 bits.
 
 use std::io::Cursor;
 
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
-/// The most bytes that a picture may take while it is decoded.
+/// Memory limit of decoding in bytes.
 const DECODED_MAX: usize = 2 << 30;
 
-/// A picture of linear light.
+/// A linear image.
 pub(super) struct FloatPicture {
     /// Columns.
     pub width: u32,
@@ -46,7 +46,7 @@ impl FloatPicture {
     }
 }
 
-/// Columns and rows of a TIFF picture, whatever its numbers; nothing where it is none.
+/// Width and height of a TIFF image of any type; `None` for other files.
 pub(super) fn size(bytes: &[u8]) -> Option<[u32; 2]> {
     let (width, height) = is_tiff(bytes).then(|| Decoder::new(Cursor::new(bytes)).ok()?.dimensions().ok())??;
     Some([width, height])
@@ -58,10 +58,11 @@ fn is_tiff(bytes: &[u8]) -> bool {
         .any(|start| bytes.starts_with(*start))
 }
 
-/// The picture in a file's bytes; nothing where it is not of numbers with a point.
+/// The image in a file's bytes; `None` if not floating-point.
 ///
 /// # Errors
-/// Why it cannot be had, in a few words.
+///
+/// The reason, in a few words.
 pub(super) fn decode(bytes: &[u8]) -> Result<Option<FloatPicture>, String> {
     if !is_tiff(bytes) {
         return Ok(None);

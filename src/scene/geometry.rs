@@ -1,5 +1,5 @@
-//! Triangles made ready to trace: one f32 coordinate system whatever the model's own scale and place; the model and what is
-//! around it, each with a hierarchy of its own.
+//! Triangles ready to trace, in one f32 coordinate system of unit size. The model and its surroundings (ground, area lights)
+//! have a hierarchy each.
 
 use std::sync::Arc;
 
@@ -10,20 +10,20 @@ use rayon::prelude::*;
 use super::coarse::is_coarse;
 use super::convex::is_convex;
 use super::ground::Ground;
-use super::hierarchy::{Doors, Found, PACKET, Packet, Wide};
+use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
-use super::memory::fetch;
+use super::memory::prefetch;
 use super::mesh::Mesh;
 use super::model::{Model, Slot};
 use super::part::{Part, Vertex, has_area};
 use crate::instructions;
 
-/// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
+/// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.
 const GROUND_GAP: f64 = 1e-4;
 
-/// What stands for no object of the model.
+/// Object index of triangles that belong to no object of the model.
 pub const NO_OBJECT: u32 = u32::MAX;
 
 /// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
@@ -39,18 +39,18 @@ pub struct Geometry {
     /// The ground's and the area lights' triangles: the ground's slot is the number of the model's slots, those of area
     /// lights follow.
     pub around: Part,
-    /// Slots of the model.
+    /// Number of the model's slots.
     model_slots: u32,
-    /// The model is one convex body.
+    /// True if the model is one convex body.
     model_is_convex: bool,
     /// See [`Geometry::is_coarse`].
     model_is_coarse: bool,
-    /// The middle of the model's bounding box in the world.
+    /// Centre of the model's bounding box, in world units.
     pub center_world: DVec3,
-    /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
-    /// is no triangle.
+    /// Bounding radius of the model in world units: from that centre to the farthest vertex of a triangle; 1 without
+    /// triangles.
     pub world_units_per_unit: f64,
-    /// Lowest and highest coordinates of the model (without ground and area lights) in the world.
+    /// Bounds of the model (without ground and area lights): lowest and highest corner, in world units.
     pub bounds_world: [DVec3; 2],
     /// Triangles left out because a corner is not finite.
     pub dropped_not_finite: usize,
@@ -66,11 +66,12 @@ impl Geometry {
         alone.surrounded(ground, &[])
     }
 
-    /// A model with nothing around it, for those who wait, without the objects whose numbers are hidden: place and scale stay
-    /// those of the whole model.
+    /// Builds a model without surroundings, with progress and cancellation. Objects in `hidden` are left out; position and
+    /// scale stay those of the whole model.
     ///
     /// # Errors
-    /// Where it was cancelled.
+    ///
+    /// If cancelled.
     pub fn of_model(model: &Model, hidden: &[usize], loading: &Loading) -> Result<Self, Cancelled> {
         loading.step("measuring the model")?;
         let mesh = &model.mesh;
@@ -111,8 +112,8 @@ impl Geometry {
         })
     }
 
-    /// The same model on another ground and with other area lights, each in a slot of its own: shares the model's triangles,
-    /// and builds what is around it.
+    /// The same model with another ground and area lights, each in a slot of its own: shares the model's triangles and
+    /// builds the surroundings.
     pub fn surrounded(&self, ground: impl Into<Ground>, area_lights: &[AreaShape]) -> Self {
         let mut around = Part::default();
         let ground = ground.into().mesh(self.ground_height(), self.model_slots);
@@ -133,17 +134,17 @@ impl Geometry {
         }
     }
 
-    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    /// Whether every ray that leaves a face on its outside misses: the scene is one convex body.
     pub fn is_convex(&self) -> bool {
         self.model_is_convex && self.around.is_empty()
     }
 
-    /// Smooth normals lean so far from the model's triangles that shadows show where these end.
+    /// Whether smooth normals lean so far from the model's triangles that shadows reveal their edges.
     pub fn is_coarse(&self) -> bool {
         self.model_is_coarse
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     #[inline(always)]
     pub fn triangle_count(&self) -> usize {
         self.model.triangles.len() + self.around.triangles.len()
@@ -190,143 +191,149 @@ impl Geometry {
         part.corners(triangle)
     }
 
-    /// What else shading needs of a triangle's corners.
+    /// Shading attributes of a triangle's vertices.
     #[inline(always)]
     pub fn vertices(&self, triangle: usize) -> [&Vertex; 3] {
         let (part, triangle) = self.part_of(triangle);
         part.triangles[triangle].map(|vertex| &part.vertices[vertex as usize])
     }
 
-    /// The slots of the model; those after it are the ground's and the area lights'.
+    /// Number of the model's slots; the ground's and the area lights' follow.
     pub fn model_slots(&self) -> usize {
         self.model_slots as usize
     }
 
-    /// Bytes in memory, with the hierarchies that have been built; what is shared with other geometries counts, too.
+    /// Memory in bytes, with the hierarchies built so far; data shared with other geometries counts, too.
     pub fn bytes(&self) -> usize {
         self.model.bytes() + self.around.bytes()
     }
 
-    /// Builds the processor's hierarchies if they are not there yet, which the first ray would do otherwise; their bytes.
+    /// Builds the CPU's hierarchies, if not built yet, instead of at the first ray. Returns their memory in bytes.
     pub fn prepare(&self) -> usize {
         self.model.wide().bytes() + self.around.wide().bytes()
     }
 
-    /// The nearest triangle along a ray, in the geometry's units, with 0 < t < `t_max`. The direction may have any
-    /// length but 0.
+    /// The closest hit on a ray with 0 < t < `t_max`, in the geometry's units. The direction may have any length but 0.
     #[inline]
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         self.intersect_by(instructions::level(), origin, direction, t_max)
     }
 
-    /// The same computed with these instructions.
+    /// The same with a given instruction set.
     #[inline]
     pub fn intersect_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         let frame = RayFrame::new(origin.into(), direction.into());
-        let mut nearest = self.model.nearest(level, &frame, t_max);
+        let mut nearest = self.model.closest_hit(level, &frame, t_max);
         let reach = nearest.map_or(t_max, |hit| hit.t);
-        if let Some(hit) = self.around.nearest(level, &frame, reach) {
+        if let Some(hit) = self.around.closest_hit(level, &frame, reach) {
             let triangle = hit.triangle + self.model.triangles.len() as u32;
             nearest = Some(Hit { triangle, ..hit });
         }
         nearest
     }
 
-    /// Whether any triangle is met with 0 < t < `t_max`.
+    /// True if any triangle is hit with 0 < t < `t_max`.
     #[inline]
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         self.occluded_by(instructions::level(), origin, direction, t_max)
     }
 
-    /// The same computed with these instructions.
+    /// The same with a given instruction set.
     #[inline]
     pub fn occluded_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         let frame = RayFrame::new(origin.into(), direction.into());
-        self.model.is_met(level, &frame, t_max) || self.around.is_met(level, &frame, t_max)
+        self.model.is_hit(level, &frame, t_max) || self.around.is_hit(level, &frame, t_max)
     }
 
-    /// What each ray of a packet meets, as [`Geometry::intersect`] says, the instructions forced by `level`.
+    /// The closest hit of each ray of a packet, the same as by [`Geometry::intersect`]. `level` is the instruction set.
     #[inline(always)]
     pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
-        self.intersect_behind(level, packet, &[None; 2])
+        self.intersect_from(level, packet, &[None; 2])
     }
 
-    /// The same of several packets whose rays go much the same way, as from a camera through a part of its picture. `tell`
-    /// hears of each packet what its rays meet, in order; of none if no ray meets anything.
+    /// The same for several packets of coherent rays, as a camera's through a tile. Calls `report` with each packet's hits
+    /// in order, or never if no ray hits anything.
     #[inline(always)]
-    pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut tell: impl FnMut([Option<Hit>; PACKET])) {
-        let doors = self.parts().map(|(part, _)| part.wide().doors(level, packets));
-        if doors.iter().all(|doors| doors.as_ref().is_some_and(Doors::are_none)) {
+    pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut report: impl FnMut([Option<Hit>; PACKET])) {
+        let entry_points = self.parts().map(|(part, _)| part.wide().entry_points(level, packets));
+        if entry_points
+            .iter()
+            .all(|entry_points| entry_points.as_ref().is_some_and(EntryPoints::is_empty))
+        {
             return;
         }
         for packet in packets {
-            tell(self.intersect_behind(level, packet, &doors));
+            report(self.intersect_from(level, packet, &entry_points));
         }
     }
 
-    /// What each ray of a packet meets behind the doors of both parts, where they are known.
+    /// The closest hits of a packet, starting from the entry points of both parts where they are known.
     #[inline(always)]
-    fn intersect_behind(&self, level: Level, packet: &Packet, doors: &[Option<Doors>; 2]) -> [Option<Hit>; PACKET] {
+    fn intersect_from(
+        &self,
+        level: Level,
+        packet: &Packet,
+        entry_points: &[Option<EntryPoints>; 2],
+    ) -> [Option<Hit>; PACKET] {
         let mut hits = [None; PACKET];
-        let mut found = Found::nothing(packet);
-        let is_traced = self.packet_through(doors, &mut found, |wide, doors, found| {
-            wide.nearest_of(level, packet, doors, found)
+        let mut packet_hits = PacketHits::none(packet);
+        let is_traced = self.trace_parts(entry_points, &mut packet_hits, |wide, entry_points, packet_hits| {
+            wide.closest_hits(level, packet, entry_points, packet_hits)
         });
         for (lane, hit) in hits.iter_mut().enumerate() {
             *hit = match is_traced {
-                true => found.hit(lane),
+                true => packet_hits.hit(lane),
                 false => self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
             };
         }
         hits
     }
 
-    /// Puts what the rays of a packet meet of both parts behind their doors in, by a way of tracing one; false where they do
-    /// not go the same way.
+    /// Traces a packet through both parts by `trace`. Returns false if its rays are not in one octant.
     #[inline(always)]
-    fn packet_through(
+    fn trace_parts(
         &self,
-        doors: &[Option<Doors>; 2],
-        found: &mut Found,
-        trace: impl Fn(&Wide, Option<&Doors>, &mut Found) -> bool,
+        entry_points: &[Option<EntryPoints>; 2],
+        packet_hits: &mut PacketHits,
+        trace: impl Fn(&Wide, Option<&EntryPoints>, &mut PacketHits) -> bool,
     ) -> bool {
-        for ((part, first), doors) in self.parts().into_iter().zip(doors) {
-            found.first = first as u32;
-            if !part.is_empty() && !trace(part.wide(), doors.as_ref(), found) {
+        for ((part, first), entry_points) in self.parts().into_iter().zip(entry_points) {
+            packet_hits.first = first as u32;
+            if !part.is_empty() && !trace(part.wide(), entry_points.as_ref(), packet_hits) {
                 return false;
             }
         }
         true
     }
 
-    /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
+    /// True for each ray of a packet that hits any triangle, the same as by [`Geometry::occluded`].
     #[inline(always)]
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
-        let mut is_met = [false; PACKET];
-        let mut found = Found::nothing(packet);
-        let is_traced = self.packet_through(&[None; 2], &mut found, |wide, _, found| {
-            wide.any_of(level, packet, found)
+        let mut is_occluded = [false; PACKET];
+        let mut packet_hits = PacketHits::none(packet);
+        let is_traced = self.trace_parts(&[None; 2], &mut packet_hits, |wide, _, packet_hits| {
+            wide.any_hits(level, packet, packet_hits)
         });
-        for (lane, is_met) in is_met.iter_mut().enumerate() {
-            *is_met = match is_traced {
-                true => found.is_met(lane),
+        for (lane, is_occluded) in is_occluded.iter_mut().enumerate() {
+            *is_occluded = match is_traced {
+                true => packet_hits.is_hit(lane),
                 false => self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
             };
         }
-        is_met
+        is_occluded
     }
 
-    /// Has the processor fetch what shading a triangle looks up.
+    /// Prefetches the data that shading a triangle reads.
     #[inline(always)]
-    pub fn fetch(&self, triangle: u32) {
+    pub fn prefetch(&self, triangle: u32) {
         let (part, triangle) = self.part_of(triangle as usize);
-        fetch(&part.slots, triangle);
+        prefetch(&part.slots, triangle);
         for vertex in part.triangles[triangle] {
-            fetch(&part.vertices, vertex as usize);
+            prefetch(&part.vertices, vertex as usize);
         }
     }
 
-    /// The height of a ground, in the geometry's units.
+    /// Height of the ground, in the geometry's units.
     pub fn ground_height(&self) -> f64 {
         (self.bounds_world[0].y - self.center_world.y) / self.world_units_per_unit - GROUND_GAP
     }
@@ -336,7 +343,7 @@ impl Geometry {
         Slot::neutral("ground")
     }
 
-    /// What of the model was left out, one line each.
+    /// Messages on triangles that were left out, one line each.
     pub fn warnings(&self) -> Vec<String> {
         let counts = [
             (self.dropped_not_finite, "a corner that is not finite"),
@@ -348,7 +355,7 @@ impl Geometry {
             .collect()
     }
 
-    /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` where there are none.
+    /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` without triangles.
     pub fn sphere_around(&self, is_chosen: impl Fn(usize) -> bool) -> Option<([f32; 3], f64)> {
         let chosen = || (0..self.triangle_count()).filter(|&triangle| is_chosen(triangle));
         let places = || {
@@ -373,9 +380,9 @@ impl Geometry {
     }
 }
 
-/// How many triangles of a mesh can be traced, and the sphere around them.
+/// The traceable triangles of a mesh and their bounding sphere.
 pub(super) struct Framing {
-    /// Triangles with finite corners and an area.
+    /// Number of triangles with finite corners and an area.
     pub usable: usize,
     pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
@@ -410,7 +417,7 @@ impl Framing {
 }
 
 impl Model {
-    /// From the middle of its bounding box to the farthest vertex of a triangle, in the world; 1 where there is none.
+    /// Bounding radius in world units, from the centre of the bounding box to the farthest vertex; 1 without triangles.
     pub fn bounding_radius(&self) -> f64 {
         Framing::of(&self.mesh).world_units_per_unit
     }
@@ -420,7 +427,6 @@ fn is_finite(corners: &[DVec3; 3]) -> bool {
     corners.iter().all(|corner| corner.is_finite())
 }
 
-/// Whether a triangle can be traced.
 fn is_usable(corners: [DVec3; 3]) -> bool {
     is_finite(&corners) && has_area(corners)
 }

@@ -1,4 +1,4 @@
-//! What the model stands on: a plane, or a cyclorama, which bends up into a wall behind it.
+//! Grounds: a plane, or a cyclorama, which curves up into a wall behind the model.
 
 use glam::{DQuat, DVec2, DVec3, dvec2};
 
@@ -12,7 +12,7 @@ const WALL_HEIGHT: f64 = 20.0;
 /// Cells of the cyclorama's bend.
 const BEND_STEPS: u32 = 48;
 
-/// What the model stands on. Lengths are in bounding radii of the model.
+/// A ground. Lengths are in bounding radii of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ground {
     /// Nothing.
@@ -24,12 +24,12 @@ pub enum Ground {
     Cyclorama(Cyclorama),
 }
 
-/// Where a cyclorama's wall is. Lengths are in bounding radii of the model.
+/// Shape of a cyclorama. Lengths are in bounding radii of the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cyclorama {
     /// Azimuth, in degrees, of the side that is open, as a camera's: at 0 the wall is on the −Z side.
     pub yaw_deg: f64,
-    /// From the model's centre to the wall, above 0.
+    /// Distance from the model's centre to the wall, above 0.
     pub distance: f64,
     /// Radius of the bend, above 0; no more than the distance is used.
     pub radius: f64,
@@ -42,7 +42,7 @@ impl From<bool> for Ground {
 }
 
 impl Ground {
-    /// Its triangles, the floor at this height; `None` where there is nothing.
+    /// Its triangles with the floor at `height`; `None` without a ground.
     pub(super) fn mesh(self, height: f64, slot: u32) -> Option<Mesh> {
         match self {
             Self::None => None,

@@ -1,4 +1,4 @@
-//! Models from files, folders and archives: which reader, and what all of them have in common.
+//! Import of models from files, folders and archives: choice of the reader, and common steps.
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +12,10 @@ use super::resource::Reach;
 use super::stage::{LIGHTS_MAX, LightKind, ModelLight};
 use super::{gltf, obj, ply, stl};
 
-/// What a kind of light becomes.
+/// Fate of a kind of light.
 type LightFate = (Fate, &'static str, fn(&LightKind) -> bool);
 
-/// The kinds of light, and what becomes of each.
+/// Fates of the kinds of light.
 const LIGHTS: [LightFate; 3] = [
     (Fate::Approximated, "points of light, as small spheres", |kind| {
         matches!(kind, LightKind::Point)
@@ -30,7 +30,7 @@ const LIGHTS: [LightFate; 3] = [
     }),
 ];
 
-/// Loads the model in a file, a folder or an archive, and those that were given with it.
+/// Loads the model in a file, folder or archive, joined with those given with it.
 pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
     let import = Import::new(loading);
     let mut model = load_one(path, options, &import)?;
@@ -53,7 +53,7 @@ pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Re
     Ok(model)
 }
 
-/// Tells which files were read that lie outside of the model's surroundings: they may be in what is exported.
+/// Reports files read outside the model's reach, because exports may contain them.
 fn note_outside(model: &mut Model, path: &Path, given: &[PathBuf]) {
     let folder = if path.is_dir() { Some(path) } else { path.parent() };
     let reach = Reach::of_folder(folder.unwrap_or(Path::new("")));
@@ -134,7 +134,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         "obj" => obj::load(path, &files, &bytes, options)?,
         "ply" => ply::load(path, &bytes, &files.import.loading)?,
         "stl" => stl::load(path, &bytes, &files.import.loading)?,
-        // Whatever a glTF file is called: its first bytes tell.
+        // glTF files are recognised by their first bytes, not by name.
         _ => gltf::load(path, files, bytes, options)?,
     };
     if model.mesh.triangles.is_empty() {
@@ -143,7 +143,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
     Ok(model)
 }
 
-/// What all formats have in common: lengths in bounding radii, and a word about triangles that cannot be shown.
+/// Common steps of all formats: lengths in bounding radii, and a warning on unusable triangles.
 fn finish(model: &mut Model) {
     let framing = Framing::of(&model.mesh);
     let radius = framing.world_units_per_unit as f32;
@@ -179,7 +179,7 @@ fn finish(model: &mut Model) {
     );
 }
 
-/// What the lights of a file become, of which a scene has so many at most.
+/// Reports the fates of a file's lights; a scene has a maximum number of lights.
 fn note_lights(report: &mut ImportReport, lights: &[ModelLight]) {
     let shown = &lights[..lights.len().min(LIGHTS_MAX)];
     for (fate, what, is_it) in LIGHTS {

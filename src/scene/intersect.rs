@@ -5,12 +5,12 @@ use glam::{Vec3A, Vec3Swizzles};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// Where a ray meets a triangle.
+/// A hit of a ray on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hit {
     /// Distance in lengths of the ray's direction, above 0.
     pub t: f32,
-    /// Which triangle of [`Geometry::triangles`](super::Geometry::triangles).
+    /// Index into [`Geometry::triangles`](super::Geometry::triangles).
     pub triangle: u32,
     /// Weight of the triangle's second corner.
     pub u: f32,
@@ -19,7 +19,7 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// A triangle that a ray meets so far away, by the areas that the ray cuts it into, opposite to its corners.
+    /// The hit at distance `t` from the areas into which the ray divides the triangle, opposite to its corners.
     #[inline(always)]
     pub(super) fn of(t: f32, triangle: u32, [u, v, w]: [f32; 3]) -> Self {
         let area = u + v + w;
@@ -38,15 +38,15 @@ impl Hit {
 /// Ray/Triangle Intersection", JCGT 2013): of each axis one component is 1 and one 0.
 #[derive(Clone, Copy, Debug)]
 pub struct RayFrame {
-    /// Where the ray starts.
+    /// Ray origin.
     pub origin: Vec3A,
-    /// Where it goes; any length but 0.
+    /// Ray direction, of any length but 0.
     pub direction: Vec3A,
     /// First axis of the projection.
     pub axis_x: Vec3A,
     /// Second axis of the projection.
     pub axis_y: Vec3A,
-    /// Which coordinate `axis_x` has as it is, which `axis_y`, and along which both are sheared.
+    /// Coordinate axes: the one that `axis_x` keeps, the one that `axis_y` keeps, and the one along which both are sheared.
     pub axes: [usize; 3],
 }
 
@@ -74,8 +74,8 @@ impl RayFrame {
         }
     }
 
-    /// Twice the areas that the ray cuts a projected triangle into, opposite to its corners, all of them signed alike
-    /// where it meets it.
+    /// Twice the signed areas into which the ray divides a projected triangle, opposite to its corners. A hit has equal
+    /// signs.
     #[inline(always)]
     fn areas(&self, [v0, v1, v2]: [Vec3A; 3]) -> Vec3A {
         // The projected corners, one a lane.
@@ -127,7 +127,7 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     if (areas.min_element() < 0.0 && areas.max_element() > 0.0) || area == 0.0 {
         return None;
     }
-    // The distance by the plane: exact in sign for planes along the axes, whatever the triangle's size.
+    // The distance by the plane: exact in sign for axis-aligned planes, for any size of triangle.
     let normal = triangle_normal([v0, v1, v2].map(|v| vec3(v.x, v.y, v.z)));
     let normal = Vec3A::new(normal.x, normal.y, normal.z);
     let t = normal.dot(a) / normal.dot(ray.direction);

@@ -1,6 +1,6 @@
-//! Draws from weights by inverting their cumulative sum, which keeps their order: numbers that are spread evenly draw
-//! places that are spread evenly, where the alias tables of [`alias`](super::alias) would scatter them. A guide (Chen and
-//! Asau 1974) tells where to begin, so that a draw takes one or two looks.
+//! Samples discrete weights by inverting their cumulative sum. That preserves order: well distributed numbers give well
+//! distributed samples, while the alias tables of [`alias`](super::alias) would scatter them. A guide table (Chen and Asau
+//! 1974) gives the start of the search, so that a sample takes one or two look-ups.
 //!
 //! Twin: `shaders/scene/inversion.wgsl`.
 
@@ -13,7 +13,7 @@ const DRAWS: u32 = 1 << DRAW_BITS;
 /// An entry's part of the numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Share {
-    /// How many of the 2²⁴ numbers draw this entry or one before it.
+    /// Count of the 2²⁴ numbers that select this entry or one before it.
     pub upper: u32,
     /// The first entry that the numbers of a slot may draw; the slot is this entry's index. There are as many slots, of
     /// equally many numbers, as the largest power of two that is not above the number of entries.
@@ -31,8 +31,7 @@ pub struct Drawn {
     pub upper: u32,
 }
 
-/// The shares of weights, at least one and at most 2²⁴ of them. Each weight above 0 has one number at least, one of 0 has
-/// none; where all are 0 none has any.
+/// Ranges of numbers for 1 to 2²⁴ weights. Each positive weight gets at least one number, a zero weight none.
 pub(super) fn shares(weights: &[f64]) -> Vec<Share> {
     let total: f64 = weights.iter().sum();
     let mut after = weights.iter().filter(|weight| **weight > 0.0).count() as u32;
@@ -80,7 +79,7 @@ pub fn draw_number<T: Scalar>(xi: T) -> u32 {
     (xi.to_f64() * f64::from(DRAWS)) as u32
 }
 
-/// Which entry a number draws, of `count`.
+/// The entry out of `count` that a number selects.
 #[inline(always)]
 pub fn find(count: u32, number: u32, share: impl Fn(u32) -> Share) -> u32 {
     let slot = slot(count, number);
@@ -110,8 +109,8 @@ pub fn drawn(index: u32, share: impl Fn(u32) -> Share) -> Drawn {
     }
 }
 
-/// How far into what draws an entry a number is, in [0, 1]. `jitter`, in [0, 1), is added to the number, so that it need
-/// not stay one of the few that draw an entry of little weight.
+/// Relative position in [0, 1] of a number within the range that selects an entry. `jitter` in [0, 1) is added to the
+/// number, because an entry of little weight has only few.
 #[inline(always)]
 pub fn place_in<T: Scalar>(drawn: Drawn, number: u32, jitter: T) -> T {
     let whole = |count: u32| T::from_f64(f64::from(count));

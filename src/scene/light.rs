@@ -26,11 +26,11 @@ use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 
-/// Where an area light is and what it looks at. Places are relative to the centre of the model's bounding box, they and
-/// lengths in units of the model's bounding radius.
+/// Placement of an area light. Positions are relative to the centre of the model's bounding box; they and lengths are in
+/// units of its bounding radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaShape {
-    /// What it looks at.
+    /// Target that the light faces.
     pub target: [f64; 3],
     /// Azimuth in degrees, as a camera's: 0 on the +Z side, 90 on the +X side.
     pub yaw_deg: f64,
@@ -38,20 +38,20 @@ pub struct AreaShape {
     pub pitch_deg: f64,
     /// Distance of its middle from the target, above 0.
     pub distance: f64,
-    /// Its horizontal side, above 0.
+    /// Horizontal side, above 0.
     pub width: f64,
-    /// Its other side, above 0.
+    /// Other side, above 0.
     pub height: f64,
-    /// How far it is turned about the line to its target, clockwise seen from there, degrees.
+    /// Rotation about the line to its target in degrees, clockwise seen from there.
     pub turn_deg: f64,
-    /// What it is bounded by.
+    /// Outline of the light.
     pub outline: Outline,
 }
 
-/// What bounds an area light within its width and height.
+/// Outline of an area light within its width and height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outline {
-    /// All of it.
+    /// The full rectangle.
     Rectangle,
     /// The width is its base; its tip is at the middle of the upper side.
     Triangle,
@@ -64,18 +64,18 @@ pub enum Outline {
 /// The middle of an area light, and unit vectors along its sides and away from its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaFrame {
-    /// Its middle, in the geometry's units.
+    /// Centre, in the geometry's units.
     pub middle: DVec3,
-    /// Along its width, to the right of who looks at it from the target.
+    /// Unit axis of its width, to the right seen from the target.
     pub across: DVec3,
-    /// Along its height, upwards.
+    /// Unit axis of its height, upwards.
     pub up: DVec3,
-    /// From the target to the middle.
+    /// Unit direction from the target to the centre.
     pub outwards: DVec3,
 }
 
 impl AreaShape {
-    /// Where it is.
+    /// Position and axes of the light.
     pub fn frame(&self) -> AreaFrame {
         let outwards = orbit_direction(self.yaw_deg, self.pitch_deg);
         let [left, mut up] = right_and_up(-outwards);
@@ -128,7 +128,7 @@ pub struct LightCell {
     pub threshold: f32,
     /// The entry to take instead when it is not kept.
     pub alias_index: u32,
-    /// Which of the geometry's triangles.
+    /// Index of the triangle in the geometry.
     pub triangle: u32,
 }
 
@@ -190,7 +190,7 @@ impl Lights {
         }
     }
 
-    /// True where nothing emits.
+    /// True if nothing emits.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
@@ -202,36 +202,35 @@ fn area(geometry: &Geometry, triangle: u32) -> f64 {
     0.5 * (b - a).cross(c - a).length()
 }
 
-/// How one light sample is shared out, and what the integrators need to know its density.
+/// Split of light samples between environment and emitters, as the integrators need it for densities.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LightChoice {
-    /// The probability that the environment is sampled, not a triangle: 0 where it is not sampled at all.
+    /// Probability in [0, 1] of sampling the environment instead of a triangle.
     pub environment_probability: f64,
-    /// The density per area of the emitting triangles over the luminance of their emission; 0 where none is sampled.
+    /// Density per area on emitting triangles, divided by the luminance of their emission; 0 if none is sampled.
     pub density_per_luminance: f64,
     /// Columns and rows of the table of triangles.
     pub cells_size: [u32; 2],
 }
 
-/// Which light directions are drawn from, where it is there.
+/// Which lights are sampled, if present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampled {
-    /// The environment.
+    /// Whether the environment is sampled.
     pub environment: bool,
     /// The triangles that emit.
     pub emitters: bool,
-    /// Nothing else finds the light ([`Environment::distribution`]).
+    /// Whether light sampling is the only strategy, see [`Environment::distribution`].
     pub alone: bool,
 }
 
-/// Neither kind of light gets less than this share of the samples: power says nothing about what is near or in shadow.
+/// Smallest share of samples for either kind of light: power says nothing about nearness or shadow.
 const SHARE_MIN: f64 = 0.1;
 
 impl LightChoice {
-    /// Shares by power: what the environment sends into the model's bounding sphere, 4π² × mean luminance × strength,
-    /// against what the triangles emit from both sides, 2π × Σ area × luminance. Of the environment what is drawn counts:
-    /// beside lobes its excess alone. An environment that is equally bright everywhere, or black, is not sampled; nor is
-    /// what is not `wanted`.
+    /// Splits samples by power. The environment sends 4π² × mean luminance × strength into the model's bounding sphere;
+    /// triangles emit 2π × Σ area × luminance from both sides. With BSDF sampling, only the environment's sampled excess
+    /// counts. A uniform or black environment is not sampled, nor is anything not `wanted`.
     pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights, wanted: Sampled) -> Self {
         let is_uneven = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
         let is_sampled = wanted.environment && is_uneven;
@@ -261,34 +260,34 @@ impl LightChoice {
 /// A place on an emitting triangle, seen from a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LightSample<T> {
-    /// Towards the place.
+    /// Unit direction to the sampled position.
     pub direction: Vec3<T>,
-    /// With which it was drawn, per steradian.
+    /// Density per steradian.
     pub density: T,
-    /// The way that must be free: it ends so far before the place that the triangle itself is not met.
+    /// Length of the shadow ray: it ends just before the position, so that the triangle itself is not hit.
     pub distance: T,
-    /// What the place emits.
+    /// Emitted radiance, linear RGB.
     pub radiance: Vec3<T>,
 }
 
-/// What light samples are drawn from.
+/// The emitters, as light sampling needs them.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitters<'a, T> {
-    /// The triangles.
+    /// Geometry with the triangles.
     pub geometry: &'a Geometry,
     /// The materials of their slots.
     pub materials: &'a [Material<T>],
-    /// What these look up.
+    /// Textures of the materials.
     pub textures: &'a Textures,
-    /// Which triangles emit.
+    /// The emitting triangles.
     pub lights: &'a Lights,
     /// See [`LightChoice`].
     pub density_per_luminance: T,
 }
 
-/// A place on an emitting triangle, drawn with three uniform numbers in [0, 1): `xi.x` and `xi.y` choose an entry of the
-/// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. The ray towards it
-/// may start up to `origin_error` off `origin`.
+/// Samples a position on an emitting triangle with three uniform numbers in [0, 1): `xi.x` and `xi.y` select an entry of the
+/// table and the position, `xi.z` the entry or its alias. There must be such a triangle. The ray may start up to
+/// `origin_error` off `origin`.
 pub fn light_sample<T: Scalar>(
     emitters: &Emitters<'_, T>,
     origin: Vec3<T>,
@@ -335,15 +334,14 @@ pub fn light_sample<T: Scalar>(
     }
 }
 
-/// True where what a material emits depends on the direction.
+/// True if a material's emission depends on the direction.
 #[inline(always)]
 pub fn is_spot<T: Real>(material: &Material<T>) -> bool {
     material.spot_scale.differs(T::zero()).any()
 }
 
-/// The share of its radiance that a spot sends in a direction under this cosine to the way it faces: 1 within the inner
-/// cone, 0 outside the outer one, and between them the square of a ramp in the cosine, as glTF's spots have it
-/// (KHR_lights_punctual).
+/// Share in [0, 1] of its radiance that a spot emits at this cosine to its axis: 1 within the inner cone, 0 outside the
+/// outer one. In between it is the square of a ramp in the cosine, as glTF's spots have it (KHR_lights_punctual).
 #[inline(always)]
 pub fn spot_share<T: Real>(material: &Material<T>, cosine: T) -> T {
     let ramp = (cosine * material.spot_scale + material.spot_offset)
@@ -355,8 +353,8 @@ pub fn spot_share<T: Real>(material: &Material<T>, cosine: T) -> T {
 /// Keeps densities finite where a triangle is seen edge-on.
 pub const COSINE_MIN: f64 = 1e-6;
 
-/// The density, per steradian, with which [`light_sample`] draws the direction to a place of a material with this
-/// `light_luminance` that is seen under this cosine from this distance.
+/// Density per steradian of [`light_sample`] for a position on a material of this `light_luminance`, at this cosine and
+/// distance.
 #[inline(always)]
 pub fn light_density<T: Real>(light_luminance: T, cosine: T, distance: T, density_per_luminance: T) -> T {
     let per_area = density_per_luminance * light_luminance;

@@ -1,14 +1,14 @@
-//! What is being done to open something, for those who wait for it: they may read it, call it off, and hear what was refused.
+//! Progress and cancellation of loading, and the files that it was refused.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The bytes that one import may take where nobody says how many.
+/// Default memory of one import, in bytes.
 pub(super) const USUAL: u64 = 8 << 30;
 
-/// Tells what is being done and hears whether it is still wanted. Clones are the same one.
+/// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct Loading(Arc<State>);
 
@@ -45,19 +45,21 @@ impl Loading {
         self.say(String::new());
     }
 
-    /// Says what is done next.
+    /// Reports the next step.
     ///
     /// # Errors
-    /// [`Cancelled`] where it is not wanted.
+    ///
+    /// [`Cancelled`] if so.
     pub fn step(&self, doing: impl Into<String>) -> Result<(), Cancelled> {
         self.say(doing.into());
         self.check()
     }
 
-    /// Whether it is still wanted.
+    /// Checks for cancellation.
     ///
     /// # Errors
-    /// [`Cancelled`] where it is not.
+    ///
+    /// [`Cancelled`] if so.
     pub fn check(&self) -> Result<(), Cancelled> {
         match self.0.is_cancelled.load(Relaxed) {
             true => Err(Cancelled),
@@ -65,12 +67,12 @@ impl Loading {
         }
     }
 
-    /// Calls off what is being done: it ends at its next step.
+    /// Cancels the task at its next step.
     pub fn cancel(&self) {
         self.0.is_cancelled.store(true, Relaxed);
     }
 
-    /// What is being done; nothing where that was not said.
+    /// The current step; empty if none.
     pub fn doing(&self) -> String {
         self.0.doing.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -98,14 +100,14 @@ impl Loading {
         std::mem::take(&mut self.0.refused.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// The same items, until they are not wanted: for long loops whose outcome is thrown away then.
+    /// The items until cancelled: for long loops whose result is discarded then.
     pub(super) fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
         const BETWEEN: usize = 1 << 12;
         let is_wanted = |(place, _): &(usize, I::Item)| place % BETWEEN != 0 || self.check().is_ok();
         items.enumerate().take_while(is_wanted).map(|(_, item)| item)
     }
 
-    /// The same source, which fails once it is not wanted: long reads and parsers end then.
+    /// The source, failing once cancelled: it ends long reads and parsers.
     pub(super) fn watched<R: Read>(&self, source: R) -> Watched<'_, R> {
         let loading = self;
         Watched { loading, source }
@@ -116,7 +118,7 @@ impl Loading {
     }
 }
 
-/// A source that is read until it is not wanted.
+/// A source that fails once cancelled.
 pub(super) struct Watched<'a, R> {
     loading: &'a Loading,
     source: R,

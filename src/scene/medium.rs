@@ -8,20 +8,20 @@ use crate::optics::vector::{Vec3, vec3};
 /// The slot of no solid.
 pub const NO_MEDIUM: u32 = u32::MAX;
 
-/// The model lies within this many of its radii.
+/// Bound of the model in its radii.
 const MODEL_RADIUS: f32 = 1.001;
 /// Surfaces that are looked at.
 const SURFACES_MAX: u32 = 256;
 
-/// The slot of the solid around a position, by the surfaces that transmit on the way out of it: the first back whose front
-/// was not passed before. None where no solid absorbs, as nothing would depend on it.
+/// The slot of the medium around a position, found by the transmitting surfaces along a ray out of it: the first back hit
+/// without its front before. `None` if no medium absorbs.
 pub fn medium_at(geometry: &Geometry, materials: &[Material<f32>], position: Vec3<f32>) -> Option<u32> {
     let absorbs = |material: &Material<f32>| material.transmits() && material.absorption.is_any();
     let is_near = position.dot(position) < MODEL_RADIUS * MODEL_RADIUS;
     if !is_near || !materials.iter().any(absorbs) {
         return None;
     }
-    // Along no plane or axis that models are likely to have.
+    // In no likely plane or axis of a model.
     let direction = vec3(0.36, 0.8, 0.48);
     let mut origin = position;
     let mut entered = Vec::new();

@@ -1,10 +1,10 @@
-//! Where tables lie in memory that paths look up anywhere in, and asking for them ahead of their use.
+//! Memory of tables with random access: large pages and prefetching.
 
-/// What a processor finds the place of in one step at best.
+/// Size of a large page, in bytes.
 #[cfg(target_os = "linux")]
 const LARGE_PAGE: usize = 2 << 20;
 
-/// Room for so many elements, in large pages of memory where the system has them. What is not used of it takes none.
+/// A vector with capacity `count`, in large pages if the system has them. Unused room takes no memory.
 pub(super) fn room_in_large_pages<E>(count: usize) -> Vec<E> {
     let elements: Vec<E> = Vec::with_capacity(count);
     #[cfg(target_os = "linux")]
@@ -14,8 +14,8 @@ pub(super) fn room_in_large_pages<E>(count: usize) -> Vec<E> {
     elements
 }
 
-/// The same elements, in large pages of memory where the system has them: else finding the place of each costs a processor
-/// more than reading it. They are not copied by us, so that nothing is there twice.
+/// The same elements in large pages, if the system has them: otherwise a CPU's address translation costs more than the read.
+/// The system moves them in place, without a copy.
 pub(super) fn in_large_pages<E>(elements: Vec<E>) -> Vec<E> {
     #[cfg(target_os = "linux")]
     if size_of_val(&elements[..]) >= 2 * LARGE_PAGE {
@@ -27,7 +27,7 @@ pub(super) fn in_large_pages<E>(elements: Vec<E>) -> Vec<E> {
     elements
 }
 
-/// Tells the system how memory that was allocated is to be kept.
+/// Advises the system how to keep an allocation.
 #[cfg(target_os = "linux")]
 fn advise(place: *const u8, bytes: usize, advices: &[libc::c_int]) {
     const PAGE: usize = 4096;
@@ -41,19 +41,19 @@ fn advise(place: *const u8, bytes: usize, advices: &[libc::c_int]) {
     }
 }
 
-/// What a processor fetches at once.
+/// Size of a cache line, in bytes.
 #[cfg(target_arch = "x86_64")]
 const LINE: usize = 64;
 
-/// Has the processor fetch an element, where it knows how to; what is computed does not depend on it.
+/// Prefetches an element into the cache, if the CPU supports it. Results do not depend on it.
 #[inline(always)]
-pub(super) fn fetch<E>(elements: &[E], index: usize) {
+pub(super) fn prefetch<E>(elements: &[E], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(element) = elements.get(index) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         let start: *const i8 = std::ptr::from_ref(element).cast();
         for line in (0..size_of::<E>()).step_by(LINE) {
-            // SAFETY: the place is in the element; nothing is read that the program could tell.
+            // SAFETY: the address is within the element, and prefetching has no observable effect.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
         }
     }

@@ -14,13 +14,13 @@ use super::loading::Loading;
 pub struct Mesh {
     /// Places in model units. Double precision, so that a small part far from the origin keeps its shape.
     pub positions: Vec<DVec3>,
-    /// Unit shading normals; 0 where a triangle is shaded by its plane, which asks for no vertices of its own.
+    /// Unit shading normals; 0 for flat shading, which needs no vertices of its own.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates, v growing downwards in the image as in glTF; zero where the source has none.
+    /// Texture coordinates, v downwards in the image as in glTF; zero if the source has none.
     pub uvs: Vec<Vec2>,
-    /// The second set of texture coordinates; empty where no texture looks it up.
+    /// Second set of texture coordinates; empty if unused.
     pub second_uvs: Vec<Vec2>,
-    /// Linear colours and opacities that multiply those of the material; empty where there are none.
+    /// Linear RGB and opacity that multiply the material's; empty if unused.
     pub colors: Vec<[f32; 4]>,
     /// Unit tangents along growing u (xyz) and the sign (w, ±1) of the bitangent w · (normal × tangent), which points
     /// upwards in the image (along falling v), as in glTF.
@@ -115,7 +115,7 @@ impl Mesh {
         self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// The enclosed volume, in cubic units, of a mesh whose surfaces are closed; positive where they face outwards.
+    /// Signed volume of a closed mesh, in cubic units; positive if it faces outwards.
     pub fn signed_volume(&self) -> f64 {
         let origin = self.positions.first().copied().unwrap_or_default();
         let parallelepipeds = (0..self.triangles.len()).map(|triangle| {
@@ -141,8 +141,8 @@ impl Mesh {
         }
     }
 
-    /// Gives every vertex the mean normal of its triangles, weighed by their areas: for scanned surfaces, which have no
-    /// creases. Left half done where it is not wanted any more.
+    /// Sets each vertex normal to the area-weighted mean of its triangles, for scanned surfaces without creases. Incomplete
+    /// if cancelled.
     pub fn smooth_normals(&mut self, loading: &Loading) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         for triangle in loading.while_wanted(0..self.triangles.len()) {
@@ -155,8 +155,7 @@ impl Mesh {
         self.normals = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
     }
 
-    /// Scales normals to unit length; those that are not finite or have no length become 0, which stands for the triangle's
-    /// plane. Gives their number.
+    /// Normalises normals; non-finite and zero ones become 0, which stands for the triangle's plane. Returns their number.
     pub fn repair_normals(&mut self) -> usize {
         let mut broken = 0;
         for normal in &mut self.normals {
@@ -219,8 +218,8 @@ impl Mesh {
         }
     }
 
-    /// The direction of growing u on a triangle and the sign of its bitangent; nothing where the texture coordinates
-    /// or the triangle are degenerate.
+    /// Direction of growing u on a triangle and the sign of its bitangent; `None` if the texture coordinates or the triangle
+    /// are degenerate.
     fn texture_frame(&self, triangle: usize, texture_from_uv: [f32; 6]) -> Option<(DVec3, f32)> {
         let [a, b, c] = self.corners(triangle);
         let [uv_a, uv_b, uv_c] = self.triangles[triangle].map(|vertex| self.uvs[vertex as usize].as_dvec2());
@@ -239,7 +238,7 @@ impl Mesh {
 /// The colour of a vertex without one.
 const WHITE: [f32; 4] = [1.0; 4];
 
-/// Appends values that may be missing on either side, where there are `counts` vertices on each.
+/// Appends optional values; `counts` are the vertices of both sides.
 fn append_optional<T: Copy>(values: &mut Vec<T>, others: &[T], counts: [usize; 2], default: T) {
     if values.is_empty() && others.is_empty() {
         return;
@@ -249,7 +248,7 @@ fn append_optional<T: Copy>(values: &mut Vec<T>, others: &[T], counts: [usize; 2
     values.resize(counts[0] + counts[1], default);
 }
 
-/// The unit normal of the plane through three points in counter-clockwise order; +Y where they are on one line.
+/// Unit normal of the plane through three points in anticlockwise order; +Y if they are collinear.
 pub fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
 }

@@ -1,4 +1,4 @@
-//! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
+//! The scene: models and their sources, hierarchies, lights, environments and textures.
 
 mod alias;
 mod basis;
@@ -46,7 +46,7 @@ pub use budget::{Budget, LIMIT_VARIABLE, OverBudget};
 pub use file_parameter::{FileParameter, Goes};
 pub use geometry::{Geometry, NO_OBJECT};
 pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
-pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
+pub use hierarchy::{Compressed, OCTANTS, PACKET, Packet, ray_octant};
 pub use import::{holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use loading::{Cancelled, Loading};

@@ -1,4 +1,4 @@
-//! What can be loaded and what loading gives: a mesh, its material slots and their pictures.
+//! Models: sources, and the loaded mesh with material slots and texture maps.
 
 use std::fmt;
 use std::io;
@@ -13,8 +13,8 @@ use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
 use super::{import, shapes, teapot};
 
-/// Where a model comes from. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a
-/// path; a file of such a name is written with its folder (`./teapot`).
+/// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
+/// such a name is written with its folder (`./teapot`).
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum ModelSource {
@@ -90,15 +90,15 @@ pub struct Model {
     pub mesh: Mesh,
     /// The material slots that `mesh.slots` counts.
     pub slots: Vec<Slot>,
-    /// The pictures that the slots refer to.
+    /// Texture maps of the slots.
     pub textures: Vec<Texture>,
     /// The objects that its triangles belong to, in the triangles' order.
     pub objects: Vec<ModelObject>,
-    /// What became of the parts of its file.
+    /// Import report.
     pub report: ImportReport,
     /// The middle of its bounding box; 0 for built-in models, whose file has no lights or cameras.
     pub center: [f64; 3],
-    /// From there to the farthest vertex.
+    /// Distance from there to the farthest vertex.
     pub radius: f64,
     /// The cameras of the scene.
     pub cameras: Vec<ModelCamera>,
@@ -108,18 +108,18 @@ pub struct Model {
     pub variants: Vec<String>,
     /// Names of the scenes in the file.
     pub scenes: Vec<String>,
-    /// How long its first animation takes, seconds; 0 where there is none.
+    /// Length of the first animation in seconds; 0 without one.
     pub duration_s: f32,
-    /// The files that it was read from, and those that it names and that are not there.
+    /// Files that were read, and missing ones that it names.
     pub files: Vec<PathBuf>,
 }
 
 /// A part of a model that has a name: a node of a glTF file, an object or group of an OBJ file, else the whole.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ModelObject {
-    /// What the file calls it.
+    /// Name in the file.
     pub name: String,
-    /// Its triangles in the mesh.
+    /// Triangle range in the mesh.
     pub triangles: Range<usize>,
 }
 
@@ -141,7 +141,7 @@ impl Model {
         slots
     }
 
-    /// Adds all of another model, as it lies in its own file's space, to this one.
+    /// Appends another model, in its own file's space.
     pub(super) fn join(&mut self, mut other: Self) {
         let (slots, textures) = (self.slots.len() as u32, self.textures.len());
         other.mesh.slots.iter_mut().for_each(|slot| *slot += slots);
@@ -177,20 +177,20 @@ impl Model {
     }
 }
 
-/// What is shown of a file that holds more than one picture.
+/// Options for files with more than one scene, variant or pose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ModelOptions {
-    /// The number of the scene; the file's default one where none is given.
+    /// Scene index; `None` is the file's default.
     pub scene: Option<usize>,
-    /// The variant of the materials (KHR_materials_variants); the file's own materials where none is given.
+    /// Material variant (KHR_materials_variants); `None` is the file's own materials.
     pub variant: Option<String>,
-    /// The time of the first animation whose pose is shown, seconds; where the nodes are without it where none is given.
+    /// Time in the first animation, in seconds; `None` is the rest pose.
     pub time_s: Option<f32>,
     /// The longest side of a texture; larger ones are halved until they fit.
     pub texture_side_max: u32,
-    /// Other files that were given with it. Models are shown together with it; what it names and lacks beside itself is
-    /// looked for among the others.
+    /// Other files given with it. Models are joined with it; files that it names and that are missing beside it are searched
+    /// among the others.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<PathBuf>,
 }
@@ -216,17 +216,17 @@ pub struct Slot {
     pub file_material: Option<usize>,
     /// Linear Rec. 709, each in [0, 1]; multiplies the texture.
     pub base_color: [f32; 3],
-    /// In [0, 1]; multiplies the blue channel of the metallic-roughness texture.
+    /// Metalness in [0, 1]; multiplies the blue channel of the metallic-roughness texture.
     pub metalness: f32,
-    /// In [0, 1], α = roughness²; multiplies the green channel of the metallic-roughness texture.
+    /// Roughness in [0, 1], α = roughness²; multiplies the green channel of the metallic-roughness texture.
     pub roughness: f32,
     /// Emitted radiance, linear, at least 0, KHR_materials_emissive_strength included; multiplies the texture.
     pub emission: [f32; 3],
-    /// In [0, 1]; multiplies the alpha of the base colour texture.
+    /// Opacity in [0, 1]; multiplies the alpha of the base colour texture.
     pub opacity: f32,
-    /// What opacity means.
+    /// Meaning of opacity.
     pub alpha_mode: AlphaMode,
-    /// Below this opacity nothing is there, in [`AlphaMode::Mask`].
+    /// Opacity cutoff of [`AlphaMode::Mask`].
     pub alpha_cutoff: f32,
     /// Whether the back of a triangle is seen.
     pub double_sided: bool,
@@ -240,15 +240,15 @@ pub struct Slot {
     pub coat_roughness: f32,
     /// Index of refraction of the coat, at least 1.
     pub coat_ior: f32,
-    /// What is left of white light after `attenuation_distance` inside, linear (KHR_materials_volume).
+    /// Transmittance over `attenuation_distance` inside, linear RGB (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
-    /// In bounding radii of the model, above 0; infinite where nothing is absorbed.
+    /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
     pub attenuation_distance: f32,
     /// Colour (sRGB-encoded) and opacity.
     pub base_color_texture: Option<TextureRef>,
     /// Roughness in green, metalness in blue (linear values).
     pub metallic_roughness_texture: Option<TextureRef>,
-    /// The largest roughness in its texture, in [0, 1]; 1 where there is none.
+    /// Largest roughness in the texture, in [0, 1]; 1 without one.
     pub roughest_texel: f32,
     /// Tangent-space normals (linear values, 0…255 for −1…1, green upwards).
     pub normal_texture: Option<TextureRef>,
@@ -256,27 +256,27 @@ pub struct Slot {
     pub normal_scale: f32,
     /// Emission (sRGB-encoded).
     pub emissive_texture: Option<TextureRef>,
-    /// Its red channel multiplies `coat`.
+    /// Coat map; its red channel multiplies `coat`.
     pub coat_texture: Option<TextureRef>,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
-    /// Tint of the reflection at normal incidence of what is no metal, linear, not negative; may be above 1.
+    /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
     pub specular_color: [f32; 3],
     /// Stretch of the reflection along the tangent, in [0, 1], as lobes have it (KHR_materials_anisotropy).
     pub anisotropy: f32,
     /// Turn of the stretch from the tangent towards the bitangent, radians.
     pub anisotropy_rotation_rad: f32,
-    /// The base colour is multiplied by the colours at the vertices, or the emission of what is unlit.
+    /// Whether vertex colours multiply the base colour, or the emission if unlit.
     pub has_vertex_colors: bool,
     /// Some of these colours have an alpha below 1.
     pub has_vertex_alpha: bool,
-    /// It shows its colour whatever the light (KHR_materials_unlit).
+    /// Whether it ignores light (KHR_materials_unlit).
     pub is_unlit: bool,
-    /// What the renderer cannot show yet, under the keys of a material's file.
+    /// Unsupported parameters, under the keys of a material file.
     pub kept: serde_json::Map<String, serde_json::Value>,
 }
 
-/// glTF's material where a file names none.
+/// glTF's default material.
 impl Default for Slot {
     fn default() -> Self {
         Self {
@@ -353,13 +353,13 @@ impl Slot {
     }
 }
 
-/// What a slot's opacity means.
+/// Meaning of a slot's opacity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AlphaMode {
-    /// Nothing: the surface is opaque.
+    /// Ignored: the surface is opaque.
     #[default]
     Opaque,
-    /// The surface is there where the opacity reaches the cutoff.
+    /// Cut-out: opaque where the opacity reaches the cutoff.
     Mask,
     /// The fraction of light that the surface stops.
     Blend,
@@ -368,20 +368,20 @@ pub enum AlphaMode {
 /// A texture and how the mesh's texture coordinates look into it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureRef {
-    /// Which of [`Model::textures`].
+    /// Index into [`Model::textures`].
     pub texture: usize,
-    /// Which of the mesh's sets of texture coordinates: 0 or 1.
+    /// Set of texture coordinates: 0 or 1.
     pub uv_set: usize,
-    /// Places in the texture from those of the mesh: (m[0]·u + m[1]·v + m[2], m[3]·u + m[4]·v + m[5])
+    /// Affine map from the mesh's coordinates to the texture's: (m[0]·u + m[1]·v + m[2], m[3]·u + m[4]·v + m[5])
     /// (KHR_texture_transform).
     pub texture_from_mesh_uv: [f32; 6],
-    /// What is beyond 0 and 1 in u and in v.
+    /// Wrap modes in u and v.
     pub wrap: [Wrap; 2],
-    /// What is between texels.
+    /// Filtering.
     pub filter: Filter,
 }
 
-/// What a texture is between the middles of its texels.
+/// Filtering between texel centres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
     /// The four around the place, weighed by their nearness.
@@ -391,19 +391,19 @@ pub enum Filter {
     Nearest,
 }
 
-/// How a texture goes on beyond its edge.
+/// Wrap mode beyond a texture's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// From the start again.
+    /// The texture repeats.
     #[default]
     Repeat,
     /// Back and forth.
     MirroredRepeat,
-    /// With the texel at the edge.
+    /// Clamp to the texel at the edge.
     ClampToEdge,
 }
 
-/// A picture, encoded as in the file: whether the values are sRGB or linear depends on what refers to it.
+/// A texture map, encoded as in the file: whether the values are sRGB or linear depends on its use.
 #[derive(Clone, Default, PartialEq)]
 pub struct Texture {
     /// The image's name, its file or its number.
@@ -414,7 +414,7 @@ pub struct Texture {
     pub height: u32,
     /// Red, green, blue, opacity of each texel, row by row from the top.
     pub rgba8: Vec<u8>,
-    /// The same with 16 bits a channel, where the file has more than 8 and the picture holds no colours; else empty.
+    /// The same with 16 bits per channel, for files with more than 8 bits that hold no colours; else empty.
     pub rgba16: Vec<u16>,
 }
 
@@ -424,7 +424,7 @@ impl Texture {
         size_of_val(&self.rgba8[..]) + size_of_val(&self.rgba16[..])
     }
 
-    /// The largest value of a channel, in [0, 1]; 0 where there is no texel.
+    /// Largest value of a channel, in [0, 1]; 0 without texels.
     pub fn brightest(&self, channel: usize) -> f32 {
         fn largest<N: Copy + Ord + Into<f32>>(numbers: &[N], channel: usize) -> f32 {
             let values = numbers.iter().skip(channel).step_by(4);
@@ -457,7 +457,7 @@ pub enum ModelError {
     Read {
         /// The model file.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// Neither GLB nor JSON.
@@ -465,7 +465,7 @@ pub enum ModelError {
     NotGltf {
         /// The model file.
         path: PathBuf,
-        /// What it looks like instead.
+        /// Reason of the reader, in words.
         reason: String,
     },
     /// The file ends too early.
@@ -483,35 +483,35 @@ pub enum ModelError {
     Invalid {
         /// The model file.
         path: PathBuf,
-        /// Which rule.
+        /// The violated rule.
         reason: String,
     },
-    /// Nothing to draw, as something that the file refers to is missing.
+    /// Nothing to render, because a referenced file is missing.
     #[error("{}: nothing to show; {reason}; put what is missing beside the model, or export as .glb", path.display())]
     Incomplete {
         /// The model file.
         path: PathBuf,
-        /// What is missing.
+        /// The missing part.
         reason: String,
     },
-    /// The file needs what is not supported.
+    /// The file needs an unsupported extension.
     #[error("{}: needs the glTF extension {name}, which is not supported; {remedy}", path.display())]
     Extension {
         /// The model file.
         path: PathBuf,
         /// The extension.
         name: String,
-        /// How to get a file without it.
+        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
-    /// A buffer or picture that the file refers to is missing or unreadable.
+    /// A referenced buffer or image is missing or unreadable.
     #[error("{}: cannot use {resource}: {reason}; put it beside the model or export as .glb", path.display())]
     Resource {
         /// The model file.
         path: PathBuf,
         /// The file or image referred to.
         resource: String,
-        /// What is wrong with it.
+        /// Fault of the resource.
         reason: String,
     },
     /// A folder or an archive without a model.
@@ -520,10 +520,10 @@ pub enum ModelError {
         /// The folder or archive.
         path: PathBuf,
     },
-    /// It is not wanted any more.
+    /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Nothing to draw.
+    /// The scene has no triangles to render.
     #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
     NoTriangles {
         /// The model file.
@@ -531,26 +531,29 @@ pub enum ModelError {
     },
 }
 
-/// Loads a model. Blocks for as long as reading and decoding take; never panics on a damaged file.
+/// Loads a model. Blocks while reading and decoding; never panics on a damaged file.
 ///
 /// # Errors
-/// Names the file, what is wrong with it and what to do, where there is nothing to show.
+///
+/// One line with the file, the fault and the remedy, if there is nothing to show.
 pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
     load_with(source, &ModelOptions::default())
 }
 
-/// The same where a file holds more than one picture.
+/// The same with options.
 ///
 /// # Errors
+///
 /// As [`load`].
 pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, ModelError> {
     load_watched(source, options, &Loading::default())
 }
 
-/// The same for those who wait.
+/// The same with progress and cancellation.
 ///
 /// # Errors
-/// As [`load`], and where it was cancelled.
+///
+/// As [`load`], and if cancelled.
 pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
     let built_in = |mesh: Mesh, slots: &[&str]| Model {
         name: source.to_string(),

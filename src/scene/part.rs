@@ -1,4 +1,4 @@
-//! Triangles with the hierarchy by which rays find them: the model's, or those around it.
+//! Triangles with their hierarchies: the model's, or those of its surroundings.
 
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::Level;
@@ -10,10 +10,10 @@ use super::loading::{Cancelled, Loading};
 use super::memory::{in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 
-/// What an alpha of 1 is stored as.
+/// Stored value of alpha 1.
 const ALPHA_MAX: f32 = 32767.0;
 
-/// What shading needs of a vertex besides its position: three times 16 bytes, the same layout in WGSL.
+/// A vertex's shading attributes, without its position: three times 16 bytes, with the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
@@ -79,17 +79,16 @@ impl Vertex {
 /// Triangles in one f32 coordinate system, in the order in which their hierarchy's leaves refer to them.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
-    /// Places of the vertices.
+    /// Vertex positions.
     pub positions: Vec<[f32; 3]>,
-    /// The other attributes of the vertices, as many as `positions`.
+    /// Other vertex attributes, as many as `positions`.
     pub vertices: Vec<Vertex>,
-    /// The vertices of each triangle, counter-clockwise from outside.
+    /// Vertex indices of each triangle, anticlockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// The material slot of each triangle.
     pub slots: Vec<u32>,
     /// The model's object that each triangle belongs to; [`NO_OBJECT`](super::NO_OBJECT) for what is none of the model's.
     pub objects: Vec<u32>,
-    /// How rays find them.
     hierarchy: Hierarchy,
 }
 
@@ -103,24 +102,24 @@ impl Part {
         Ok(())
     }
 
-    /// True where there is nothing to meet.
+    /// True without triangles.
     #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// The hierarchy as the GPU reads it, built when it is first asked for.
+    /// The GPU's hierarchy, built on first use.
     pub fn compressed(&self) -> &Compressed {
         self.hierarchy.compressed(|triangle| self.corners(triangle as usize))
     }
 
-    /// The hierarchy as the processor reads it, built when it is first asked for.
+    /// The CPU's hierarchy, built on first use.
     #[inline(always)]
     pub(super) fn wide(&self) -> &Wide {
         self.hierarchy.wide(|triangle| self.corners(triangle as usize))
     }
 
-    /// Bytes in memory, with the hierarchies that have been built.
+    /// Memory in bytes, with the hierarchies built so far.
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.positions[..])
             + size_of_val(&self.vertices[..])
@@ -141,22 +140,22 @@ impl Part {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Where a ray meets the nearest triangle with 0 < t < `t_max`.
+    /// The closest hit with 0 < t < `t_max`.
     #[inline(always)]
-    pub(super) fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
+    pub(super) fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         match self.is_empty() {
             true => None,
-            false => self.wide().nearest(level, frame, t_max),
+            false => self.wide().closest_hit(level, frame, t_max),
         }
     }
 
-    /// Whether any triangle is met with 0 < t < `t_max`.
+    /// True if any triangle is hit with 0 < t < `t_max`.
     #[inline(always)]
-    pub(super) fn is_met(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
-        !self.is_empty() && self.wide().any(level, frame, t_max).is_some()
+    pub(super) fn is_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
+        !self.is_empty() && self.wide().any_hit(level, frame, t_max).is_some()
     }
 
-    /// Adds the chosen triangles of a mesh that have an area; how many have lost theirs by rounding.
+    /// Adds the chosen triangles of a mesh. Returns the number of those that lost their area by rounding.
     pub(super) fn add(
         &mut self,
         mesh: &Mesh,
@@ -189,8 +188,7 @@ impl Part {
         dropped
     }
 
-    /// Puts triangles into an order and vertices into that of their first use, which keeps what rays read together close
-    /// together; drops vertices that no triangle uses.
+    /// Sorts triangles by `order` and vertices by first use, for locality. Drops unused vertices.
     fn sort(&mut self, order: &[u32]) {
         self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
         self.objects = order.iter().map(|&triangle| self.objects[triangle as usize]).collect();
@@ -217,7 +215,6 @@ impl Part {
     }
 }
 
-/// Whether a triangle covers anything.
 pub(super) fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }

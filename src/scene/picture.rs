@@ -1,4 +1,4 @@
-//! Pictures of models, whatever their format.
+//! Decoding of models' texture maps, of any format.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -21,42 +21,42 @@ use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::panics::contained;
 
-/// The most memory that decoding one picture may take: 16 384 × 8 192 texels of 16 bits a channel take 1 GiB.
+/// Memory limit for decoding one image: 16 384 × 8 192 texels of 16 bits per channel take 1 GiB.
 const DECODED_MAX: u64 = 2 << 30;
-/// Texels that a byte may stand for, and beyond them: a run of one colour takes PNG and WebP next to nothing.
+/// Largest expansion in texels per byte, and additional texels: a run of one colour takes PNG and WebP almost nothing.
 const GROWTH: [u64; 2] = [1 << 14, 1 << 20];
-/// Bytes that decoding takes for a texel in passing: of codes of 8 bits, and of deeper numbers.
+/// Temporary bytes per texel of decoding: for 8-bit codes, and for deeper values.
 const TEXEL_COSTS: [u64; 2] = [12, 28];
-/// Bytes that decoding takes for each of a container of a GPU.
+/// Temporary bytes per texel of decoding a GPU container.
 const CONTAINER_COST: u64 = 8;
 /// The first bytes of an OpenEXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
-/// The most columns or rows of an OpenEXR picture.
+/// Largest side of an OpenEXR image, in pixels.
 const SIDE_MAX: usize = 1 << 15;
 
-/// A picture with the numbers that its file has.
+/// A decoded image with the file's own values.
 pub(super) struct Decoded {
     name: String,
     width: u32,
     height: u32,
     /// Red, green, blue and opacity of each texel, row by row from the top.
     texels: Numbers,
-    /// Brings its colours to linear Rec. 709, where they are not of it.
+    /// Matrix to linear Rec. 709, if in another space.
     rec709_from: Option<Matrix>,
-    /// What is to be told of it where it holds colours.
+    /// Note for the report, if it holds colours.
     pub note: Option<&'static str>,
 }
 
 enum Numbers {
     Codes8(Vec<u8>),
     Codes16(Vec<u16>),
-    /// Linear whatever the use.
+    /// Linear for any use.
     Light(Vec<f32>),
 }
 
 impl Decoded {
-    /// The picture as it is looked up. One of colours has 8 bits a channel, of sRGB; any other as many as its file, up to
-    /// 16: steps of 8 bits in a normal or in a small roughness are seen.
+    /// The texture map. Colours have 8 bits per channel in sRGB; others as many as the file, up to 16, because 8-bit steps
+    /// are visible in normals and small roughnesses.
     pub fn texture(self, is_color: bool) -> Texture {
         let rec709_from = self.rec709_from;
         let rgba16 = match self.texels {
@@ -96,16 +96,16 @@ impl Decoded {
     }
 }
 
-/// A picture as its file has it.
+/// An encoded image.
 pub(super) struct Encoded<'a> {
-    /// What it is called.
+    /// Name for messages.
     pub name: String,
     /// The file.
     pub bytes: Cow<'a, [u8]>,
 }
 
 impl Encoded<'_> {
-    /// The memory that decoding takes in passing, near enough, by what the header says.
+    /// Approximate temporary memory for decoding in bytes, by the header.
     pub fn cost(&self) -> u64 {
         let [of_codes, of_numbers] = TEXEL_COSTS;
         let texels = header(&self.name, &self.bytes).map_or(0, |header| {
@@ -116,10 +116,11 @@ impl Encoded<'_> {
         texels.max(CONTAINER_COST * self.bytes.len() as u64)
     }
 
-    /// Decodes it, where the budget of its import has room for that.
+    /// Decodes it, if the import's budget permits.
     ///
     /// # Errors
-    /// Why it cannot be had, in a few words.
+    ///
+    /// The reason, in a few words.
     pub fn decode(self, budget: &Budget) -> Result<Decoded, String> {
         check_growth(&self.name, &self.bytes)?;
         budget.check(self.cost()).map_err(|over| over.to_string())?;
@@ -127,10 +128,10 @@ impl Encoded<'_> {
     }
 }
 
-/// What the first bytes of a picture say of the rest.
+/// Header of an image.
 struct Header {
     size: [u32; 2],
-    /// It has more than 8 bits a channel.
+    /// True for more than 8 bits per channel.
     is_deep: bool,
 }
 
@@ -140,7 +141,7 @@ impl Header {
     }
 }
 
-/// Refuses a picture that claims more texels than its bytes can tell, before memory is asked for.
+/// Refuses an image that claims more texels than its bytes can encode, before memory is allocated.
 fn check_growth(name: &str, bytes: &[u8]) -> Result<(), String> {
     let [growth, floor] = GROWTH;
     match header(name, bytes) {
@@ -151,7 +152,7 @@ fn check_growth(name: &str, bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The header of a picture; none where it has another kind, or is damaged.
+/// The header of an image; `None` if unknown or damaged.
 fn header(name: &str, bytes: &[u8]) -> Option<Header> {
     if gpu_picture::is_container(bytes) {
         return None;
@@ -176,10 +177,11 @@ fn header(name: &str, bytes: &[u8]) -> Option<Header> {
     })
 }
 
-/// The picture in a file, its longest side at most `side_max`, within what its import may take.
+/// The texture map in a file, with sides of at most `side_max`, within the import's budget.
 ///
 /// # Errors
-/// Why it can't be had, in a few words.
+///
+/// The reason, in a few words.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
     let bytes = resource::read(path, resource::BYTES_MAX).map_err(|error| error.to_string())?;
     let name = path
@@ -194,10 +196,11 @@ pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget)
     Ok(scaled)
 }
 
-/// Decodes a picture of any known format.
+/// Decodes an image of any known format.
 ///
 /// # Errors
-/// Why it cannot be had, in a few words.
+///
+/// The reason, in a few words.
 fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));
@@ -216,7 +219,7 @@ fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     })
 }
 
-/// What brings the colours of an OpenEXR picture to linear Rec. 709, where its file says that they are of another space.
+/// Matrix from the colour space of an OpenEXR file to linear Rec. 709, if it names another.
 fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
     let meta = bytes
         .starts_with(&EXR)
@@ -268,7 +271,7 @@ fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
     Ok((width, height, texels))
 }
 
-/// A picture in one of the formats of screens; the name counts where its bytes do not tell which.
+/// Decodes a display-referred format; the name decides if the bytes do not.
 pub(super) fn decode_image(name: &str, bytes: &[u8]) -> ImageResult<DynamicImage> {
     let (width, height) = reader(name, bytes)?.into_dimensions()?;
     let [growth, floor] = GROWTH;
@@ -283,10 +286,10 @@ pub(super) fn decode_image(name: &str, bytes: &[u8]) -> ImageResult<DynamicImage
     reader.decode()
 }
 
-/// Reads bytes by their format; the name counts where they do not tell it.
+/// A reader by format; the name decides if the bytes do not.
 fn reader<'a>(name: &str, bytes: &'a [u8]) -> ImageResult<ImageReader<Cursor<&'a [u8]>>> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    // A TGA has nothing to tell it by but its name.
+    // A TGA is only recognised by its name.
     if reader.format().is_none()
         && let Ok(format) = ImageFormat::from_path(name)
     {
@@ -295,7 +298,7 @@ fn reader<'a>(name: &str, bytes: &'a [u8]) -> ImageResult<ImageReader<Cursor<&'a
     Ok(reader)
 }
 
-/// The width and the texels of a picture that is being filled.
+/// Width and texels of an image being filled.
 type Pixels = (usize, Vec<f32>);
 
 fn put((width, texels): &mut Pixels, at: Vec2<usize>, rgba: [f32; 4]) {

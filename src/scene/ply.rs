@@ -24,7 +24,7 @@ struct Vertex {
     color: Option<[f32; 4]>,
 }
 
-/// Puts one of several numbers that come one by one.
+/// Stores one of several numbers that arrive one by one.
 fn put<const N: usize>(values: &mut Option<[f32; N]>, place: usize, value: f32, others: f32) {
     values.get_or_insert([others; N])[place] = value;
 }
@@ -88,7 +88,7 @@ impl PropertyAccess for Face {
     }
 }
 
-/// What is read and not wanted.
+/// Data that is read and ignored.
 struct Skipped;
 
 impl PropertyAccess for Skipped {
@@ -111,7 +111,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
     let mut report = ImportReport::default();
     for element in header.elements.values() {
         if element.properties.is_empty() && header.encoding != Encoding::Ascii {
-            // They take no bytes, so that nothing ends their reading but their number.
+            // Empty elements take no bytes, so that only their count would end the reading.
             let what = format!("elements called {}, which are empty", element.name);
             report.count(Fate::Ignored, what, "", element.count);
             continue;
@@ -132,7 +132,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
         };
         loading.check()?;
         if let Err(error) = read {
-            // What stands before the damage may be enough.
+            // The data before the damage may suffice.
             if vertices.is_empty() || faces.is_empty() {
                 return Err(invalid(&error));
             }

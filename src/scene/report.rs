@@ -1,11 +1,11 @@
-//! What became of the parts of a file that was loaded: used, approximated, ignored or missing.
+//! Import report of a file: its parts that were used, approximated, ignored or missing.
 
 use serde::Serialize;
 
 /// Most names that are kept of one entry.
 const NAMES_MAX: usize = 20;
 
-/// What became of a part of a file.
+/// Fate of a part of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Fate {
@@ -23,7 +23,7 @@ impl Fate {
     /// Every fate, the best first.
     pub const ALL: &[Self] = &[Self::Used, Self::Approximated, Self::Ignored, Self::Missing];
 
-    /// In words: "used", "approximated", …
+    /// Label: "used", "approximated", …
     pub fn label(self) -> &'static str {
         match self {
             Self::Used => "used",
@@ -34,28 +34,28 @@ impl Fate {
     }
 }
 
-/// One kind of thing in a file, and what became of it.
+/// One kind of part in a file, and its fate.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Entry {
-    /// What became of it.
+    /// Whether the part was used, approximated, ignored or missing.
     pub fate: Fate,
-    /// What it is, and what is shown instead.
+    /// Description, and what is shown instead.
     pub what: String,
-    /// How often.
+    /// Number of occurrences.
     pub count: usize,
     /// The objects, materials or files concerned, each once, the first twenty of them.
     pub names: Vec<String>,
 }
 
-/// What became of the parts of a file.
+/// Import report of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ImportReport {
-    /// One entry for each kind of thing, in the order in which they were met.
+    /// One entry per kind of part, in order of occurrence.
     pub entries: Vec<Entry>,
 }
 
 impl ImportReport {
-    /// Counts one thing. `name` is the object, material or file that it belongs to; none where it is the file itself.
+    /// Counts one part. `name` is its object, material or file; empty for the file itself.
     pub fn note(&mut self, fate: Fate, what: impl Into<String>, name: &str) {
         self.count(fate, what, name, 1);
     }
@@ -87,7 +87,7 @@ impl ImportReport {
         }
     }
 
-    /// Takes another report's entries over.
+    /// Appends another report's entries.
     pub fn append(&mut self, other: Self) {
         for entry in other.entries {
             self.count(entry.fate, entry.what.as_str(), "", entry.count);
@@ -123,7 +123,7 @@ impl ImportReport {
         entries.map(Entry::line).collect()
     }
 
-    /// One line about everything that is not shown as the file says; none where there is no such thing.
+    /// One line about all deviations from the file; `None` without any.
     pub fn summary(&self) -> Option<String> {
         let count = |fate: Fate| match self.of(fate).map(|entry| entry.count).sum::<usize>() {
             0 => None,
@@ -136,7 +136,7 @@ impl ImportReport {
 }
 
 impl Entry {
-    /// The entry in one line: fate, what, how often, where.
+    /// The entry in one line: fate, description, count, name.
     pub fn line(&self) -> String {
         let mut line = format!("{}: {}", self.fate.label(), self.what);
         if self.count > 1 {

@@ -1,7 +1,7 @@
-//! Files that other files name: which of them are read, and how.
+//! Access to files that other files name.
 //!
-//! A file from a stranger may name what it likes. Read are regular files alone, and of these such as lie in the surroundings
-//! of the file that names them; others after the user has allowed them.
+//! A file from a stranger may name anything. Only regular files are read, and only within reach of the naming file; others
+//! only with the user's permission.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
@@ -13,7 +13,7 @@ use super::loading::Loading;
 /// The most bytes of one file.
 pub(super) const BYTES_MAX: u64 = 4 << 30;
 
-/// What the user allows, whatever names it.
+/// Permissions by the user, independent of the naming file.
 static PERMITS: Mutex<Permits> = Mutex::new(Permits {
     everything: false,
     allowed: Vec::new(),
@@ -28,7 +28,7 @@ fn permits() -> std::sync::MutexGuard<'static, Permits> {
     PERMITS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Files may name whatever they like, until the program ends.
+/// Allows files to name any file until the program ends.
 pub fn allow_everything() {
     permits().everything = true;
 }
@@ -49,13 +49,14 @@ pub fn allowed() -> Vec<PathBuf> {
     allowed.into_iter().filter(|path| path.to_str().is_some()).collect()
 }
 
-/// Opens a regular file. Devices and pipes, of which some never end and some never begin, are refused without waiting.
+/// Opens a regular file. Devices and pipes, which may block forever, are refused without waiting.
 ///
 /// # Errors
-/// What the system says, or that it is no file.
+///
+/// The system's, or that it is not a regular file.
 pub fn open(path: &Path) -> io::Result<File> {
     let no_file = || io::Error::new(ErrorKind::InvalidInput, "no regular file");
-    // Opening a device may do something: it is asked before. What takes its place meanwhile is found out after.
+    // Opening a device may have side effects: checked before. A replacement in between is detected after.
     if !path.metadata()?.is_file() {
         return Err(no_file());
     }
@@ -71,18 +72,20 @@ pub fn open(path: &Path) -> io::Result<File> {
     }
 }
 
-/// The contents of a regular file of at most so many bytes.
+/// Contents of a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// What the system says, that it is no file, or that it is larger.
+///
+/// The system's, that it is not a regular file, or that it is larger.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     read_watched(path, most, &Loading::default())
 }
 
-/// The same for those who wait.
+/// The same with progress and cancellation.
 ///
 /// # Errors
-/// As [`read`], and where it was cancelled.
+///
+/// As [`read`], and if cancelled.
 pub(super) fn read_watched(path: &Path, most: u64, loading: &Loading) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("larger than {} MiB", most >> 20));
@@ -102,7 +105,7 @@ pub(super) fn read_watched(path: &Path, most: u64, loading: &Loading) -> io::Res
 pub struct Reach(PathBuf);
 
 impl Reach {
-    /// That of the files in a folder.
+    /// Reach of the files in a folder.
     pub fn of_folder(folder: &Path) -> Self {
         let folder = match folder.as_os_str().is_empty() {
             true => real(Path::new(".")),
@@ -113,9 +116,10 @@ impl Reach {
         Self(above.map_or(folder.clone(), Path::to_owned))
     }
 
-    /// Whether a file may be named; what may not is kept by the loading that asks.
+    /// Checks that a file may be named; records a refusal in `loading`.
     ///
     /// # Errors
+    ///
     /// That it lies outside, with the remedy.
     pub fn check(&self, path: &Path, loading: &Loading) -> io::Result<()> {
         if self.has(path) {
@@ -129,15 +133,15 @@ impl Reach {
         Err(io::Error::new(ErrorKind::PermissionDenied, why))
     }
 
-    /// Whether a file lies within, or is allowed.
+    /// Whether a file is within reach or permitted.
     pub fn has(&self, path: &Path) -> bool {
         let is_allowed = |permits: &Permits| permits.everything || permits.allowed.contains(&real(path));
         is_allowed(&permits()) || self.encloses(path)
     }
 
-    /// Whether a file lies within.
+    /// Whether a file is within reach.
     pub fn encloses(&self, path: &Path) -> bool {
-        // Another machine is not even asked.
+        // Network paths are refused without access.
         !is_elsewhere(path) && real(path).starts_with(&self.0)
     }
 }
@@ -161,7 +165,7 @@ fn real(path: &Path) -> PathBuf {
     if let Ok(found) = path.canonicalize() {
         return found;
     }
-    // What is not there can't be read, but a name that leads away may tell whether it is.
+    // A missing file cannot be read, but its name could probe for existence outside.
     let mut named = PathBuf::new();
     for part in std::path::absolute(path)
         .unwrap_or_else(|_| path.to_owned())

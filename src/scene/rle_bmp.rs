@@ -1,9 +1,9 @@
-//! BMP pictures of 4 bits a texel in run lengths, some of which the `image` crate takes for damaged.
+//! BMP images of 4 bits per texel with run lengths, some of which the `image` crate rejects as damaged.
 
-/// Texels that a byte may stand for, and beyond them.
+/// Largest expansion in texels per byte, and additional texels.
 const GROWTH: [u64; 2] = [1 << 10, 1 << 20];
 
-/// Columns, rows, and red, green, blue and opacity of each texel from the top; none where it is no such picture.
+/// Width, height, and RGBA of each texel, rows from the top; `None` for other images.
 pub(super) fn decode(bytes: &[u8]) -> Option<(u32, u32, Vec<u8>)> {
     let word = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let is_it = bytes.starts_with(b"BM") && bytes.get(28..30)? == [4, 0] && word(30)? == 2;

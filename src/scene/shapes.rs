@@ -14,8 +14,8 @@ pub fn sphere(around: u32, down: u32) -> Mesh {
     profile.revolve(around, 0)
 }
 
-/// A sphere with bumps, of about so many triangles: curved everywhere, hollow in places, as large in the picture
-/// whatever their number. Slot 0.
+/// A bumpy sphere of about `triangles` triangles: curved everywhere, concave in places, of the same size for any number.
+/// Slot 0.
 pub fn bumpy_sphere(triangles: u64) -> Mesh {
     // 2 · down cells around, two triangles each.
     let down = ((triangles as f64 / 4.0).sqrt().round() as u32).max(4);
@@ -51,7 +51,7 @@ pub(super) fn square(center: DVec3, half_side: f64, uv_half_side: f32, slot: u32
     rectangle(center, half_side * DVec3::X, half_side * DVec3::Z, uv_half_side, slot)
 }
 
-/// A triangle in the rectangle around `center` with half its sides as vectors: its base is where `half_v` ends. It faces
+/// A triangle in the rectangle around `center` with half sides as vectors: its base is at the end of `half_v`. It faces
 /// `half_v` × `half_u`.
 pub(super) fn triangle(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -> Mesh {
     let mut mesh = Mesh::default();
@@ -65,7 +65,7 @@ pub(super) fn triangle(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -
     mesh
 }
 
-/// Corners of the polygon that stands for an ellipse.
+/// Corners of the polygon that approximates an ellipse.
 const ELLIPSE_CORNERS: u32 = 64;
 
 /// An ellipse around `center` with half its axes as vectors, as a polygon of the same area. It faces `half_v` × `half_u`.
@@ -255,8 +255,8 @@ fn stand(ball: DVec2) -> Profile {
     profile
 }
 
-/// A curve in the half plane (distance from the axis, height) that is turned about the Y axis. The outside is to the
-/// left of its direction. Where two pieces meet at an angle the surface has a crease.
+/// A profile curve in the half plane (distance from the axis, height), revolved about the Y axis. The outside is left of its
+/// direction. Pieces that meet at an angle make a crease.
 struct Profile {
     points: Vec<ProfilePoint>,
     end: DVec2,
@@ -276,8 +276,8 @@ impl Profile {
         }
     }
 
-    /// A part of a circle around `center`, from where the curve has come to, in `steps` steps. With falling angles
-    /// the outside of the circle is outside, with growing ones its inside.
+    /// An arc around `center` from the curve's current end, in `steps` steps. Falling angles put the circle's outside on the
+    /// surface's outside, growing ones its inside.
     fn arc(&mut self, center: DVec2, radius: f64, from_deg: f64, to_deg: f64, steps: u32) {
         let side = if to_deg < from_deg { 1.0 } else { -1.0 };
         for step in 0..=steps {
@@ -296,17 +296,17 @@ impl Profile {
         }
     }
 
-    /// Step 0 of a piece takes the very place where the last piece ended, so that no crack opens; it is left out where
-    /// the normal goes on unchanged.
+    /// Step 0 of a piece has exactly the end position of the last piece, so that no crack opens. It is skipped if the normal
+    /// is unchanged.
     fn push(&mut self, step: u32, place: DVec2, normal: DVec2) {
         let on_axis = place.x.abs() < 1e-12;
         let place = if on_axis { dvec2(0.0, place.y) } else { place };
         let place = if step == 0 { self.end } else { place };
-        let goes_on = self
+        let continues = self
             .points
             .last()
             .is_some_and(|last| last.normal.dot(normal) > 1.0 - 1e-9);
-        if step > 0 || !goes_on {
+        if step > 0 || !continues {
             self.points.push(ProfilePoint { place, normal });
         }
         self.end = place;

@@ -3,22 +3,22 @@
 /// A camera of a file, in the units of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelCamera {
-    /// What to call it.
+    /// Name in the file.
     pub name: String,
-    /// Where it is.
+    /// Position in the units of the scene.
     pub position: [f64; 3],
-    /// Where it looks, of length 1.
+    /// Unit viewing direction.
     pub forward: [f64; 3],
-    /// What is up in its picture, of length 1, at right angles to `forward`.
+    /// Unit up vector of its image, perpendicular to `forward`.
     pub up: [f64; 3],
-    /// How much of the scene it sees.
+    /// Field of view.
     pub lens: ModelLens,
 }
 
-/// How much of a scene a file's camera sees, from the lower to the upper edge of the picture.
+/// Vertical field of view of a file's camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ModelLens {
-    /// An angle, degrees.
+    /// Angle in degrees.
     Perspective(f64),
     /// A length, the same however far away, in units of the scene.
     Orthographic(f64),
@@ -27,13 +27,12 @@ pub enum ModelLens {
 /// The most lights of a scene beside its environment.
 pub const LIGHTS_MAX: usize = 64;
 
-/// What kind a light of a file is.
+/// Kind of a file's light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightKind {
-    /// The same in all directions, from a place.
+    /// A point light: the same in all directions.
     Point,
-    /// A cone, from a place. Half the angles across it, radians: within the first it is as bright as it gets, beyond the
-    /// other dark.
+    /// A spot light with its half angles in radians: full intensity within the first, none beyond the second.
     Spot([f64; 2]),
     /// Parallel, from far away.
     Directional,
@@ -42,16 +41,16 @@ pub enum LightKind {
 /// A light of a file (KHR_lights_punctual), in the units of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelLight {
-    /// What to call it.
+    /// Name in the file.
     pub name: String,
-    /// How it shines.
+    /// Kind of the light.
     pub kind: LightKind,
-    /// Where it is.
+    /// Position.
     pub position: [f64; 3],
-    /// Where it shines, of length 1.
+    /// Unit direction of its light.
     pub forward: [f64; 3],
     /// Linear RGB.
     pub color: [f32; 3],
-    /// Candela, or lux where it is directional; both taken as radiometric numbers.
+    /// Intensity in candela, or in lux if directional; both used as radiometric numbers.
     pub intensity: f32,
 }

@@ -1,4 +1,4 @@
-//! STL files, of text or bytes, by the stl_io crate. They have triangles and nothing else.
+//! STL files, text or binary, by the stl_io crate. They contain only triangles.
 
 use std::io::Cursor;
 use std::path::Path;
@@ -23,7 +23,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
         loading.check()?;
         match triangle {
             Ok(triangle) => read.push(triangle),
-            // What stands before the damage is shown.
+            // The data before the damage is shown.
             Err(error) if read.is_empty() => return Err(invalid(error)),
             Err(error) => {
                 report.note(

@@ -9,9 +9,9 @@ use crate::optics::vector::Vec3;
 use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors};
 use super::{Geometry, Hit, Vertex, triangle_normal};
 
-/// Rounding of the position's three products and sums, with what the box test and the transforms add.
+/// Relative rounding error of a position: three products and sums, plus the box test and the transforms.
 pub const POSITION_ERROR: f64 = 1e-6;
-/// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
+/// Smallest cosine between shading normal and view. A normal that leans further away is bent back.
 pub const VIEW_COSINE_MIN: f64 = 1e-3;
 
 /// Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
@@ -24,24 +24,24 @@ pub struct SurfacePoint<T: Real> {
     pub surface: Surface<T>,
     /// The point, in the geometry's units.
     pub position: Vec3<T>,
-    /// How far off the true place `position` may be, along the normal.
+    /// Error bound of `position` along the normal, in the geometry's units.
     pub error: T,
     /// Material slot: the same in all lanes.
     pub slot: u32,
-    /// The texture coordinates; zero where the material looks up no texture.
+    /// Texture coordinates; zero for an untextured material.
     pub uvs: T::Each<Uvs<T::Scalar>>,
-    /// The colour between the vertices, linear RGB; white where the material takes none.
+    /// Interpolated vertex colour, linear RGB; white if unused.
     pub vertex_color: Vec3<T>,
-    /// Where the surface is taken as round; see [`SurfacePoint::round`].
+    /// The rounded surface, if used; see [`SurfacePoint::round`].
     pub rounded: Option<Rounded<T>>,
 }
 
-/// A surface point on a coarse triangle whose normals tell of a round surface.
+/// A point of a coarse triangle on the round surface that its normals describe.
 #[derive(Clone, Copy, Debug)]
 pub struct Rounded<T> {
     /// The normal of the triangle itself, on the side of the viewer.
     pub flat: Vec3<T>,
-    /// From the triangle to the round surface.
+    /// Offset from the triangle to the rounded surface.
     pub rise: Vec3<T>,
 }
 
@@ -52,8 +52,8 @@ impl<T: Real> SurfacePoint<T> {
         self.rounded.map_or(self.surface.normal, |rounded| rounded.flat)
     }
 
-    /// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
-    /// `transmits` lets it start behind. A ray between the triangle's horizon and that of the round surface starts there.
+    /// Origin of a ray from the surface towards `wi`: outside the position's error bound, behind the surface only if it
+    /// `transmits`. A ray between the triangle's and the rounded surface's horizon starts on the latter.
     #[inline(always)]
     pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
         let flat = self.flat_normal();
@@ -65,9 +65,9 @@ impl<T: Real> SurfacePoint<T> {
         }
     }
 
-    /// Takes the horizon of the smooth normal for that of the triangle where the triangle lies below the surface that its
-    /// normals tell of. So no light ends at the edges of triangles that shines on the round surface. Source: Hanika,
-    /// "Hacking the Shadow Terminator", Ray Tracing Gems II (2021), chapter 4.
+    /// Uses the smooth normal's horizon instead of the triangle's, where the triangle lies below the surface that its
+    /// normals describe. So light on the round surface does not end at triangle edges. Source: Hanika, "Hacking the Shadow
+    /// Terminator", Ray Tracing Gems II (2021), chapter 4.
     #[inline(always)]
     pub fn round(&mut self, geometry: &Geometry, hits: &Hits<T>) {
         let weights = hit_weights::<T>(hits);
@@ -84,8 +84,8 @@ impl<T: Real> SurfacePoint<T> {
     }
 }
 
-/// From a position in a triangle to the tangent plane at one of its corners, where the position lies below that; times the
-/// corner's weight. Where `is_turned`, the normal points away from the viewer.
+/// Offset from a position in a triangle up to the tangent plane at a corner, if the position lies below it; times the
+/// corner's weight. `is_turned`: the normal points away from the viewer.
 #[inline(always)]
 pub fn rise_to_plane<T: Real>(
     position: Vec3<T>,
@@ -99,7 +99,7 @@ pub fn rise_to_plane<T: Real>(
     normal * (depth * weight)
 }
 
-/// The shading normal, bent towards the viewer where interpolation turned it away.
+/// The shading normal, bent towards the viewer if interpolation turned it away.
 #[inline(always)]
 pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     let lean = shading.dot(wo);
@@ -108,9 +108,9 @@ pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     Vec3::select(lean.less(least), bent, shading)
 }
 
-/// The normal bent so far that the mirror direction about it is above the geometric surface: a lobe that would lie below
-/// it were folded back whole, to angles of less reflection than the table of its albedo supposes, and the surface would be
-/// dark there. Source: Keller et al., "The Iray Light Transport Simulation and Rendering System" (2017), appendix A.3.
+/// The normal, bent until its mirror direction is above the geometric surface. A lobe below the surface would be folded back
+/// to angles of less reflection than its albedo table assumes, and darken the surface. Source: Keller et al., "The Iray
+/// Light Transport Simulation and Rendering System" (2017), appendix A.3.
 #[inline(always)]
 pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     let mirrored = wo.mirrored_about(shading);
@@ -120,20 +120,20 @@ pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>)
     Vec3::select(height.less(least), normalize_or(wo + lifted, geometric), shading)
 }
 
-/// Where a ray met the geometry.
+/// Position of a hit.
 #[derive(Clone, Copy, Debug)]
 pub struct HitPlace<T: Real> {
     /// The point, in the geometry's units.
     pub position: Vec3<T>,
-    /// How far off the true place `position` may be, along the normal.
+    /// Error bound of `position` along the normal, in the geometry's units.
     pub error: T,
     /// The geometric normal, on the side of the ray's origin.
     pub normal: Vec3<T>,
-    /// True where the back of the triangle was met.
+    /// True for a hit on the triangle's back.
     pub is_back: T::Mask,
 }
 
-/// What rays met, one a lane.
+/// Hits of a group of rays, one per lane.
 pub type Hits<T> = <T as Real>::Each<Hit>;
 
 /// The weights of the hit triangles' corners.
@@ -157,13 +157,13 @@ fn at_corners<T: Real>(hits: &Hits<T>, vectors: impl Fn(usize) -> [[f32; 3]; 3])
     ]
 }
 
-/// What lies between three corners.
+/// Barycentric interpolation between three corners.
 #[inline(always)]
 fn between<T: Real>(corners: &[Vec3<T>; 3], weights: &[T; 3]) -> Vec3<T> {
     corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
 }
 
-/// The places where rays of unit `direction` met the geometry.
+/// Positions of hits; `direction` is the rays' unit direction.
 #[inline(always)]
 pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T>) -> HitPlace<T> {
     let corners = at_corners(hits, |triangle| geometry.corners(triangle));
@@ -179,14 +179,14 @@ pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T
     }
 }
 
-/// Where a ray goes on that a surface did not stop.
+/// Origin of a ray that continues through a surface.
 #[inline(always)]
 pub fn passed_origin<T: Scalar>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
     let place = hit_place(geometry, &T::each(|_| *hit), direction);
     place.position - place.normal * place.error
 }
 
-/// The surface where a ray of unit `direction` met the geometry.
+/// Surface point of a hit; `direction` is the ray's unit direction.
 #[inline(always)]
 pub fn surface_at<T: Scalar>(
     geometry: &Geometry,
@@ -207,7 +207,8 @@ pub fn surface_at<T: Scalar>(
     )
 }
 
-/// The surfaces where rays of unit `direction` met triangles of one slot, given its material, the second time for one lane.
+/// Surface points of hits on one slot; `direction` is the rays' unit direction. The material is given for all lanes and for
+/// one lane.
 #[inline(always)]
 pub fn surfaces_at<T: Real>(
     geometry: &Geometry,
@@ -275,7 +276,7 @@ pub fn surfaces_at<T: Real>(
         shading = lifted_normal(shading, normal, wo);
     }
     let frame = if is_stretched {
-        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
         let is_mirrored = T::select(is_turned, -side, side).less(T::zero());
         let rotation_rad = T::select(is_mirrored, -material.rotation_rad, material.rotation_rad);
         frame_from_tangent(shading, tangent, rotation_rad)
@@ -299,7 +300,7 @@ pub fn surfaces_at<T: Real>(
     }
 }
 
-/// The share of light that is stopped where a ray met the geometry, in [0, 1].
+/// Opacity at a hit, in [0, 1].
 #[inline(always)]
 pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
     let material = &materials[geometry.slot(hit.triangle as usize) as usize];
@@ -313,8 +314,7 @@ pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], te
     opacity_at(textures, material, uvs, alpha)
 }
 
-/// How far off its plane, along the unit `normal`, the place may be that is interpolated between a triangle's corners
-/// with these weights.
+/// Error bound, along the unit `normal`, of a position interpolated between a triangle's corners with these weights.
 #[inline(always)]
 pub fn position_error<T: Real>(corners: [Vec3<T>; 3], weights: [T; 3], normal: Vec3<T>) -> T {
     let [p0, p1, p2] = corners;

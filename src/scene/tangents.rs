@@ -10,7 +10,7 @@ struct Corners<'a> {
     mesh: &'a Mesh,
     /// Texture coordinates as the normal texture is looked up.
     uvs: Vec<Vec2>,
-    /// Of each corner; none where texture coordinates or the triangle are degenerate.
+    /// Tangent of each corner; `None` if the texture coordinates or the triangle are degenerate.
     tangents: Vec<[Option<Vec4>; 3]>,
 }
 
@@ -66,13 +66,13 @@ impl Mesh {
             tangents: vec![[None; 3]; self.triangles.len()],
             mesh: self,
         };
-        // It has no way to fail that a mesh could cause.
+        // It cannot fail for any mesh.
         let _ = generate_tangents(&mut corners);
         let tangents = corners.tangents;
         self.take_corner_tangents(&tangents);
     }
 
-    /// Gives vertices the tangents of their corners, splitting them where corners differ.
+    /// Sets vertex tangents from corners, splitting vertices whose corners differ.
     fn take_corner_tangents(&mut self, tangents: &[[Option<Vec4>; 3]]) {
         const NONE: u32 = u32::MAX;
         let mut is_set = vec![false; self.positions.len()];
@@ -80,7 +80,7 @@ impl Mesh {
         let mut next = vec![NONE; self.positions.len()];
         for (face, corner_tangents) in tangents.iter().enumerate() {
             for (corner, tangent) in corner_tangents.iter().enumerate() {
-                // A degenerate corner takes what its vertex has.
+                // A degenerate corner keeps its vertex's tangent.
                 let Some(tangent) = tangent.filter(|t| t.is_finite() && t.truncate() != Vec3::ZERO) else {
                     continue;
                 };

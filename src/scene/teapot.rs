@@ -16,7 +16,7 @@ use super::mesh::Mesh;
 /// Segments along each side of a patch that give about 40 000 triangles.
 pub const DEFAULT_SEGMENTS: u32 = 24;
 
-/// Across a border where the normals of two patches differ by less than this they are one smooth surface.
+/// Cosine above which the normals of two patches at a border count as smooth.
 const SMOOTH_COSINE: f64 = 0.9;
 
 type Patch = [[DVec3; 4]; 4];
@@ -31,8 +31,8 @@ static PATCHES: LazyLock<Vec<Patch>> = LazyLock::new(|| {
 /// Radius of the lid's edge and of the rim's inner edge; both lie at y = 2.4.
 const SEAT_RADII: [f64; 2] = [1.3, 1.4];
 
-/// Four flat patches that close the slit between lid and rim. Newell's data leave it open, and light that finds its way
-/// in through it is as good as lost after any number of bounces.
+/// Four flat patches that close the slit between lid and rim. Newell's data leave it open, and light that enters through it
+/// is practically lost after any number of bounces.
 fn seat(patches: &[Patch]) -> Vec<Patch> {
     // The borders of a radius: the patches' first or last rows, all of whose points lie at the rim's height.
     let borders = |radius: f64, row: usize| {
@@ -176,7 +176,7 @@ impl Grid {
         let rows_slope = patch.map(|row| combine(&across.slope, &row));
         let mut du = combine(&along.value, &rows_slope);
         let mut dv = combine(&along.slope, &rows_value);
-        // Where a border shrinks to a point, the direction along it is the limit from the inside.
+        // At a degenerate border, the direction along it is the limit from the inside.
         let mixed = combine(&along.slope, &rows_slope);
         if du.length() < 1e-9 {
             du = if i == 0 { mixed } else { -mixed };
@@ -188,8 +188,8 @@ impl Grid {
         (self.position(patch, i, j), du.cross(dv).normalize_or(DVec3::Y), tangent)
     }
 
-    /// The position, on a border computed from the border's own control points and in an order that does not depend on
-    /// the patch: neighbours get the same bits.
+    /// The position. On a border it is computed from the border's own control points, in an order independent of the patch,
+    /// so that neighbours get the same bits.
     fn position(&self, patch: &Patch, i: usize, j: usize) -> DVec3 {
         let column = |j: usize| patch.map(|row| row[j]);
         match (i, j) {

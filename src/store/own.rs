@@ -54,8 +54,8 @@ pub(super) fn check_reach(path: &Path, found: Option<&Json>, named: &[PathBuf]) 
         let path = path.to_owned();
         return Err(FileError::Outside { path, files });
     }
-    let told = |named: &PathBuf| format!("{}: names {}, which lies elsewhere", path.display(), named.display());
-    Ok(allowed.iter().map(told).collect())
+    let message = |named: &PathBuf| format!("{}: names {}, which lies elsewhere", path.display(), named.display());
+    Ok(allowed.iter().map(message).collect())
 }
 
 /// The user's key, made when it is first needed.

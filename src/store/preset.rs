@@ -105,7 +105,11 @@ pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<Material
 
 /// The files that a material names.
 fn named(material: &MaterialSettings) -> Vec<PathBuf> {
-    material.own.iter().map(|(_, texture)| texture.file.clone()).collect()
+    material
+        .user_textures
+        .iter()
+        .map(|(_, texture)| texture.file.clone())
+        .collect()
 }
 
 /// The material in a file.
@@ -144,7 +148,7 @@ pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettin
         path: path.to_owned(),
         reason: error.to_string(),
     })?;
-    material.own.map_files(|named| file::folder(path).join(named));
+    material.user_textures.map_files(|named| file::folder(path).join(named));
     warnings.extend(unknown_keys(&material).map(|warning| format!("{}: {warning}", path.display())));
     Ok(Loaded {
         value: material,
@@ -211,7 +215,7 @@ pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), Fil
 pub fn material_text(path: &Path, material: &MaterialSettings) -> String {
     let mut material = material.clone();
     let mark = own::mark(path, &named(&material));
-    material.own.map_files(file::seen_from(path));
+    material.user_textures.map_files(file::seen_from(path));
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
     object.extend(Map::from(material));
@@ -258,7 +262,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
         }
         for &target in TextureTarget::ALL {
             if let Some(json) = values.shift_remove(map_key(target)) {
-                material.own.set(target, Some(texture_from_json(json)?));
+                material.user_textures.set(target, Some(texture_from_json(json)?));
             }
         }
         object.shift_remove(MARK);
@@ -279,7 +283,7 @@ impl From<MaterialSettings> for Map<String, Json> {
                 parameter.json_from_value(&parameter.get(&material)),
             );
         }
-        for (target, texture) in material.own.iter() {
+        for (target, texture) in material.user_textures.iter() {
             values.insert(map_key(target).to_owned(), texture_to_json(texture));
         }
         values.extend(material.extra);

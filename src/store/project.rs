@@ -14,7 +14,7 @@ use super::{own, preset};
 use crate::document::{Document, MaterialSettings};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::texture::{OwnTexture, TextureTarget};
+use crate::scene::texture::{TextureTarget, UserTexture};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
@@ -90,10 +90,10 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
     document.extra.shift_remove(MARK);
     document.extra.shift_remove(own::KEY);
     for (slot, file) in pictures {
-        let texture = OwnTexture::of(file);
+        let texture = UserTexture::of(file);
         document
             .material_mut(slot)
-            .own
+            .user_textures
             .set(TextureTarget::BaseColor, Some(texture));
     }
     map_paths(&mut document, |named| file::folder(path).join(named));
@@ -255,6 +255,6 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
         *file = map(file);
     }
     for material in &mut document.materials {
-        material.own.map_files(&map);
+        material.user_textures.map_files(&map);
     }
 }

@@ -55,7 +55,7 @@ fn mean(session: &mut Session, case: &Case, run: Run) -> [[f64; 2]; 3] {
     // One kernel for the whole table.
     render.effects = EffectSwitches::all_on();
     case.keep(session.assets());
-    session.forget();
+    session.reset();
     if case.is_even {
         return spread(&pixels(session, &document, &case.name));
     }

@@ -5,7 +5,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use glossmith::store::PRESETS;
 use serde_json::Value as Json;
 
@@ -235,7 +235,7 @@ fn files_are_found_beside_the_batch_and_pictures_go_there() {
         grey.save(place.path("deep/paint.png")).unwrap();
     };
     paint(200);
-    mine.put_texture(TextureTarget::BaseColor, OwnTexture::of(place.path("deep/paint.png")));
+    mine.put_texture(TextureTarget::BaseColor, UserTexture::of(place.path("deep/paint.png")));
     glossmith::store::save_material(&place.path("deep/mine.json"), &mine).unwrap();
     crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [1.0; 3]);
     place.write(

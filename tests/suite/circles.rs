@@ -12,13 +12,13 @@ use crate::structure::files_with;
 const STANDING: &[&str] = &[
     "src/render: calibration engine",
     "src/cpu/integrator: catcher group light paths",
-    "src/document: area_light effect ground import material own_textures parameter settings",
+    "src/document: area_light effect ground import material parameter settings user_textures",
     "src/optics: elementary real",
     "src/optics: fresnel lobe microfacet refraction",
     "src/render/denoise: filter library",
     "src/scene: environment geometry gltf import light model obj picture ply stl surface texture",
     "src/scene/gltf: accessor compressed container draco",
-    "src/scene/hierarchy: bundle packet",
+    "src/scene/hierarchy: interval packet",
 ];
 
 /// A module as its file tells of it.

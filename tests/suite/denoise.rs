@@ -69,8 +69,8 @@ fn one_colour_black_and_one_pixel_stay_what_they_are() {
     for pixel in &grey.image.pixels {
         assert!(pixel[..3].iter().all(|x| (x - 0.25).abs() < 0.02), "{pixel:?}");
     }
-    let told = grey.error.unwrap();
-    assert!(told.value < 0.05, "{told:?}");
+    let estimate = grey.error.unwrap();
+    assert!(estimate.value < 0.05, "{estimate:?}");
     let black = denoised(&film([16, 16], 2, 0.0, |_, _| [[0.0; 3]; 2]), Denoise::Auto);
     assert!(brightest(&black.image) < 1e-4);
     assert!(black.error.unwrap().value.is_finite());
@@ -133,8 +133,8 @@ fn a_fine_texture_is_not_eaten_or_the_error_says_so() {
         let [high, auto] = [Denoise::High, Denoise::Auto].map(|how| denoised(&fine, how));
         let eaten = checker_error(&high.image, 1);
         // Over the mean luminance of 0.5.
-        let told = 0.5 * high.error.unwrap().value;
-        assert!((told / eaten - 1.0).abs() < 0.2, "{samples}: {told} {eaten}");
+        let estimate = 0.5 * high.error.unwrap().value;
+        assert!((estimate / eaten - 1.0).abs() < 0.2, "{samples}: {estimate} {eaten}");
         let (kept, noisy) = (checker_error(&auto.image, 1), checker_error(&fine.image(), 1));
         println!("{samples} samples: noise {noisy:.4}, eaten {eaten:.4}, mixed {kept:.4}");
         assert!(kept < 1.02 * noisy, "{samples}: {kept} {noisy} {eaten}");
@@ -203,14 +203,14 @@ fn the_error_told_of_a_denoised_picture_is_the_true_one() {
         let auto = denoiser.denoise(&noisy, Denoise::Auto).unwrap();
         let [samples, truth, mixed] =
             [&noisy.image, &high.image, &auto.image].map(|image| true_error(image, &reference));
-        let told = high.error.unwrap();
-        inside += u32::from((told.low..=told.high).contains(&truth));
-        std::iter::zip(&mut squares, [samples, truth, told.value, mixed]).for_each(|(sum, x)| *sum += x * x);
+        let estimate = high.error.unwrap();
+        inside += u32::from((estimate.low..=estimate.high).contains(&truth));
+        std::iter::zip(&mut squares, [samples, truth, estimate.value, mixed]).for_each(|(sum, x)| *sum += x * x);
     }
-    let [samples, truth, told, mixed] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
-    println!("samples {samples:.4}, denoised {truth:.4}, told {told:.4}, mixed {mixed:.4}, inside {inside}");
+    let [samples, truth, estimate, mixed] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
+    println!("samples {samples:.4}, denoised {truth:.4}, estimate {estimate:.4}, mixed {mixed:.4}, inside {inside}");
     assert!(truth < 0.7 * samples, "{truth} {samples}");
-    assert!((told / truth - 1.0).abs() < 0.2, "{told} {truth}");
+    assert!((estimate / truth - 1.0).abs() < 0.2, "{estimate} {truth}");
     assert!(inside >= RENDERS - 2, "{inside} of {RENDERS}");
     assert!(
         mixed < 1.02 * samples && mixed < 1.05 * truth,
@@ -458,7 +458,7 @@ fn the_window_s_pictures_are_denoised_from_the_first_to_the_last() {
     assert!(seen.iter().all(|picture| picture.is_denoised()), "none is noisy");
     let counts: Vec<u32> = seen.iter().map(|picture| picture.samples_per_pixel).collect();
     assert!(counts.is_sorted() && *counts.last().unwrap() == 40, "{counts:?}");
-    assert!(worker.snapshot().denoised.is_some_and(|told| told.value > 0.0));
+    assert!(worker.snapshot().denoised.is_some_and(|estimate| estimate.value > 0.0));
     // Another way of showing it renders nothing again.
     document.view.denoise = Denoise::Off;
     let seconds = worker.snapshot().progress.render_seconds;
@@ -518,8 +518,8 @@ fn denoising_can_be_given_up() {
     let noisy = Noisy::of(&film, None);
     let mut denoiser = denoiser();
     let before = denoiser.denoise(&noisy, Denoise::High).unwrap();
-    let stopped = denoiser.denoise_unless(&noisy, Denoise::High, &AtomicBool::new(true));
-    assert_eq!(stopped.unwrap_err(), LibraryError::Stopped);
+    let stopped = denoiser.denoise_cancellable(&noisy, Denoise::High, &AtomicBool::new(true));
+    assert_eq!(stopped.unwrap_err(), LibraryError::Cancelled);
     assert_eq!(denoiser.denoise(&noisy, Denoise::High).unwrap().image, before.image);
 }
 

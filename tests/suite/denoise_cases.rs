@@ -55,10 +55,10 @@ fn mirrors_glass_and_blur_come_out_nearer_to_the_truth() {
         let noisy = Noisy::of(&render(EngineChoice::Cpu, &document), None);
         let done = denoiser.denoise(&noisy, Denoise::High).unwrap();
         let [samples, clean] = [&noisy.image, &done.image].map(|image| reference.error_of(&image.luminance()).value);
-        let told = done.error.unwrap().value;
-        println!("{name}: samples {samples:.4}, denoised {clean:.4}, told {told:.4}");
+        let estimate = done.error.unwrap().value;
+        println!("{name}: samples {samples:.4}, denoised {clean:.4}, estimate {estimate:.4}");
         assert!(clean < 0.9 * samples, "{name}: {clean} {samples}");
-        assert!((0.5..2.0).contains(&(told / clean)), "{name}: {told} {clean}");
+        assert!((0.5..2.0).contains(&(estimate / clean)), "{name}: {estimate} {clean}");
     }
 }
 

@@ -9,7 +9,7 @@ use glossmith::render::denoise::{Denoiser, Noisy};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Luma, Rgb, RgbImage};
 
 use super::gltf_builder::Folder;
@@ -47,16 +47,16 @@ fn plane() -> Document {
 /// Such a plane shows nothing but its squares: as many of the picture's as `scale` says lie on it.
 fn textured_plane(folder: &Folder, scale: f32) -> Document {
     let mut document = plane();
-    let texture = OwnTexture {
+    let texture = UserTexture {
         scale,
-        ..OwnTexture::of(squares(folder))
+        ..UserTexture::of(squares(folder))
     };
     document.materials[0].put_texture(TextureTarget::BaseColor, texture);
     document
 }
 
 fn finish(session: &mut Session, document: &Document) -> Film {
-    session.forget();
+    session.reset();
     session.submit(document).unwrap();
     while !session.step(std::time::Duration::from_millis(100)).unwrap().is_done {}
     session.film().unwrap().clone()
@@ -81,14 +81,14 @@ fn the_error_told_under_a_texture_is_the_true_one() {
             document.render.seed = seed;
             let film = finish(&mut session, &document);
             let done = denoiser.denoise(&Noisy::of(&film, None), Denoise::High).unwrap();
-            let (truth, told) = (reference.error_of(&done.image.luminance()).value, done.error.unwrap());
-            inside += u32::from((told.low..=told.high).contains(&truth));
-            std::iter::zip(&mut squares, [truth, told.value]).for_each(|(sum, x)| *sum += x * x);
+            let (truth, estimate) = (reference.error_of(&done.image.luminance()).value, done.error.unwrap());
+            inside += u32::from((estimate.low..=estimate.high).contains(&truth));
+            std::iter::zip(&mut squares, [truth, estimate.value]).for_each(|(sum, x)| *sum += x * x);
         }
-        let [truth, told] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
-        println!("{samples} samples: true {truth:.4}, told {told:.4}, inside {inside}");
+        let [truth, estimate] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
+        println!("{samples} samples: true {truth:.4}, estimate {estimate:.4}, inside {inside}");
         // A band is some 20 % wide, the mean of 20 squares some 5 %.
-        assert!((told / truth - 1.0).abs() < 0.2, "{samples}: {told} {truth}");
+        assert!((estimate / truth - 1.0).abs() < 0.2, "{samples}: {estimate} {truth}");
         // 19 of 20 on average; fewer than 15 in one of 10 000.
         assert!(inside >= inside_min, "{samples}: {inside} of {RENDERS}");
     }
@@ -171,7 +171,7 @@ fn guides_show_the_coat() {
     let mut document = plane();
     let bumps = folder.path("bumps.png");
     RgbImage::from_pixel(4, 4, Rgb([218, 128, 218])).save(&bumps).unwrap();
-    document.materials[0].put_texture(TextureTarget::Normal, OwnTexture::of(bumps));
+    document.materials[0].put_texture(TextureTarget::Normal, UserTexture::of(bumps));
     let coat = [
         "coat.weight=1",
         "coat.roughness=0.3",

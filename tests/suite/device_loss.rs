@@ -83,7 +83,7 @@ fn a_lost_device_is_opened_anew() {
         let told = warnings_until(&worker, "opened anew (1 of 3 times)");
         assert_eq!(told.len(), 1, "{moment:?}: {told:?}");
         wait(&worker, "the GPU's picture", |snapshot| {
-            snapshot.picture.is_some() && !snapshot.progress.is_standing_in && snapshot.progress.samples_per_pixel > 0
+            snapshot.picture.is_some() && !snapshot.progress.is_fallback && snapshot.progress.samples_per_pixel > 0
         });
         renders_as_ever(&worker, EngineKind::Gpu);
     }

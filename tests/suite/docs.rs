@@ -282,7 +282,7 @@ fn file_parameters(all: &[FileParameter]) -> String {
         vec![
             format!("`{}`", place.replace('/', ".")),
             goes,
-            [parameter.told.to_owned(), range(parameter), layer(parameter)]
+            [parameter.note.to_owned(), range(parameter), layer(parameter)]
                 .into_iter()
                 .filter(|words| !words.is_empty())
                 .collect::<Vec<_>>()

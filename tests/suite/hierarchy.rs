@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use glam::{DVec3, Vec3, Vec4};
 use glossmith::instructions::Instructions;
 use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, load, ray_way, shapes, teapot};
+use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, load, ray_octant, shapes, teapot};
 use rayon::prelude::*;
 
 use super::cli_support::Workplace;
@@ -270,7 +270,7 @@ fn random_packet(random: &mut Random, geometry: &Geometry) -> (Packet, usize) {
         let moved = |from: [f32; 3], by: glam::Vec3| (Vec3::from_array(from) + by * spread).to_array();
         for _ in 0..20 {
             ray.direction = moved(first.direction, random.in_ball());
-            if has_stray || ray_way(ray.direction) == ray_way(first.direction) {
+            if has_stray || ray_octant(ray.direction) == ray_octant(first.direction) {
                 break;
             }
             ray.direction = first.direction;
@@ -384,11 +384,11 @@ fn nothing_leaks_under_any_instruction_set() {
             let target = [a, a.lerp(b, random.unit()), b.midpoint(c)][i % 3];
             let origin = random.in_ball() * 0.9;
             let direction = target - origin;
-            let is_met = sphere
+            let is_hit = sphere
                 .intersect_by(level, origin.into(), direction.into(), f32::MAX)
                 .is_some();
             let is_occluded = sphere.occluded_by(level, origin.into(), direction.into(), f32::MAX);
-            escaped += usize::from(!is_met || !is_occluded);
+            escaped += usize::from(!is_hit || !is_occluded);
         }
         assert_eq!(escaped, 0, "{set}: rays from within a sphere");
     }

@@ -96,15 +96,20 @@ fn the_true_error_lies_inside_the_band() {
                 document.render.sequence = sequence;
                 document.render.samples = samples;
                 let films = renders(&mut session, &document, RENDERS);
-                let told: Vec<_> = films.iter().map(|film| noise(film).unwrap()).collect();
+                let estimate: Vec<_> = films.iter().map(|film| noise(film).unwrap()).collect();
                 let errors = true_errors(&films);
-                let here = told.iter().zip(&errors);
+                let here = estimate.iter().zip(&errors);
                 let here = here
-                    .filter(|(told, error)| (told.low..=told.high).contains(&error.sqrt()))
+                    .filter(|(estimate, error)| (estimate.low..=estimate.high).contains(&error.sqrt()))
                     .count();
-                let ratio = told.iter().map(|told| told.relative.powi(2)).sum::<f64>() / errors.iter().sum::<f64>();
+                let ratio =
+                    estimate.iter().map(|estimate| estimate.relative.powi(2)).sum::<f64>() / errors.iter().sum::<f64>();
                 // Half the width of the band in standard deviations of ln ε², for the mean over the renders.
-                let band = told.iter().map(|told| (told.high / told.relative).ln()).sum::<f64>() / f64::from(RENDERS);
+                let band = estimate
+                    .iter()
+                    .map(|estimate| (estimate.high / estimate.relative).ln())
+                    .sum::<f64>()
+                    / f64::from(RENDERS);
                 let sigma = 2.0 * band / 1.96 / f64::from(RENDERS).sqrt();
                 println!(
                     "scene {scene}, {sequence:?}, {samples} samples: {here} of {RENDERS}, {ratio:.3} ± {sigma:.3}"
@@ -130,20 +135,20 @@ fn the_true_error_lies_inside_the_band() {
 fn both_engines_tell_the_same_error() {
     let mut document = scenes()[0].clone();
     document.render.samples = 16;
-    let told = [EngineChoice::Cpu, EngineChoice::Gpu].map(|choice| {
+    let estimate = [EngineChoice::Cpu, EngineChoice::Gpu].map(|choice| {
         let mut session = Session::open(choice).unwrap();
         let films = renders(&mut session, &document, 12);
-        let told = films
+        let estimate = films
             .iter()
             .map(|film| noise(film).unwrap().relative.powi(2))
             .sum::<f64>();
-        let ratio = told / true_errors(&films).iter().sum::<f64>();
+        let ratio = estimate / true_errors(&films).iter().sum::<f64>();
         assert!((ratio - 1.0).abs() < 0.1, "{choice:?}: {ratio}");
         let progress = session.progress();
         assert!(progress.engine_seconds > 0.0 && progress.engine_seconds <= progress.render_seconds);
-        (told / 12.0).sqrt()
+        (estimate / 12.0).sqrt()
     });
-    assert!((told[0] / told[1] - 1.0).abs() < 0.03, "{told:?}");
+    assert!((estimate[0] / estimate[1] - 1.0).abs() < 0.03, "{estimate:?}");
 }
 
 /// Rendering stops at the error that was asked for, even or adaptive, and that is the true error.

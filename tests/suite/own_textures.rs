@@ -10,7 +10,7 @@ use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::{
-    OwnTexture, Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures,
+    Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture,
     mapped_normal, texture_lookup, uvs_at,
 };
 use glossmith::scene::{self, Geometry, Model, ModelSource, Texture};
@@ -25,16 +25,16 @@ use crate::renders::{assert_same_picture, render};
 use crate::textures::{four_texels, textured_square};
 
 /// The picture of [`four_texels`] in a file.
-pub fn own_texture(folder: &Folder) -> OwnTexture {
+pub fn own_texture(folder: &Folder) -> UserTexture {
     let path = folder.path("own.png");
     four_texels().save(&path).unwrap();
-    OwnTexture::of(path)
+    UserTexture::of(path)
 }
 
 /// A ball whose coat has the weight that a picture on a box gives it.
 pub fn coated_on_a_box(folder: &Folder) -> Document {
     let mut document = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    let coat = OwnTexture {
+    let coat = UserTexture {
         projection: TextureProjection::Box,
         ..own_texture(folder)
     };
@@ -53,7 +53,7 @@ fn square() -> Model {
 }
 
 /// A model's textures with one picture of the user's own on its first slot.
-fn with(model: &Model, target: TextureTarget, texture: &OwnTexture, picture: &RgbaImage) -> Textures {
+fn with(model: &Model, target: TextureTarget, texture: &UserTexture, picture: &RgbaImage) -> Textures {
     let read = |_: &Path, _: bool| {
         Ok(Arc::new(Texture {
             name: "own".into(),
@@ -72,7 +72,7 @@ fn with(model: &Model, target: TextureTarget, texture: &OwnTexture, picture: &Rg
 }
 
 /// Red, green, blue and alpha at these texture coordinates.
-fn found(target: TextureTarget, texture: &OwnTexture, uv: [f64; 2]) -> [f64; 4] {
+fn found(target: TextureTarget, texture: &UserTexture, uv: [f64; 2]) -> [f64; 4] {
     let textures = with(&square(), target, texture, &four_texels());
     let slot = textures.slots[0];
     let record = [
@@ -100,12 +100,12 @@ fn assert_near(found: [f64; 4], expected: [f64; 4]) {
 #[test]
 fn a_picture_is_scaled_turned_and_moved() {
     let base = TextureTarget::BaseColor;
-    let plain = OwnTexture::default();
-    let at = |texture: &OwnTexture, uv: [f64; 2]| found(base, texture, uv);
-    let here = |uv: [f64; 2]| found(base, &OwnTexture::default(), uv);
+    let plain = UserTexture::default();
+    let at = |texture: &UserTexture, uv: [f64; 2]| found(base, texture, uv);
+    let here = |uv: [f64; 2]| found(base, &UserTexture::default(), uv);
     let uv = [0.3, 0.15];
     // Twice as many: what is a quarter from the middle is seen an eighth from it.
-    let smaller = OwnTexture {
+    let smaller = UserTexture {
         scale: 2.0,
         ..plain.clone()
     };
@@ -113,25 +113,25 @@ fn a_picture_is_scaled_turned_and_moved() {
         at(&smaller, uv),
         here([0.5 + 2.0 * (uv[0] - 0.5), 0.5 + 2.0 * (uv[1] - 0.5)]),
     );
-    let stretched = OwnTexture {
+    let stretched = UserTexture {
         stretch: 3.0,
         ..plain.clone()
     };
     assert_near(at(&stretched, uv), here([uv[0], 0.5 + 3.0 * (uv[1] - 0.5)]));
     // A quarter counterclockwise: what was right is above.
-    let turned = OwnTexture {
+    let turned = UserTexture {
         rotation_deg: 90.0,
         ..plain.clone()
     };
     assert_near(at(&turned, [0.5, 0.2]), here([0.8, 0.5]));
     assert_near(at(&turned, [0.2, 0.5]), here([0.5, 0.2]));
     // Further right and further up: what is seen lay further left and further down.
-    let moved = OwnTexture {
+    let moved = UserTexture {
         offset: [0.1, 0.2],
         ..plain.clone()
     };
     assert_near(at(&moved, uv), here([uv[0] - 0.1, uv[1] + 0.2]));
-    let second = OwnTexture {
+    let second = UserTexture {
         projection: TextureProjection::Second,
         ..plain
     };
@@ -140,27 +140,27 @@ fn a_picture_is_scaled_turned_and_moved() {
 
 #[test]
 fn channels_spaces_strength_and_inversion_are_what_they_say() {
-    let plain = OwnTexture::default();
+    let plain = UserTexture::default();
     // The lower left texel: (0, 200, 0, 64); the upper right one: (100, 0, 0, 128).
     let (lower_left, upper_right) = ([0.25, 0.75], [0.75, 0.25]);
-    let green = OwnTexture {
+    let green = UserTexture {
         channel: TextureChannel::Green,
         ..plain.clone()
     };
     let share = 200.0 / 255.0;
     assert_near(found(TextureTarget::Roughness, &green, lower_left), [share; 4]);
-    let codes = OwnTexture {
+    let codes = UserTexture {
         space: TextureSpace::Srgb,
         ..green.clone()
     };
     assert_near(found(TextureTarget::Roughness, &codes, lower_left), [linear(200); 4]);
-    let inverted = OwnTexture {
+    let inverted = UserTexture {
         inverted: true,
         ..green.clone()
     };
     assert_near(found(TextureTarget::Roughness, &inverted, lower_left), [1.0 - share; 4]);
     // Half of it: half way to doing nothing.
-    let half = OwnTexture {
+    let half = UserTexture {
         strength: 0.5,
         ..green.clone()
     };
@@ -168,7 +168,7 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
         found(TextureTarget::Metalness, &half, lower_left),
         [0.5 + 0.5 * share; 4],
     );
-    let both = OwnTexture {
+    let both = UserTexture {
         strength: 0.5,
         inverted: true,
         ..green
@@ -177,7 +177,7 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
     // By itself: red, but the alpha of an opacity; what is named for several has roughness in green, metalness in blue.
     assert_near(found(TextureTarget::Coat, &plain, upper_right), [100.0 / 255.0; 4]);
     assert_near(found(TextureTarget::Opacity, &plain, upper_right), [128.0 / 255.0; 4]);
-    let packed = OwnTexture::of("rock_arm_1k.png".into());
+    let packed = UserTexture::of("rock_arm_1k.png".into());
     assert_near(found(TextureTarget::Roughness, &packed, lower_left), [share; 4]);
     assert_near(found(TextureTarget::Metalness, &packed, lower_left), [0.0; 4]);
     // Colours are of sRGB unless they are said not to be.
@@ -188,7 +188,7 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
             .unwrap(),
         [0.0, linear(200), 0.0, 0.0],
     );
-    let numbers = OwnTexture {
+    let numbers = UserTexture {
         space: TextureSpace::Linear,
         ..plain
     };
@@ -200,15 +200,15 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
 #[test]
 fn own_pictures_of_one_value_are_numbers() {
     let grey = RgbaImage::from_pixel(2, 2, Rgba([64, 128, 200, 255]));
-    let half = OwnTexture {
+    let half = UserTexture {
         strength: 0.5,
         inverted: true,
-        ..OwnTexture::default()
+        ..UserTexture::default()
     };
     let slot = with(&square(), TextureTarget::Roughness, &half, &grey).slots[0];
     let value = slot.constant_roughness.unwrap();
     assert!((value - (1.0 - 0.5 * 64.0 / 255.0)).abs() < 1e-6, "{value}");
-    let colour = with(&square(), TextureTarget::BaseColor, &OwnTexture::default(), &grey).slots[0];
+    let colour = with(&square(), TextureTarget::BaseColor, &UserTexture::default(), &grey).slots[0];
     let [r, ..] = colour.constant_base_color.unwrap();
     assert!((f64::from(r) - linear(64)).abs() < 1e-6);
 }
@@ -217,7 +217,7 @@ fn own_pictures_of_one_value_are_numbers() {
 #[test]
 fn normals_turn_with_their_picture() {
     let tilted = RgbaImage::from_fn(2, 2, |_, _| Rgba([217, 128, 217, 255]));
-    let bent = |texture: &OwnTexture| {
+    let bent = |texture: &UserTexture| {
         let textures = with(&square(), TextureTarget::Normal, texture, &tilted);
         let mut settings = glossmith::document::MaterialSettings::default();
         settings.textures.normal = true;
@@ -225,15 +225,15 @@ fn normals_turn_with_their_picture() {
         let (x, z) = (Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 0.0, 1.0]));
         mapped_normal::<f64>(&textures, &materials[0].cast(), [[0.5; 2]; 3], [z, x, z], 1.0).to_f64()
     };
-    let plain = OwnTexture::default();
+    let plain = UserTexture::default();
     let [x, y, z] = bent(&plain);
     assert!(x > 0.6 && y.abs() < 0.01 && z > 0.6, "{x} {y} {z}");
-    let [x, y, _] = bent(&OwnTexture {
+    let [x, y, _] = bent(&UserTexture {
         rotation_deg: 90.0,
         ..plain.clone()
     });
     assert!(y > 0.6 && x.abs() < 0.01, "{x} {y}");
-    let both = OwnTexture {
+    let both = UserTexture {
         rotation_deg: 90.0,
         projection: TextureProjection::Box,
         ..plain
@@ -243,9 +243,9 @@ fn normals_turn_with_their_picture() {
     // Green points up, unless the picture is said to have it the other way.
     let up = RgbaImage::from_fn(2, 2, |_, _| Rgba([128, 217, 217, 255]));
     let direction = |inverted: bool| {
-        let texture = OwnTexture {
+        let texture = UserTexture {
             inverted,
-            ..OwnTexture::default()
+            ..UserTexture::default()
         };
         let textures = with(&square(), TextureTarget::Normal, &texture, &up);
         let (color, _) = texture_lookup::<f64>(&textures, textures.slots[0].normal, [[0.5; 2]; 3]);
@@ -292,7 +292,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
     }
     assert!(seen.iter().all(|count| *count > 20), "{seen:?}");
     // A model without coordinates gets the box by itself, one with them does not.
-    let plain = OwnTexture::default();
+    let plain = UserTexture::default();
     let flags = |model: &Model| with(model, TextureTarget::Coat, &plain, &four_texels()).slots[0].on_box;
     assert!(!flags(&square())[TextureTarget::Coat as usize]);
     let mut bare = square();
@@ -317,7 +317,7 @@ fn dressed(folder: &Folder) -> Document {
     bumps.save(&bumpy).unwrap();
     let material = &mut document.material_mut(0);
     for (number, &target) in TextureTarget::ALL.iter().enumerate() {
-        let texture = OwnTexture {
+        let texture = UserTexture {
             file: if target == TextureTarget::Normal {
                 bumpy.clone()
             } else {
@@ -329,7 +329,7 @@ fn dressed(folder: &Folder) -> Document {
             rotation_deg: 20.0 * number as f32,
             strength: 0.4 + 0.05 * number as f32,
             inverted: number % 3 == 1,
-            ..OwnTexture::default()
+            ..UserTexture::default()
         };
         material.put_texture(target, texture);
     }
@@ -351,7 +351,7 @@ fn both_engines_show_pictures_of_ones_own() {
     // Each of them shows.
     for &target in TextureTarget::ALL {
         let mut other = document.clone();
-        let texture = other.materials[0].own.get_mut(target).unwrap();
+        let texture = other.materials[0].user_textures.get_mut(target).unwrap();
         (texture.rotation_deg, texture.scale) = (texture.rotation_deg + 90.0, 2.5);
         let turned = render(EngineChoice::Cpu, &other);
         let difference: f64 = std::iter::zip(turned.luminance(), cpu.luminance())
@@ -370,7 +370,7 @@ fn turning_a_picture_keeps_its_texels() {
     session.submit(&document).unwrap();
     let before = session.job().unwrap().textures.clone();
     document.materials[0]
-        .own
+        .user_textures
         .get_mut(TextureTarget::BaseColor)
         .unwrap()
         .rotation_deg = 77.0;
@@ -423,7 +423,10 @@ fn projects_of_before_keep_their_pictures() {
         "materials": [{"name": "Wood", "material": {"base.color_texture": true}}]});
     std::fs::write(&path, old.to_string()).unwrap();
     let document = load_document(&path).unwrap().value;
-    let own = document.materials[0].own.get(TextureTarget::BaseColor).unwrap();
+    let own = document.materials[0]
+        .user_textures
+        .get(TextureTarget::BaseColor)
+        .unwrap();
     assert_eq!(own.file, folder.path("own.png"));
     save_document(&path, &document).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
@@ -512,7 +515,7 @@ fn the_command_line_puts_pictures_on_materials() {
     };
     document.materials[0].put_texture(
         TextureTarget::Roughness,
-        OwnTexture::of(place.path("wood/wood_rough.png")),
+        UserTexture::of(place.path("wood/wood_rough.png")),
     );
     (document.render.width, document.render.height, document.render.samples) = (8, 8, 1);
     save_document(&place.path("p.json"), &document).unwrap();
@@ -549,7 +552,7 @@ fn pictures_of_ones_own_travel_in_gltf() {
         (TextureTarget::Metalness, TextureChannel::Red),
         (TextureTarget::Emission, TextureChannel::Auto),
     ] {
-        let texture = OwnTexture {
+        let texture = UserTexture {
             channel,
             scale: 2.0,
             rotation_deg: 30.0,
@@ -559,7 +562,7 @@ fn pictures_of_ones_own_travel_in_gltf() {
         };
         material.put_texture(target, texture);
     }
-    let boxed = OwnTexture {
+    let boxed = UserTexture {
         projection: TextureProjection::Box,
         ..own
     };

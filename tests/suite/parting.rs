@@ -60,7 +60,7 @@ impl Pair {
         let mut of_gpu = document.clone();
         (self.tamper)(&mut of_gpu);
         [(&mut self.cpu, &document), (&mut self.gpu, &of_gpu)].map(|(session, document)| {
-            session.forget();
+            session.reset();
             session.submit(document).unwrap();
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
             session.film().unwrap().clone()

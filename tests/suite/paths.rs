@@ -217,7 +217,7 @@ fn misdrawn(events: &[Event], decides_by_facet: impl Fn(u32) -> bool) -> Option<
             }
             Event::Camera { .. } => count(Purpose::Pixel) == 2,
             Event::Light { .. } => count(Purpose::Light) == 3,
-            Event::Caught { .. } => count(Purpose::Catcher) == 1,
+            Event::CatcherHit { .. } => count(Purpose::Catcher) == 1,
             Event::Scattered { .. } => {
                 let layers = usize::from(decides_by_facet(slot_here));
                 count(Purpose::Lobe) == 3 && count(Purpose::Layer) == layers
@@ -271,9 +271,9 @@ fn no_number_of_a_path_is_drawn_twice() {
 
 /// All numbers of a path, as bits.
 fn bits(path: &PathResult<f32>) -> Vec<u32> {
-    let seen = &path.seen;
-    let numbers = [path.alpha, path.clamped, seen.hits, seen.depth];
-    let colors = [path.radiance.to_f32(), seen.albedo, seen.normal];
+    let guides = &path.guides;
+    let numbers = [path.alpha, path.clamped, guides.hits, guides.depth];
+    let colors = [path.radiance.to_f32(), guides.albedo, guides.normal];
     let numbers = numbers.into_iter().chain(colors.into_iter().flatten());
     numbers.map(f32::to_bits).chain([path.rays]).collect()
 }

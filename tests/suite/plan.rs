@@ -329,7 +329,7 @@ fn a_kernel_is_compiled_beside_the_picture() {
         assert!(first.mean_samples > 0.0, "there is a picture before there is a kernel");
         let begun = std::time::Instant::now();
         let mut kept = first.mean_samples;
-        while session.step(Duration::from_millis(10)).unwrap().is_standing_in {
+        while session.step(Duration::from_millis(10)).unwrap().is_fallback {
             assert!(begun.elapsed() < Duration::from_secs(300), "the kernel never came");
             let now = session.progress().mean_samples;
             assert!(now >= kept, "what was drawn is lost");
@@ -340,7 +340,7 @@ fn a_kernel_is_compiled_beside_the_picture() {
         while session.progress().mean_samples < 16.0 {
             session.step(Duration::from_millis(10)).unwrap();
         }
-        (first.is_standing_in, session.film().unwrap().clone())
+        (first.is_fallback, session.film().unwrap().clone())
     };
     let (stood_in, picture) = is_stood_in_for(&document);
     assert!(stood_in);

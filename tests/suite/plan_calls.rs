@@ -12,7 +12,7 @@ use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::texture::{OwnTexture, TextureProjection, TextureTarget};
+use glossmith::scene::texture::{TextureProjection, TextureTarget, UserTexture};
 
 use crate::gltf_builder::Folder;
 use crate::own_textures::own_texture;
@@ -92,11 +92,11 @@ fn textured(folder: &Folder) -> Document {
     let material = &mut document.materials[0];
     material.textures = TextureUse::default();
     (material.metalness, material.emission_strength) = (1.0, 0.0);
-    let coat = OwnTexture {
+    let coat = UserTexture {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    material.own.set(TextureTarget::Coat, Some(coat));
+    material.user_textures.set(TextureTarget::Coat, Some(coat));
     document
 }
 
@@ -287,7 +287,7 @@ fn calls_for(effect: &str) -> Calls {
             &[|d, _| {
                 let material = &mut d.materials[0];
                 (material.textures.coat, material.coat_weight) = (true, LEAST);
-                material.own.get_mut(TextureTarget::Coat).unwrap().projection = TextureProjection::Box;
+                material.user_textures.get_mut(TextureTarget::Coat).unwrap().projection = TextureProjection::Box;
             }],
         ),
         "alpha" => (metal, &[|d, _| d.materials[0].opacity = MOST]),

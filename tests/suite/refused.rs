@@ -155,7 +155,7 @@ fn the_processor_finishes_what_the_gpu_cannot_take_over() {
         "{told:?}"
     );
     let before = session.progress();
-    assert!(!before.is_standing_in && !before.is_done, "{before:?}");
+    assert!(!before.is_fallback && !before.is_done, "{before:?}");
     let after = session.step(10 * STEP).expect("told once");
     assert!(after.samples_per_pixel > before.samples_per_pixel, "it goes on");
     session.submit(&plain).expect("a sphere");
@@ -173,7 +173,7 @@ fn the_window_keeps_gpu_and_picture_where_an_edit_is_too_large() {
     document.render.samples = 1_000_000;
     let revision = worker.submit(&document, Pace::Still);
     wait(&worker, "the GPU's picture", |snapshot| {
-        snapshot.picture.is_some() && !snapshot.progress.is_standing_in
+        snapshot.picture.is_some() && !snapshot.progress.is_fallback
     });
     // The model has room, a row of tiles has not.
     worker.limit_buffers(3 << 20);
@@ -210,6 +210,6 @@ fn the_window_keeps_gpu_and_picture_where_an_edit_is_too_large() {
     assert_eq!(*picture.document, document);
     let snapshot = worker.snapshot();
     assert_eq!(snapshot.engine.as_ref().expect("it is open").kind, EngineKind::Gpu);
-    assert!(!snapshot.progress.is_standing_in);
+    assert!(!snapshot.progress.is_fallback);
     assert_eq!(errors(&worker), Vec::<String>::new());
 }

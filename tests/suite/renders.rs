@@ -55,7 +55,7 @@ pub fn render(choice: EngineChoice, document: &Document) -> Film {
     let kept = place.map(|place| idle.swap_remove(place).1);
     drop(idle);
     let mut session = kept.unwrap_or_else(|| Session::open_with(choice, ASSETS.clone()).unwrap());
-    session.forget();
+    session.reset();
     let film = render_with(&mut session, &document);
     IDLE.lock()
         .unwrap_or_else(PoisonError::into_inner)

@@ -248,7 +248,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         // Private to the traversal: the numbers themselves.
         ("FAR_MARGIN", f64::from(1.000_000_5_f32)),
         ("INVERSE_MAX", f64::from(1e18_f32)),
-        ("PLACE_ERROR", f64::from(6e-7_f32)),
+        ("RELATIVE_ERROR", f64::from(6e-7_f32)),
         ("TILE_SIDE", f64::from(TILE_SIDE)),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
         ("TOTAL_NODES", TOTAL_NODES as f64),
@@ -312,10 +312,10 @@ const WITHOUT_TWIN: &[&str] = &[
     "NO_HIT",
     "STACK_SIZE",
     "EXTENT_MAX",
-    "CAUGHT_NOT",
-    "CAUGHT_SHADOW",
-    "CAUGHT_ALPHA",
-    "CAUGHT_MIRRORED",
+    "CATCHER_MISS",
+    "CATCHER_SHADOW",
+    "CATCHER_SHADOW_ALPHA",
+    "CATCHER_MIRRORED",
     // Rows of questions to single functions.
     "FRESNEL_WORDS",
     "LOBE_WORDS",

@@ -88,7 +88,7 @@ fn a_race_tells_noise_from_bias() {
             runner.label
         );
         // The error against a reference is about the one that a picture tells of itself.
-        let ratio = runner.error.value / runner.told_noise;
+        let ratio = runner.error.value / runner.estimated_noise;
         assert!((0.5..2.0).contains(&ratio), "{}: {ratio}", runner.label);
         assert_eq!(runner.equal_time.pixels.len(), 24 * 24);
         assert_eq!(runner.equal_error.pixels.len(), 24 * 24);

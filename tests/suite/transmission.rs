@@ -135,16 +135,16 @@ fn light_cut_at_the_last_bounce_is_told() {
             let [value, ..] = mean(&film);
             (1.0 - value, film.cut_share())
         };
-        let (missing, told) = cut(3, "transmission.weight=0.5");
+        let (missing, estimate) = cut(3, "transmission.weight=0.5");
         assert!(missing > 0.02, "{choice:?}: {missing}");
         assert!(
-            (told - missing).abs() < 1e-3,
-            "{choice:?}: {told} told, {missing} missing"
+            (estimate - missing).abs() < 1e-3,
+            "{choice:?}: {estimate} estimate, {missing} missing"
         );
-        let (missing, told) = cut(64, "transmission.weight=1");
+        let (missing, estimate) = cut(64, "transmission.weight=1");
         assert!(
-            missing.abs() < 1e-3 && told < 1e-3,
-            "{choice:?}: {told} told, {missing} missing"
+            missing.abs() < 1e-3 && estimate < 1e-3,
+            "{choice:?}: {estimate} estimate, {missing} missing"
         );
     }
 }

@@ -32,7 +32,7 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "walks the hierarchy of obvhs with one ray; lanes walk one with other nodes (src/scene/hierarchy)",
-        &["bounded_inverse", "intersect_children", "intersect_node"],
+        &["bounded_inverse", "intersect_node"],
     ),
     (
         "reads a vertex that is packed otherwise: methods of `Vertex` in src/scene/part.rs",

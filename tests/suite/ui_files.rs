@@ -103,7 +103,7 @@ fn every_kind_of_file_can_be_dropped() {
         .unwrap();
         drop_on(&mut harness, std::slice::from_ref(&wood));
         wait(&mut harness, name, |app| {
-            let own = app.document().materials[0].own.get(TextureTarget::BaseColor);
+            let own = app.document().materials[0].user_textures.get(TextureTarget::BaseColor);
             own.is_some_and(|own| own.file == wood)
         });
     }
@@ -170,7 +170,11 @@ fn a_model_its_parts_and_its_light_are_dropped_together() {
     assert!(says(&harness, "left.png: not used"), "{:?}", harness.state().messages());
     assert!(!says(&harness, "wood.png: not used"));
     let materials = &harness.state().document().materials;
-    assert!(materials.iter().all(|material| material.own.iter().next().is_none()));
+    assert!(
+        materials
+            .iter()
+            .all(|material| material.user_textures.iter().next().is_none())
+    );
 }
 
 #[test]
@@ -187,7 +191,7 @@ fn a_base_color_dropped_with_a_plain_model_is_put_on_it() {
     let mut harness = editor();
     drop_on(&mut harness, &[color.clone(), model, normal]);
     wait(&mut harness, "the picture", |app| {
-        let own = app.document().materials[0].own.get(TextureTarget::BaseColor);
+        let own = app.document().materials[0].user_textures.get(TextureTarget::BaseColor);
         own.is_some_and(|own| own.file == color)
     });
     assert!(says(&harness, "oak_n.png: not used"));

@@ -5,7 +5,7 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
 use glossmith::document::Document;
 use glossmith::scene::ModelSource;
-use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Rgba, RgbaImage};
 
 use super::gltf_builder::Folder;
@@ -36,8 +36,11 @@ fn write(folder: &Folder, name: &str) -> std::path::PathBuf {
     path
 }
 
-fn own(harness: &Editor, target: TextureTarget) -> Option<OwnTexture> {
-    harness.state().document().materials[0].own.get(target).cloned()
+fn own(harness: &Editor, target: TextureTarget) -> Option<UserTexture> {
+    harness.state().document().materials[0]
+        .user_textures
+        .get(target)
+        .cloned()
 }
 
 fn click(harness: &mut Editor, role: Role, label: &str) {
@@ -59,12 +62,15 @@ fn a_texture_is_chosen_placed_and_removed() {
     harness.run_steps(2);
     click(&mut harness, Role::Button, "Open");
     wait(&mut harness, "the texture", |app| {
-        app.document().materials[0].own.get(TextureTarget::BaseColor).is_some()
+        app.document().materials[0]
+            .user_textures
+            .get(TextureTarget::BaseColor)
+            .is_some()
     });
     settle(&mut harness);
     let textured = picture(&harness);
     assert!(textured != plain);
-    assert_eq!(own(&harness, TextureTarget::BaseColor), Some(OwnTexture::of(file)));
+    assert_eq!(own(&harness, TextureTarget::BaseColor), Some(UserTexture::of(file)));
     // Its switch, its placement.
     click(&mut harness, Role::CheckBox, "Base colour texture");
     settle(&mut harness);
@@ -139,9 +145,9 @@ fn a_missing_texture_is_told() {
         model: ModelSource::Sphere,
         ..small_document()
     };
-    let here = OwnTexture::of(write(&folder, "here.png"));
+    let here = UserTexture::of(write(&folder, "here.png"));
     document.materials[0].put_texture(TextureTarget::BaseColor, here);
-    let gone = OwnTexture::of(folder.path("gone.png"));
+    let gone = UserTexture::of(folder.path("gone.png"));
     document.materials[0].put_texture(TextureTarget::Roughness, gone);
     let mut harness = editor_with(document, Vec::new());
     settle(&mut harness);

@@ -126,7 +126,7 @@ fn a_set_of_textures_is_put_on_the_material() {
     drop_on(&mut walk.harness, &[folder]);
     walk.events += 1;
     wait(&mut walk.harness, "the textures", |app| {
-        let own = &app.document().materials[0].own;
+        let own = &app.document().materials[0].user_textures;
         own.get(TextureTarget::BaseColor).is_some() && own.get(TextureTarget::Roughness).is_some()
     });
     walk.ends("Put a set of textures on a material");

@@ -1,6 +1,5 @@
-// D(xi) and h(D) of a curve drawn by hand, whose table begins at number `table`: an interval's four numbers are the
-// distribution and the density where it begins, the density where it ends, and D's maximum. Twin of
-// src/optics/curve/custom.rs.
+// D(xi) and h(D) of a custom curve, whose table starts at number `table`. An interval has four numbers: distribution and
+// density at its start, density at its end, and D's maximum. Twin of src/optics/curve/custom.rs.
 #import "optics/numeric"
 #import "scene/layout"
 

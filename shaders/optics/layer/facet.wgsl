@@ -1,4 +1,4 @@
-// How the specular and the refracting lobe share a direction. Twin of src/optics/layer/facet.rs.
+// Sharing of a direction between the specular and the refracting lobe. Twin of src/optics/layer/facet.rs.
 #import "optics/fresnel"
 #import "optics/material"
 #import "optics/numeric"

@@ -1,4 +1,4 @@
-// What layers have in common. Twin of src/optics/layer/mod.rs, which explains it, and of src/optics/layer/shares.rs.
+// Common part of the layers. Twin of src/optics/layer/mod.rs, which explains it, and of src/optics/layer/shares.rs.
 #import "optics/lobe/registry"
 #import "optics/material"
 #import "optics/numeric"
@@ -31,7 +31,7 @@ struct LayerChoice {
     number: f32,
 }
 
-// How often a cover of this albedo is sampled, and its luminance with everything after it, which is `below`.
+// Sampling probability of a cover with this albedo, and its luminance plus that of everything after it (`below`).
 fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
     let reflected = max(max(albedo.x, albedo.y), albedo.z);
     let rest = (1.0 - reflected) * below;

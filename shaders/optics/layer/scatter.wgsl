@@ -16,31 +16,31 @@ struct MaterialNumbers {
     below: vec3f,
 }
 
-// Light from a direction that was drawn with some density. competing: 1 where the material's own density takes its share.
+// Light from a direction sampled with some density. competing: 1 if the material's own density enters the MIS weight.
 struct MaterialLight {
     wi: vec3f,
     density: f32,
     competing: f32,
 }
 
-// A direction drawn, and what the material reflects of the light.
+// A sampled direction, and the light's share that the material reflects.
 struct MaterialScatter {
     drawn: MaterialSample,
     reflected: vec3f,
 }
 
-// The steps at a surface point, as a range: light is weighed by each planned layer (where `evaluates`), then a direction is
-// drawn (where `draws`), and once more where the layer that was drawn from first passed on.
+// Steps at a surface point, as a range: each planned layer weights the light (if `evaluates`), then a direction is sampled
+// (if `draws`), and once more if the first layer passed it on.
 fn material_steps(evaluates: bool, draws: bool) -> vec2u {
     let first_draw = planned_layers();
     return vec2u(select(first_draw, 0u, evaluates), first_draw + select(0u, 1u + PLAN_TRANSMISSION, draws));
 }
 
 fn material_sample(
-    material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, wants_density: bool,
+    material: Material, surface: Surface, layers: Layers, numbers: MaterialNumbers, needs_density: bool,
 ) -> MaterialSample {
     let steps = material_steps(false, true);
-    return material_scatter(material, surface, layers, steps, numbers, wants_density, MaterialLight()).drawn;
+    return material_scatter(material, surface, layers, steps, numbers, needs_density, MaterialLight()).drawn;
 }
 
 fn material_evaluate(
@@ -51,10 +51,10 @@ fn material_evaluate(
     return material_scatter(material, surface, layers, steps, MaterialNumbers(), false, light).reflected;
 }
 
-// The steps from steps.x to before steps.y. A loop, so that the code of the lobes and of what they reflect is there once:
-// drivers inline every call, and compile in more than proportion to the size.
+// Runs steps.x up to but not including steps.y. A loop, so that the lobes' code is in the kernel once: drivers inline every
+// call, and compile time grows faster than size.
 fn material_scatter(
-    material: Material, surface: Surface, of_view: Layers, steps: vec2u, numbers: MaterialNumbers, wants_density: bool,
+    material: Material, surface: Surface, of_view: Layers, steps: vec2u, numbers: MaterialNumbers, needs_density: bool,
     light: MaterialLight,
 ) -> MaterialScatter {
     var layers = of_view;
@@ -98,9 +98,9 @@ fn material_scatter(
             let is_passed_on = layer_pass_on(layer, material, &layers, weight, toward.probability);
             let part = split(numbers.facet, layer_share(layer, layers).probability);
             if !part.is_below {
-                // What is below is drawn with its own numbers, or at the same facet.
+                // The layer below uses its own random numbers, or the same facet.
                 xi = select(xi, numbers.below, is_passed_on);
-                number = part.stretched;
+                number = part.remapped;
                 first = layer + 1u;
                 is_apart = true;
                 continue;
@@ -108,14 +108,15 @@ fn material_scatter(
         }
         let share = layer_share(layer, layers);
         var evaluated = vec2f(0.0);
-        if !draws || (wants_density && !mirror) {
+        if !draws || (needs_density && !mirror) {
             let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
             evaluated = layer_refined(layer, material, surface, wi, of_lobe);
         }
         let color = toward.color * share.transmittance;
         let density = share.reached * toward.probability * evaluated.y;
         if draws {
-            // With what a layer is drawn differs from what its direction tells where the horizon policy has turned that.
+            // After the horizon policy has turned the direction, its selection probability differs from the one used to
+            // sample: keep the latter.
             let drawn_with = max(share.reached * share.probability, 1e-20);
             drawn = MaterialSample(wi, color * (weight / drawn_with), density, mirror);
             break;

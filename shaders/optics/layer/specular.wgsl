@@ -22,7 +22,7 @@ fn specular_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAl
     if has_more(material) {
         albedos = specular_albedos(material, surface);
     }
-    // Under the metal's share there is nothing; the rest lies under the dielectric alone.
+    // A metal has no layer below; the rest lies below the dielectric alone.
     return LayerAlbedo(albedos.taken, max(vec3f(1.0) - albedos.by_dielectric, vec3f(0.0)));
 }
 
@@ -36,7 +36,7 @@ fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32
     let specular = luminance((*layers).specular.albedo);
     var share = sampled_share(specular / max(specular + below, 1e-9));
     share = select(1.0, share, below > 0.0);
-    // What is passed on is what was not reflected, no estimate.
+    // The part passed on is exactly the part not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));
     let through = (1.0 - share) * (luminance((*layers).transmission.albedo) / max(below, 1e-9));
     (*layers).specular.probability = share;
@@ -104,7 +104,7 @@ fn specular_probability(material: Material, layers: Layers, surface: Surface, wi
     let cosine = half_vector_cosine(surface.wo, wi);
     let square = refracted_square(cosine, ior);
     let left = left_by_facet(material, surface, vec2f(cosine, sqrt(max(square, 0.0)) / ior));
-    // What is reflected totally is not refracted, whatever the model of the Fresnel factor says.
+    // Total reflection leaves nothing to refract, whichever Fresnel model is used.
     let refracted = select(0.0, luminance(left), square > 0.0);
     return (1.0 - layers.base.probability) * mirrored_share(reflected, refracted);
 }

@@ -17,7 +17,7 @@ fn blinn_phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> v
 fn blinn_phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let f = facet(frame, wo, wi);
     let n = blinn_phong_exponent(shape.roughness);
-    // The cosine's logarithm, where the lobe is narrow from sin^2 by the tangential components.
+    // Logarithm of the cosine; for narrow lobes from sin^2 by the tangential components.
     let sine2 = dot(f.h.xy, f.h.xy);
     let near = 0.5 * log1p(-min(sine2, 0.5));
     let power = exp((n + 1.0) * select(log(max(f.h.z, 1e-30)), near, sine2 < 0.5));

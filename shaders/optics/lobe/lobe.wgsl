@@ -1,5 +1,5 @@
-// What all lobes share, and what happens below the horizon. Twin of src/optics/lobe/mod.rs.
-// raw_sample, raw_density, raw_weight, what is special about each lobe and LOBE_* are generated from the registry.
+// Common part of the lobes, and the horizon policy. Twin of src/optics/lobe/mod.rs. raw_sample, raw_density, raw_weight, the
+// lobes' properties and LOBE_* are generated from the registry.
 #import "optics/choices"
 #import "optics/frame"
 #import "optics/lobe/registry"
@@ -66,7 +66,7 @@ struct LobeView {
     frame: Frame,
     normal: vec3f,
     wo: vec3f,
-    // Of the lobe that is seen reflected there.
+    // Roughness of the lobe that the reflection shows.
     roughness: f32,
 }
 

@@ -16,7 +16,7 @@ fn phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
 
 fn phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let apart = wi - mirrored_about(wo, frame.normal);
-    // 1 - cos(alpha) from the difference of the two directions: exact where the lobe is narrow.
+    // 1 - cos(alpha) from the difference of the two directions: exact for narrow lobes.
     let versine = 0.5 * dot(apart, apart);
     let in_lobe = versine < 1.0;
     let n = phong_exponent(shape.roughness);

@@ -19,7 +19,7 @@ const RANGE_MAX: f64 = 20.0;
 /// Hat functions of h over the distance D.
 #[derive(Clone, Debug)]
 pub struct Hats {
-    /// Where the hats peak, rising from 0 to D's maximum.
+    /// Peaks of the hat functions, rising from 0 to D's maximum.
     pub nodes: Vec<f64>,
 }
 
@@ -91,7 +91,7 @@ struct Chord {
 }
 
 impl Chord {
-    /// `None` where the direction meets nothing of the ball.
+    /// `None` if the direction misses the ball.
     fn new(roughness: f64, reach: f64, mirror: Vec3<f64>, wi: Vec3<f64>) -> Option<Self> {
         let kappa = roughness;
         let k = (1.0 - kappa) * (1.0 + kappa);

@@ -1,6 +1,6 @@
-//! The geometric lobe's curve that comes closest to a target: a non-negative least-squares fit of h over hat functions
-//! (Lawson and Hanson 1974), repeated with weights that turn squares into absolute values, since it is the total
-//! variation distance that counts (iteratively reweighted least squares).
+//! Fit of the geometric lobe's curve to a target: a non-negative least-squares fit of h over hat functions (Lawson and
+//! Hanson 1974). It is iteratively reweighted so that squares become absolute values, because the goal is the total
+//! variation distance.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -26,7 +26,7 @@ pub struct CurveTarget {
     grid: SphereGrid,
     /// Values at the points, their integral 1.
     values: Vec<f64>,
-    /// What they were divided by.
+    /// Divisor of the values.
     total: f64,
     mirror: Vec3<f64>,
 }
@@ -58,7 +58,7 @@ pub struct CurveFit {
     pub h: Vec<f64>,
     /// Albedo of the lobe, in the target's scale.
     pub lobe_albedo: f64,
-    /// Albedo of the Lambertian part, in the target's scale; 0 where none was asked for.
+    /// Albedo of the Lambertian part, in the target's scale; 0 if not requested.
     pub base_albedo: f64,
     /// ½ ∫ |fit − target| / ∫ target.
     pub residual: f64,
@@ -84,8 +84,8 @@ fn mass(range: [f64; 2], piece: [f64; 2], h: [f64; 2]) -> f64 {
     (high - low) / 6.0 * (density(low) + 4.0 * density(0.5 * (low + high)) + density(high))
 }
 
-/// The best curve at a roughness in (0, 1) with distances up to `distance_max`, beside a Lambertian part if
-/// `has_base`. `None` where the solver finds none.
+/// The best curve at a roughness in (0, 1) with distances up to `distance_max`, plus a Lambertian part if `has_base`. `None`
+/// if the solver fails.
 pub fn fit_curve(
     target: &CurveTarget,
     roughness: f64,
@@ -137,7 +137,7 @@ pub fn fit_curve(
     Some(fit)
 }
 
-/// For each point of the grid the density of each hat, and at the end Lambert's where there is a base.
+/// Per grid point the density of each hat function, followed by Lambert's if there is a base.
 fn rows(target: &CurveTarget, hats: &Hats, roughness: f64, horizon: Horizon, has_base: bool) -> Vec<Vec<f64>> {
     let row = |(wi, _): &(Vec3<f64>, f64)| {
         let mut densities = vec![0.0; hats.nodes.len()];
@@ -179,7 +179,7 @@ fn solve(target: &CurveTarget, rows: &[Vec<f64>], weights: &[f64]) -> Option<Vec
             }
         }
     }
-    // A little more on the diagonal: hats that the target does not see get the weight 0 instead of any.
+    // Regularises the diagonal: hat functions that the target does not constrain get the weight 0.
     let ridge = 1e-11 * (0..count).map(|i| gram[i][i]).sum::<f64>();
     let lower = gram.clone();
     for (i, row) in gram.iter_mut().enumerate() {

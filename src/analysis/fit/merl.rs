@@ -49,7 +49,7 @@ pub enum MerlError {
     Length {
         /// The file.
         path: PathBuf,
-        /// Its length.
+        /// Length of the file in bytes.
         length: u64,
     },
     /// Nothing in it.

@@ -1,7 +1,7 @@
-//! "Match look": the lobe whose shape comes closest to another's, or to a measured one's.
+//! "Match look": the lobe with the closest shape to another, or to a measured one.
 //!
-//! Shapes are compared by the total variation distance TV = ½ ∫ |p − q| over the hemisphere, p and q the two normalised
-//! to the integral 1: the share of the light that goes elsewhere, 0 for equal shapes and 1 for disjoint ones.
+//! Shapes are compared by the total variation distance TV = ½ ∫ |p − q| over the hemisphere, p and q normalised to the
+//! integral 1: the share of light in other directions, 0 for equal shapes and 1 for disjoint ones.
 
 pub mod basis;
 pub mod curve;
@@ -17,12 +17,12 @@ use super::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::vector::Vec3;
 
-/// What of a lobe is compared.
+/// Function of a lobe to compare.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
-    /// What is seen: evaluate, the cosine included, normalised to the integral 1.
+    /// Appearance: evaluate with the cosine, normalised to the integral 1.
     Evaluate,
-    /// What is drawn: the density as it is. What a model loses below the horizon is missing from it.
+    /// Sampling: the density, without normalisation. Light that a model loses below the horizon is missing.
     Density,
 }
 

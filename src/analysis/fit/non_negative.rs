@@ -1,6 +1,6 @@
 //! Non-negative least squares by active sets (Lawson and Hanson 1974), on the normal equations (Bro and De Jong 1997).
 
-/// Of the largest product with the right side: what a variable must promise to be set free.
+/// Gradient, relative to the largest product with the right side, from which a variable is freed.
 const GAIN_MIN: f64 = 1e-13;
 /// Times the number of variables: rounds after which the best that was found has to do.
 const ROUNDS: usize = 10;
@@ -15,7 +15,7 @@ pub(super) fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>>
     let least = GAIN_MIN * right.iter().fold(0.0, |most, x| x.abs().max(most));
     let mut x = vec![0.0; count];
     let mut free: Vec<usize> = Vec::new();
-    // What rounding alone made promising since the last step that was one.
+    // Variables that only rounding made promising since the last real step.
     let mut refused: Vec<usize> = Vec::new();
     for _ in 0..ROUNDS * count {
         let gain = |i: usize| right[i] - gram[i].iter().zip(&x).map(|(g, x)| g * x).sum::<f64>();
@@ -40,8 +40,8 @@ pub(super) fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>>
     Some(x)
 }
 
-/// Goes from x to what is wanted of the free variables, as far as none becomes negative. Those that reach 0 are fixed
-/// there. True where all that was wanted could be had.
+/// Steps from x towards `wanted` in the free variables, as far as none becomes negative. Those that reach 0 are fixed there.
+/// Returns true if it went all the way.
 fn step(x: &mut [f64], free: &mut Vec<usize>, wanted: &[f64]) -> bool {
     let reach =
         |(&i, &wanted): (&usize, &f64)| (wanted <= 0.0).then(|| (i, x[i] / (x[i] - wanted).max(f64::MIN_POSITIVE)));
@@ -63,7 +63,7 @@ fn step(x: &mut [f64], free: &mut Vec<usize>, wanted: &[f64]) -> bool {
     false
 }
 
-/// The minimum over the free variables where the others are 0, by Cholesky's factors.
+/// The minimum over the free variables with the others at 0, by Cholesky factorisation.
 fn minimum(gram: &[Vec<f64>], right: &[f64], free: &[usize]) -> Option<Vec<f64>> {
     let count = free.len();
     let mut lower = vec![vec![0.0; count]; count];

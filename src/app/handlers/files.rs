@@ -16,7 +16,7 @@ use crate::render::output::format_of;
 use crate::render::worker::Level;
 use crate::scene::endings::ending;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::texture::OwnTexture;
+use crate::scene::texture::UserTexture;
 use crate::scene::{ModelOptions, ModelSource, holds_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
@@ -318,7 +318,7 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenLut => self.use_lut(path),
-            Purpose::Texture(target) => self.put_textures(&[(target, OwnTexture::of(path))]),
+            Purpose::Texture(target) => self.put_textures(&[(target, UserTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: a picture has the document inside, too.

@@ -40,8 +40,8 @@ impl App {
             let camera = &mut self.document.camera;
             (camera.target, camera.distance, camera.position) = (None, None, None);
             let left_out = self.document.add_lights_and_cameras(model);
-            if let Some(told) = lights_left_out(left_out) {
-                self.say(Level::Warning, told);
+            if let Some(message) = lights_left_out(left_out) {
+                self.say(Level::Warning, message);
             }
         }
         self.edits.note(format!("{MODEL_CHANGED} {}", model.name), "");

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use crate::app::App;
-use crate::scene::texture::{OwnTexture, TextureTarget, set};
+use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 impl App {
     /// Puts pictures on the selected materials, in one edit.
-    pub(in crate::app) fn put_textures(&mut self, textures: &[(TextureTarget, OwnTexture)]) {
+    pub(in crate::app) fn put_textures(&mut self, textures: &[(TextureTarget, UserTexture)]) {
         let Some((_, first)) = textures.first() else { return };
         let name = first
             .file
@@ -23,10 +23,10 @@ impl App {
             let material = self.document.material_mut(slot);
             for (target, texture) in textures {
                 // What is in the picture's place keeps the way in which it lies there.
-                let known = material.own.get(*target).filter(|_| textures.len() == 1);
+                let known = material.user_textures.get(*target).filter(|_| textures.len() == 1);
                 let texture = known.map_or_else(
                     || texture.clone(),
-                    |known| OwnTexture {
+                    |known| UserTexture {
                         file: texture.file.clone(),
                         ..known.clone()
                     },
@@ -42,7 +42,7 @@ impl App {
     pub(in crate::app) fn put_pictures(&mut self, pictures: &[PathBuf]) -> Vec<PathBuf> {
         let (found, left) = set::recognised(pictures);
         if let (true, [picture]) = (found.is_empty(), pictures) {
-            self.put_textures(&[(TextureTarget::BaseColor, OwnTexture::of(picture.clone()))]);
+            self.put_textures(&[(TextureTarget::BaseColor, UserTexture::of(picture.clone()))]);
             return Vec::new();
         }
         self.put_textures(&found);

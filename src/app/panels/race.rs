@@ -246,7 +246,7 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
                 percent(runner.error.value),
                 percent(runner.error.low),
                 percent(runner.error.high),
-                percent(runner.told_noise),
+                percent(runner.estimated_noise),
                 runner.samples_per_pixel
             ));
             ui.label(bias(runner));

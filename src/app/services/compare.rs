@@ -214,7 +214,7 @@ impl Compare {
             return;
         }
         if self.matching.is_none() {
-            let work = |query: MatchQuery, desk: &background::Desk<'_, MatchQuery, Matched>| {
+            let work = |query: MatchQuery, desk: &background::Responder<'_, MatchQuery, Matched>| {
                 let found = matched_lobe(&query.model, query.lobe).map_err(|error| error.to_string());
                 desk.publish(Matched { query, found });
             };
@@ -242,7 +242,8 @@ impl Compare {
         }
         if self.differing.is_none() {
             let mut serial = 0;
-            let work = move |query: DifferenceQuery, desk: &background::Desk<'_, DifferenceQuery, Arc<Compared>>| {
+            let work = move |query: DifferenceQuery,
+                             desk: &background::Responder<'_, DifferenceQuery, Arc<Compared>>| {
                 let Some(found) = difference(&query.a.image, &query.b.image) else {
                     return;
                 };

@@ -37,7 +37,7 @@ struct Known {
     /// What was done last, with how often in a row; the latest last.
     deeds: VecDeque<(String, u32)>,
     /// What is to be said in the window.
-    told: Vec<String>,
+    reported: Vec<String>,
     /// Whose panic ends the window.
     window: ThreadId,
 }
@@ -49,7 +49,7 @@ impl Default for Witness {
             copy: None,
             engine: "none yet".to_owned(),
             deeds: VecDeque::new(),
-            told: Vec::new(),
+            reported: Vec::new(),
             window: std::thread::current().id(),
         }));
         let mut all = WITNESSES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -103,7 +103,7 @@ impl Witness {
 
     /// What is to be said of panics in threads beside the window's.
     pub(in crate::app) fn take_told(&self) -> Vec<String> {
-        std::mem::take(&mut self.known().told)
+        std::mem::take(&mut self.known().reported)
     }
 }
 
@@ -149,7 +149,7 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
         let name = thread.name().unwrap_or("a thread without a name").to_owned();
         let what = panics::message(panic.payload());
         known
-            .told
+            .reported
             .push(format!("an internal error in \"{name}\": {what}; {place}"));
     }
 }

@@ -76,7 +76,7 @@ impl Recent {
         }
         if self.search.is_none() {
             let ctx = ctx.clone();
-            let work = |paths: Vec<PathBuf>, desk: &crate::render::background::Desk<'_, _, _>| {
+            let work = |paths: Vec<PathBuf>, desk: &crate::render::background::Responder<'_, _, _>| {
                 let missing = paths.into_iter().filter(|path| !path.is_file());
                 desk.publish(Arc::new(missing.collect()));
             };

@@ -114,7 +114,7 @@ impl Shelves {
             let repainting = ctx.clone();
             let mut shelf = Shelf::default();
             let mut last = Arc::default();
-            let work = move |folders: Vec<PathBuf>, desk: &crate::render::background::Desk<'_, _, _>| {
+            let work = move |folders: Vec<PathBuf>, desk: &crate::render::background::Responder<'_, _, _>| {
                 let contents = shelf.list(&folders);
                 if contents != *last {
                     last = Arc::new(contents);

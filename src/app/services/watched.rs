@@ -102,8 +102,8 @@ impl Watched {
     /// Those that were saved since this was last called.
     pub(in crate::app) fn take_changed(&self) -> Vec<PathBuf> {
         let mut files = lock(&self.0);
-        let told = |file: &mut File| std::mem::take(&mut file.has_changed).then(|| file.path.clone());
-        files.iter_mut().filter_map(told).collect()
+        let taken = |file: &mut File| std::mem::take(&mut file.has_changed).then(|| file.path.clone());
+        files.iter_mut().filter_map(taken).collect()
     }
 }
 
@@ -123,7 +123,7 @@ mod tests {
         std::fs::write(&path, "one, two, three").expect("written");
         assert!(!file.look(), "it grew");
         assert!(file.look());
-        assert!(!file.look(), "told once");
+        assert!(!file.look(), "taken once");
         std::fs::remove_file(&path).expect("removed");
         assert!(!file.look() && !file.look(), "gone, as while it is replaced");
         std::fs::write(&path, "four").expect("written");

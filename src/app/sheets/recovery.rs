@@ -63,7 +63,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
         None => "the notice".to_owned(),
     };
     if let Some(report) = &leftover.report {
-        told(ui, report);
+        show_report(ui, report);
     }
     ui.horizontal(|ui| {
         if let Some(contents) = &leftover.contents {
@@ -86,7 +86,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
 }
 
 /// What a panic said, and where more of it stands.
-fn told(ui: &mut Ui, report: &Report) {
+fn show_report(ui: &mut Ui, report: &Report) {
     let text = format!("It met an internal error: {}", report.message);
     ui.add(egui::Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
     let where_to = format!("Please report this crash and attach {}.", report.path.display());

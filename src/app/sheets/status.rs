@@ -238,7 +238,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
         }));
     }
     if snapshot.activity == Activity::Rendering {
-        if snapshot.progress.is_standing_in {
+        if snapshot.progress.is_fallback {
             let text = RichText::new("compiling the kernel").weak();
             parts.push(spinner());
             parts.push(Part::text(ui, Rank::Activity, text, |ui| {
@@ -272,11 +272,11 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
                 band(ui, noise.low, noise.high);
             }));
         }
-        if let Some(told) = snapshot.denoised {
-            let text = format!("denoised {}", error(told.value));
+        if let Some(estimate) = snapshot.denoised {
+            let text = format!("denoised {}", error(estimate.value));
             parts.push(Part::text(ui, Rank::Denoised, text, move |ui| {
                 ui.label("Estimated error of the denoised image, bias included: RMS / mean luminance");
-                band(ui, told.low, told.high);
+                band(ui, estimate.low, estimate.high);
             }));
         }
         let time = format!("{:.1} s", progress.render_seconds);

@@ -167,12 +167,12 @@ impl TurntableSheet {
                     .margin(egui::vec2(6.0, 4.0)),
             )
         });
-        let mut told = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
+        let mut message = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
         if samples_per_second > 0.0 {
             let seconds = self.seconds(samples_per_second);
-            told += &format!(", rendered in about {} at the present speed", duration(seconds));
+            message += &format!(", rendered in about {} at the present speed", duration(seconds));
         }
-        widgets::note(ui, told + ".");
+        widgets::note(ui, message + ".");
         ui.add_space(theme::GAP);
         let mut begins = false;
         ui.horizontal(|ui| {

@@ -40,8 +40,8 @@ impl Scene {
     /// The scene of arguments as they are written on the command line.
     pub(super) fn parse(arguments: &[String]) -> anyhow::Result<Self> {
         Self::try_parse_from(arguments).map_err(|error| {
-            let told = error.render().to_string();
-            let first = told.lines().next().unwrap_or_default();
+            let message = error.render().to_string();
+            let first = message.lines().next().unwrap_or_default();
             anyhow!("{}", first.trim_start_matches("error: "))
         })
     }
@@ -386,7 +386,7 @@ pub(super) struct Picture {
 mod tests {
     use super::*;
 
-    fn told(text: &str) -> String {
+    fn message(text: &str) -> String {
         BatchFile::parse(Path::new("a.toml"), text).map_or_else(|error| error.to_string(), |file| format!("{file:?}"))
     }
 
@@ -429,10 +429,13 @@ mod tests {
             ("frames = 2\nturn = \"all\"", 2, "camera, model or light"),
             ("materials = [\"gold\"]\nformats = [\"gif\"]", 2, "png, exr and hdr"),
         ] {
-            let told = told(text);
-            assert!(told.starts_with(&format!("a.toml, line {line}: ")), "{text}: {told}");
-            assert!(told.contains(words), "{text}: {told}");
+            let message = message(text);
+            assert!(
+                message.starts_with(&format!("a.toml, line {line}: ")),
+                "{text}: {message}"
+            );
+            assert!(message.contains(words), "{text}: {message}");
         }
-        assert!(told("[common]\nsamples = 4").contains("nothing to render"));
+        assert!(message("[common]\nsamples = 4").contains("nothing to render"));
     }
 }

@@ -78,11 +78,11 @@ impl Inputs {
 
     /// A file's contents, or those of a folder's files.
     pub(super) fn file(&mut self, path: &Path) -> anyhow::Result<()> {
-        let told = || format!("{}: cannot be read; check the path and its permissions", path.display());
+        let message = || format!("{}: cannot be read; check the path and its permissions", path.display());
         if path.is_dir() {
-            let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path).with_context(told)?.collect();
+            let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path).with_context(message)?.collect();
             let mut files: Vec<_> = entries
-                .with_context(told)?
+                .with_context(message)?
                 .into_iter()
                 .map(|entry| entry.path())
                 .collect();
@@ -92,10 +92,10 @@ impl Inputs {
                 .filter(|file| file.is_file())
                 .try_for_each(|file| self.file(file));
         }
-        let mut file = std::fs::File::open(path).with_context(told)?;
+        let mut file = std::fs::File::open(path).with_context(message)?;
         let mut piece = vec![0; 1 << 16];
         loop {
-            match file.read(&mut piece).with_context(told)? {
+            match file.read(&mut piece).with_context(message)? {
                 0 => return Ok(()),
                 length => self.bytes(&piece[..length]),
             }

@@ -152,7 +152,7 @@ impl<'a> Maker<'a> {
             _ => wanted.document.clone(),
         };
         let (progress, denoised) = render_to_end(&mut self.session, self.engine, &document)?;
-        let mut row = self.told(&wanted, Status::Rendered, &progress);
+        let mut row = self.message(&wanted, Status::Rendered, &progress);
         let image = self.session.image()?;
         let rendered = Rendered {
             denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
@@ -168,7 +168,7 @@ impl<'a> Maker<'a> {
         self.finish(&wanted, row)
     }
 
-    fn told(&self, wanted: &Wanted<'_>, status: Status, progress: &Progress) -> Row {
+    fn message(&self, wanted: &Wanted<'_>, status: Status, progress: &Progress) -> Row {
         Row {
             files: self.files(wanted),
             samples: wanted.part,

@@ -160,7 +160,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
             true => maker.join(*number, picture),
             false => maker.make(*number, picture, part),
         };
-        tell(&row, &mut lines, all.len())?;
+        report(&row, &mut lines, all.len())?;
         failed += usize::from(row.status == Status::Failed);
     }
     // Where several programs render at once, none of them has all pictures.
@@ -211,7 +211,7 @@ fn chosen<'a>(
 }
 
 /// A line to the program that called, and one for people.
-fn tell(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
+fn report(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
     lines.write(row)?;
     let Row {
         number,

@@ -99,7 +99,7 @@ fn html(folder: &Path, title: &str, pictures: &[Picture]) -> String {
                 "<figure><a href=\"{}\"><img src=\"{THUMBNAILS}/{name}.png\" alt=\"{name}\"></a><figcaption>{name}<br>\
                  <small>{}</small></figcaption></figure>",
                 escaped(&file.to_string_lossy()),
-                told(row)
+                message(row)
             ),
             _ => writeln!(
                 text,
@@ -111,7 +111,7 @@ fn html(folder: &Path, title: &str, pictures: &[Picture]) -> String {
 }
 
 /// Samples, time and error.
-fn told(row: &Row) -> String {
+fn message(row: &Row) -> String {
     let mut parts = Vec::new();
     parts.extend(row.samples_per_pixel.map(|samples| format!("{samples} samples")));
     parts.extend(row.render_seconds.map(|seconds| format!("{seconds:.1} s")));

@@ -149,7 +149,7 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
             digits(runner.error.value),
             digits(runner.error.low),
             digits(runner.error.high),
-            digits(runner.told_noise),
+            digits(runner.estimated_noise),
             digits(runner.time_to_noise),
             runner.is_extrapolated.to_string(),
             digits(runner.bias.value),

@@ -1,4 +1,4 @@
-//! The camera rays of a tile, and tiles in which they meet nothing: most of many a picture, of which no path goes on.
+//! Camera rays of a tile, and the shortcut for tiles of background alone.
 
 use super::Integrator;
 use super::group::Groups;
@@ -12,14 +12,14 @@ use crate::optics::real::{Real, Scalar};
 use crate::scene::{Hit, PACKET, Packet};
 
 impl<T: Real> Integrator<'_, T> {
-    /// Adds the paths of some samples of all pixels of a tile, with their camera rays: those of pixels near each other side by
-    /// side.
+    /// Adds the paths of `samples` (first, count) of all pixels of a tile, with their camera rays. Paths of a pixel block
+    /// are adjacent.
     pub(super) fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<T::Scalar, R>) {
         let [first, count] = samples;
         paths.clear();
-        for near in tile.near() {
+        for block in tile.blocks() {
             for sample in first..first + count {
-                paths.add(tile.origin, near.places, sample);
+                paths.add(tile.origin, block.places, sample);
             }
         }
         T::vectorize(
@@ -27,13 +27,13 @@ impl<T: Real> Integrator<'_, T> {
             || {
                 paths.set_counters(self.settings.seed);
                 for group in Groups::new(0..paths.count()) {
-                    self.first_rays(&group, paths);
+                    self.camera_rays(&group, paths);
                 }
             },
         );
     }
 
-    /// What camera rays meet where no surface has holes, those side by side together; nothing if none of them meets anything.
+    /// Intersects camera rays in packets of adjacent paths, for scenes without holes. `hits` is left empty if none hits.
     pub(super) fn trace_camera_rays<R: Recorder>(
         &self,
         paths: &Paths<T::Scalar, R>,
@@ -44,8 +44,8 @@ impl<T: Real> Integrator<'_, T> {
         packets.clear();
         for first in (0..count).step_by(PACKET) {
             let mut packet = Packet {
-                origins: side_by_side(&paths.origin, first),
-                directions: side_by_side(&paths.state.direction, first),
+                origins: packet_axes(&paths.origin, first),
+                directions: packet_axes(&paths.state.direction, first),
                 t_max: [f32::MAX; PACKET],
             };
             packet.fill(PACKET.min(count - first));
@@ -53,35 +53,35 @@ impl<T: Real> Integrator<'_, T> {
         }
         hits.clear();
         self.geometry
-            .intersect_packets(instructions::level(), packets, |met| hits.extend(met));
+            .intersect_packets(instructions::level(), packets, |found| hits.extend(found));
         hits.truncate(count);
     }
 
-    /// Whether what is seen behind everything takes no more than looking it up.
+    /// Whether the background is a plain look-up, without blur.
     pub(super) fn has_plain_background(&self) -> bool {
         !matches!(self.settings.background, BackgroundKind::Blurred(_))
     }
 
-    /// What paths find whose camera rays meet nothing.
-    pub(super) fn see_background<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, results: &mut Results<T::Scalar>) {
+    /// Results of paths whose camera rays all miss.
+    pub(super) fn shade_background<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, results: &mut Results<T::Scalar>) {
         let count = paths.count();
         T::vectorize(
             #[inline(always)]
             || {
                 for group in Groups::<T>::new(0..count) {
-                    let place = self.left_places(group.vector(&paths.state.direction), 0);
-                    let (radiance, alpha) = self.plain_background(place);
-                    let [added, taken] = self.limited(radiance, 0);
-                    results.set(&group, added, alpha, taken.luminance());
+                    let uv = self.escaped_uv(group.vector(&paths.state.direction), 0);
+                    let (radiance, alpha) = self.plain_background(uv);
+                    let [added, clamped] = self.clamp_fireflies(radiance, 0);
+                    results.set(&group, added, alpha, clamped.luminance());
                 }
             },
         );
     }
 }
 
-/// As many vectors as a packet has, from one on: behind the last one there is room for them.
+/// A packet's vectors from index `first` on; the fields have room past the last path.
 #[inline(always)]
-fn side_by_side<S: Scalar>(vectors: &Vectors<S>, first: usize) -> [[f32; PACKET]; 3] {
+fn packet_axes<S: Scalar>(vectors: &Vectors<S>, first: usize) -> [[f32; PACKET]; 3] {
     let mut axes = [[0.0; PACKET]; 3];
     for (axis, numbers) in axes.iter_mut().zip([&vectors.x, &vectors.y, &vectors.z]) {
         for (to, number) in axis.iter_mut().zip(&numbers[first..first + PACKET]) {

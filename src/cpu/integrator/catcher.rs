@@ -1,12 +1,13 @@
-//! The shadow catcher: a ground of which the camera sees shadows and reflections alone. Twin of the functions of that name
+//! The shadow catcher: a ground plane of which the camera sees only shadows and reflections. Twin of the catcher's functions
 //! in `shaders/pass/path_trace.wgsl`.
 //!
-//! Seen by the camera it is the background, a share of it mirrored as in varnish, the rest times what light reaches the
-//! place over what would reach it were nothing there. Both are the background itself where nothing stands in the way.
-//! Over a transparent background the shadow's light is taken from 1, which is its alpha.
+//! To the camera it shows the background. A share is mirrored as in varnish. The rest is multiplied by the ratio of the
+//! light that arrives to the light without occluders. Both equal the background itself if nothing occludes.
+//!
+//! Over a transparent background, alpha is 1 minus the light's luminance.
 
 use super::paths::Paths;
-use super::{Arrival, Integrator, PathResult};
+use super::{Integrator, PathResult, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
 use crate::job::Catcher;
 use crate::optics::real::{Mask, Real, Scalar};
@@ -14,22 +15,21 @@ use crate::optics::vector::Vec3;
 use crate::scene::catcher::{catcher_light, catcher_reflectance};
 use crate::scene::surface::SurfacePoint;
 
-/// Pairs of numbers for what a shadow catcher does with a camera ray, and for the blur of the background below it: beyond
-/// those of every path.
+/// Dimensions of the catcher's choice to mirror, and (the next one) of the background's blur: beyond those of every path.
 pub const CATCHER_DIMENSION: u32 = 12288;
 
-/// What a shadow catcher makes of a path.
+/// A path's state after its camera ray hit the shadow catcher or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Caught<S> {
-    /// It has met none.
+pub(super) enum CatcherHit<S> {
+    /// The camera ray did not hit the catcher, or a mirrored path has hit a surface.
     #[default]
-    Not,
-    /// The light that arrives tells how much of the background is seen.
+    Miss,
+    /// The path gathers the light at the catcher, which scales the background.
     Shadow {
-        /// The background is transparent.
+        /// Whether the background is transparent, so that the light becomes alpha.
         is_transparent: bool,
     },
-    /// It is mirrored: where it then meets nothing it shows the background with its alpha.
+    /// The path was mirrored: if it escapes, it shows the background with this alpha.
     Mirrored {
         /// Linear RGB.
         background: Vec3<S>,
@@ -38,67 +38,69 @@ pub(super) enum Caught<S> {
     },
 }
 
-/// What a shadow catcher does with the paths of a group.
+/// How the shadow catcher affects the lanes of a group.
 #[derive(Clone, Copy)]
-pub(super) struct Passed<T: Real> {
-    /// Where there is a surface: elsewhere the background is shown as it is.
-    pub is_there: T::Mask,
-    /// Where it mirrors the path.
+pub(super) struct CatcherMasks<T: Real> {
+    /// Lanes with a visible surface; the others show the background unchanged.
+    pub is_visible: T::Mask,
+    /// Lanes that the catcher mirrors.
     pub is_mirrored: T::Mask,
 }
 
 impl<T: Real> Integrator<'_, T> {
-    /// What a shadow catcher has to do with paths that met a surface.
+    /// Applies the shadow catcher to hits.
     #[inline(always)]
-    pub(super) fn pass_catcher<R: Recorder>(
+    pub(super) fn apply_catcher<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
-        arrival: &mut Arrival<T>,
+        vertex: &mut PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
-    ) -> Passed<T> {
+    ) -> CatcherMasks<T> {
         let nothing = T::Mask::splat(false);
-        let mut passed = Passed {
-            is_there: arrival.on,
+        let mut masks = CatcherMasks {
+            is_visible: vertex.active,
             is_mirrored: nothing,
         };
         let Some(catcher) = self.settings.catcher else {
-            return passed;
+            return masks;
         };
-        if arrival.bounce > 0 {
-            arrival.members.for_each(&mut paths.caught, arrival.on, |caught, _| {
-                if caught.is_mirrored() {
-                    *caught = Caught::Not;
-                }
-            });
+        if vertex.bounce > 0 {
+            vertex
+                .members
+                .for_each(&mut paths.catcher_hits, vertex.active, |hit, _| {
+                    if hit.is_mirrored() {
+                        *hit = CatcherHit::Miss;
+                    }
+                });
         } else if catcher.slot == point.slot {
-            passed = T::out_of_line(
+            masks = T::out_of_line(
                 #[inline(always)]
-                || self.catch(catcher, point, arrival, paths),
+                || self.hit_catcher(catcher, point, vertex, paths),
             );
         }
-        passed
+        masks
     }
 
-    /// Begins paths anew at the shadow catcher. It is not there where it is seen from below, or gets no light.
+    /// Restarts camera paths at the shadow catcher, or mirrors them. The catcher is invisible from below and where no light
+    /// reaches it.
     #[inline(always)]
-    fn catch<R: Recorder>(
+    fn hit_catcher<R: Recorder>(
         &self,
         catcher: Catcher,
         point: &SurfacePoint<T>,
-        arrival: &mut Arrival<T>,
+        vertex: &mut PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
-    ) -> Passed<T> {
+    ) -> CatcherMasks<T> {
         let (zero, one) = (T::zero(), T::one());
-        let (group, members) = (arrival.group, arrival.members);
+        let (group, members) = (vertex.group, vertex.members);
         let positions = point.position.to_each();
         let light = Vec3::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions.as_ref()[lane]));
-        let is_there = arrival.on & arrival.direction.y.less(zero) & zero.less(light.max_component());
-        let place = self.left_places(arrival.direction, 0);
-        let (background, alpha) =
-            self.camera_background(&group, arrival.direction, place, CATCHER_DIMENSION + 1, paths);
+        let is_visible = vertex.active & vertex.direction.y.less(zero) & zero.less(light.max_component());
+        let uv = self.escaped_uv(vertex.direction, 0);
+        let (background, alpha) = self.camera_background(&group, vertex.direction, uv, CATCHER_DIMENSION + 1, paths);
         let [choice, _] = group.pairs(paths, CATCHER_DIMENSION, [Purpose::Catcher, Purpose::Unused]);
-        let share = catcher_reflectance(self.tables, catcher.table, -arrival.direction.y);
-        let is_mirrored = is_there & choice.less(share);
+        let share = catcher_reflectance(self.tables, catcher.table, -vertex.direction.y);
+        let is_mirrored = is_visible & choice.less(share);
         let is_transparent = !zero.less(alpha);
         let white = Vec3::splat(one);
         let shown = Vec3::select(is_transparent, white, background);
@@ -115,61 +117,65 @@ impl<T: Real> Integrator<'_, T> {
             y: one / reflected.y,
             z: one / reflected.z,
         };
-        arrival.throughput = Vec3::select(is_mirrored, arrival.throughput, shown * is_lit * kept);
+        vertex.throughput = Vec3::select(is_mirrored, vertex.throughput, shown * is_lit * kept);
         let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
         let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
-        members.for_each(&mut paths.caught, is_there, |caught, lane| {
-            *caught = if mirrors >> lane & 1 == 1 {
-                Caught::Mirrored {
+        members.for_each(&mut paths.catcher_hits, is_visible, |hit, lane| {
+            *hit = if mirrors >> lane & 1 == 1 {
+                CatcherHit::Mirrored {
                     background: backgrounds.as_ref()[lane],
                     alpha: alphas.as_ref()[lane],
                 }
             } else {
-                Caught::Shadow {
+                CatcherHit::Shadow {
                     is_transparent: gaps >> lane & 1 == 1,
                 }
             };
         });
-        let throughput = arrival.throughput;
-        members.record(&mut paths.found, is_there, |lane| Event::Caught {
+        let throughput = vertex.throughput;
+        members.record(&mut paths.outputs, is_visible, |lane| Event::CatcherHit {
             is_mirrored: mirrors >> lane & 1 == 1,
             background: shown.to_each().as_ref()[lane].to_f32(),
             light: light.to_each().as_ref()[lane].to_f32(),
             throughput: throughput.to_each().as_ref()[lane].to_f32(),
         });
-        // A colour of which no light would reach the place has no shadow.
+        // A colour channel without any light has no shadow: it shows the background.
         let unshadowed = shown * (white - is_lit);
         self.add(
             &members,
-            is_there & !is_mirrored,
+            is_visible & !is_mirrored,
             Source::Background,
             unshadowed,
             0,
-            &mut paths.found,
+            &mut paths.outputs,
         );
-        Passed { is_there, is_mirrored }
+        CatcherMasks {
+            is_visible,
+            is_mirrored,
+        }
     }
 }
 
-impl<S: Scalar> Caught<S> {
-    /// Whether the path's last surface was a shadow catcher that mirrors it.
+impl<S: Scalar> CatcherHit<S> {
+    /// True if the path's last surface was the mirroring catcher.
     #[inline(always)]
     pub(super) fn is_mirrored(&self) -> bool {
         matches!(self, Self::Mirrored { .. })
     }
 
-    /// What the path found, which over a transparent background is a shadow's alpha. A part of the light alone casts none.
-    pub(super) fn result(self, found: PathResult<S>, is_all_light: bool) -> PathResult<S> {
+    /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
+    /// light has no shadow.
+    pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
         match self {
             Self::Shadow { is_transparent: true } => PathResult {
                 alpha: match is_all_light {
-                    true => S::one() - found.radiance.luminance(),
+                    true => S::one() - path.radiance.luminance(),
                     false => S::zero(),
                 },
                 radiance: Vec3::zero(),
-                ..found
+                ..path
             },
-            _ => found,
+            _ => path,
         }
     }
 }

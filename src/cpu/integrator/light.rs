@@ -1,8 +1,9 @@
-//! Light on a path: what it meets by itself, and what is drawn towards.
+//! Light at path vertices: the environment, emission and next-event estimation, combined by multiple importance sampling
+//! (MIS).
 
 use super::group::Group;
-use super::paths::{Paths, Vectors, take};
-use super::{Arrival, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
+use super::paths::{Paths, Vectors, gather};
+use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
@@ -13,105 +14,105 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
 use crate::scene::environment::{
     drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
-    environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide, fetch_place, sample_in_rows,
+    environment_world_from_local, prefetch_cell, prefetch_chosen, prefetch_guide, prefetch_texels, sample_in_rows,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
-    /// Where world directions lie in the environment's map.
+    /// Coordinates of world directions in the environment map.
     #[inline(always)]
-    fn far_places(&self, direction: Vec3<T>) -> [T; 2] {
+    fn world_environment_uv(&self, direction: Vec3<T>) -> [T; 2] {
         environment_uv(environment_local_from_world(direction, self.rotation))
     }
 
-    /// Radiance of the environment at a place in its map.
+    /// Radiance of the environment in the scene at map coordinates, strength included.
     #[inline(always)]
-    fn far_radiance(&self, place: [T; 2]) -> Vec3<T> {
-        environment_radiance_at(self.environment, place) * T::from_f64(self.settings.environment_strength)
+    fn world_environment_radiance(&self, uv: [T; 2]) -> Vec3<T> {
+        environment_radiance_at(self.environment, uv) * T::from_f64(self.settings.environment_strength)
     }
 
-    /// What paths that left the scene see at a place in the environment's map, weighed against light sampling.
+    /// The environment's radiance for escaped paths, times the MIS weight of BSDF sampling.
     #[inline(always)]
-    pub(super) fn far_light<R: Recorder>(
+    pub(super) fn weighted_environment<R: Recorder>(
         &self,
-        ray: &Arrival<T>,
-        place: [T; 2],
+        ray: &PathVertex<T>,
+        uv: [T; 2],
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
-        let radiance = self.far_radiance(place);
+        let radiance = self.world_environment_radiance(uv);
         let mut density = T::zero();
         if self.samples_environment {
-            density = self.environment_probability * environment_density_at(self.distribution, place);
+            density = self.environment_probability * environment_density_at(self.distribution, uv);
         }
-        self.weighed(Source::Environment, radiance, density, ray, paths)
+        self.mis_weighted(Source::Environment, radiance, density, ray, paths)
     }
 
-    /// Where what rays that met nothing see lies in the environment's map; 0 where they do not see the map as it is.
+    /// Environment map coordinates of escaped rays; 0 if they do not show the map unblurred.
     #[inline(always)]
-    pub(super) fn left_places(&self, direction: Vec3<T>, bounce: u32) -> [T; 2] {
+    pub(super) fn escaped_uv(&self, direction: Vec3<T>, bounce: u32) -> [T; 2] {
         if bounce > 0 || self.settings.background == BackgroundKind::Environment {
-            self.far_places(direction)
+            self.world_environment_uv(direction)
         } else {
             [T::zero(); 2]
         }
     }
 
-    /// Finds where paths that met nothing look at the environment's map, and has the processor fetch what they see there.
+    /// Computes where escaped paths look up the environment map, and prefetches its texels.
     #[inline(always)]
-    pub(super) fn locate_left<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
-        let place = self.left_places(group.vector(&paths.state.direction), bounce);
-        fetch_place(self.environment, place);
+    pub(super) fn locate_escaped<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
+        let uv = self.escaped_uv(group.vector(&paths.state.direction), bounce);
+        prefetch_texels(self.environment, uv);
         if bounce > 0 && self.samples_environment {
-            fetch_cell(self.distribution, place);
+            prefetch_cell(self.distribution, uv);
         }
-        set_places(group, &mut paths.place, place);
+        store_uv(group, &mut paths.environment_uv, uv);
     }
 
-    /// Finds where the environment's lights lie that arrive, and has the processor fetch what shines there.
+    /// Computes where unoccluded shadow rays look up the environment map, and prefetches its texels.
     #[inline(always)]
-    pub(super) fn locate_lights<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
-        let place = self.far_places(group.vector(&paths.arriving.direction));
-        fetch_place(self.environment, place);
-        set_places(group, &mut paths.arriving.place, place);
+    pub(super) fn locate_unoccluded<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
+        let uv = self.world_environment_uv(group.vector(&paths.unoccluded_rays.direction));
+        prefetch_texels(self.environment, uv);
+        store_uv(group, &mut paths.unoccluded_rays.environment_uv, uv);
     }
 
-    /// Draws the numbers with which directions to lights are drawn, the first of which chooses whether they lead to the
-    /// environment; and has the processor fetch what they are looked up in.
+    /// Draws the random numbers of light sampling and prefetches the environment cells that they select. The first number
+    /// chooses between environment and emitters.
     #[inline(always)]
-    pub(super) fn light_numbers<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn light_xi<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
         let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
         if self.samples_emitters {
-            let mut is_far = T::Mask::splat(false);
+            let mut is_environment = T::Mask::splat(false);
             if self.samples_environment {
-                (is_far, a) = split(a, self.environment_probability);
+                (is_environment, a) = split(a, self.environment_probability);
             }
-            group.set_truth(&mut paths.lights.is_far, group.mask(), is_far);
+            group.set_flags(&mut paths.shadow_rays.is_environment, group.mask(), is_environment);
         }
-        group.set_vector(&mut paths.light_numbers, group.mask(), vec3(a, b, c));
+        group.set_vector(&mut paths.light_xi, group.mask(), vec3(a, b, c));
         if self.samples_environment {
             let rows = drawn_rows(self.distribution, b);
-            fetch_guide(self.distribution, &rows, a);
+            prefetch_guide(self.distribution, &rows, a);
             group.set_each(&mut paths.light_rows, &rows);
         }
     }
 
-    /// Has the processor fetch what drawing with these numbers looks up next.
+    /// Prefetches what sampling the environment with the drawn numbers looks up next.
     #[inline(always)]
-    pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<T::Scalar, R>) {
-        let numbers = group.own_number(&paths.light_numbers.x);
-        fetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
+    pub(super) fn prefetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<T::Scalar, R>) {
+        let numbers = group.padded_number(&paths.light_xi.x);
+        prefetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
     }
 
-    /// What surfaces emit that paths met, weighed against light sampling.
+    /// Emission of hit surfaces towards the path, times the MIS weight of BSDF sampling.
     #[inline(always)]
     pub(super) fn emitted_light<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let cosine = point.flat_normal().dot(point.surface.wo);
@@ -123,21 +124,21 @@ impl<T: Real> Integrator<'_, T> {
         let density = light_density(
             material.light_luminance,
             cosine,
-            arrival.distance,
+            vertex.distance,
             self.density_per_luminance,
         );
-        self.weighed(Source::Surface, emission, density, arrival, paths)
+        self.mis_weighted(Source::Surface, emission, density, vertex, paths)
     }
 
-    /// The share of light that rays have where they met it by themselves: all of it where light sampling does not draw from
-    /// this source or could not have drawn this direction.
+    /// Radiance times the MIS weight of BSDF sampling. The weight is 1 if light sampling does not sample this source or
+    /// could not have drawn this direction.
     #[inline(always)]
-    fn weighed<R: Recorder>(
+    fn mis_weighted<R: Recorder>(
         &self,
         source: Source,
         radiance: Vec3<T>,
         light_density: T,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let is_sampled = match source {
@@ -148,88 +149,90 @@ impl<T: Real> Integrator<'_, T> {
         let (mut density, mut weight) = (zero, one);
         if is_sampled {
             let is_only_sampled = self.settings.strategy == Strategy::Light;
-            let share = lobe_share(arrival.lobe_density, light_density);
+            let share = mis_weight_lobe(vertex.lobe_density, light_density);
             let share = if is_only_sampled { zero } else { share };
-            weight = T::select(arrival.is_mirror, one, share);
+            weight = T::select(vertex.is_mirror, one, share);
             density = T::select(
-                arrival.is_mirror,
+                vertex.is_mirror,
                 zero,
                 if is_only_sampled { zero } else { light_density },
             );
         }
         if R::KEEPS {
-            arrival
+            vertex
                 .members
-                .record(&mut paths.found, arrival.on & radiance.is_any(), |lane| Event::Found {
-                    source,
-                    radiance: radiance.to_each().as_ref()[lane].to_f32(),
-                    lobe_density: single(arrival.lobe_density.lane(lane)),
-                    light_density: single(density.lane(lane)),
-                    weight: single(weight.lane(lane)),
+                .record(&mut paths.outputs, vertex.active & radiance.is_any(), |lane| {
+                    Event::LightHit {
+                        source,
+                        radiance: radiance.to_each().as_ref()[lane].to_f32(),
+                        lobe_density: single(vertex.lobe_density.lane(lane)),
+                        light_density: single(density.lane(lane)),
+                        weight: single(weight.lane(lane)),
+                    }
                 });
         }
-        // Also of what is not a number nothing is left where nothing counts.
+        // A weight of 0 removes NaN, too.
         Vec3::select(zero.less(weight), radiance * weight, Vec3::zero())
     }
 
-    /// Directions drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
-    /// to arrive.
+    /// Samples a direction per lane from the emitters or the environment. The environment's radiance is left out: it is
+    /// looked up only if the shadow ray is unoccluded.
     #[inline(always)]
-    fn draw_lights<R: Recorder>(
+    fn sample_light_directions<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         group: &Group<T>,
         paths: &Paths<T::Scalar, R>,
     ) -> LightSample<T> {
-        // Beyond the paths, too, numbers must be of the rows that they draw.
-        let numbers = &paths.light_numbers;
+        // Lanes beyond the group, too, need numbers that match their rows.
+        let numbers = &paths.light_xi;
         let xi = vec3(
-            group.own_number(&numbers.x),
-            group.own_number(&numbers.y),
-            group.own_number(&numbers.z),
+            group.padded_number(&numbers.x),
+            group.padded_number(&numbers.y),
+            group.padded_number(&numbers.z),
         );
-        let is_far = self.are_far(group, &paths.lights);
-        let (far, near) = (group.mask() & is_far, group.mask() & !is_far);
-        let mut drawn = LightSample {
+        let is_environment = self.samples_of_environment(group, &paths.shadow_rays);
+        let (of_environment, of_emitters) = (group.mask() & is_environment, group.mask() & !is_environment);
+        let mut sampled = LightSample {
             direction: Vec3::zero(),
             density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
         };
-        if far.any() {
+        if of_environment.any() {
             let rows = group.each(&paths.light_rows);
             let (local, density) = sample_in_rows(self.distribution, &rows, xi);
-            drawn.direction = environment_world_from_local(local, self.rotation);
-            drawn.density = density * self.environment_probability;
+            sampled.direction = environment_world_from_local(local, self.rotation);
+            sampled.density = density * self.environment_probability;
         }
-        if !near.any() {
-            return drawn;
+        if !of_emitters.any() {
+            return sampled;
         }
-        let emitted = self.draw_emitters(point, xi);
+        let emitted = self.sample_emitter_directions(point, xi);
         LightSample {
-            direction: Vec3::select(near, emitted.direction, drawn.direction),
-            density: T::select(near, emitted.density, drawn.density),
-            distance: T::select(near, emitted.distance, drawn.distance),
-            radiance: Vec3::select(near, emitted.radiance, drawn.radiance),
+            direction: Vec3::select(of_emitters, emitted.direction, sampled.direction),
+            density: T::select(of_emitters, emitted.density, sampled.density),
+            distance: T::select(of_emitters, emitted.distance, sampled.distance),
+            radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
         }
     }
 
-    /// True where lights are drawn from the environment; beyond the paths whatever was there.
+    /// Lanes whose light sample is of the environment; arbitrary beyond the group.
     #[inline(always)]
-    fn are_far(&self, group: &Group<T>, lights: &LightRays<T::Scalar>) -> T::Mask {
+    fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays<T::Scalar>) -> T::Mask {
         if self.samples_emitters {
-            group.truth(&lights.is_far)
+            group.flags(&shadow_rays.is_environment)
         } else {
             T::Mask::splat(true)
         }
     }
 
-    /// Directions drawn from the triangles that emit, one lane after the other.
+    /// Samples directions to emitting triangles, lane by lane.
     #[inline(always)]
-    fn draw_emitters(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
+    fn sample_emitter_directions(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
         let emitters = Emitters {
             geometry: self.geometry,
-            materials: &self.of_lane,
+            materials: &self.scalar_materials,
             textures: self.textures,
             lights: self.lights,
             density_per_luminance: self.density_per_luminance.lane(0),
@@ -248,272 +251,296 @@ impl<T: Real> Integrator<'_, T> {
         }
     }
 
-    /// Aims paths at lights: one direction each, drawn towards the environment or what emits, unless nothing can come from
-    /// there. What the material reflects or refracts of it is returned without the weight, where it is told.
+    /// Next-event estimation, first half: samples one light direction per lane, evaluates the material, and leaves a pending
+    /// shadow ray. Lanes that cannot receive light from there get none. If events are recorded, it returns the material's
+    /// value without the MIS weight.
     #[inline(always)]
-    pub(super) fn aim<R: Recorder>(
+    pub(super) fn sample_direct_light<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         layers: &Layers<T>,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
-        let (group, zero) = (arrival.group, T::zero());
-        let drawn = self.draw_lights(point, &group, paths);
-        let wi = drawn.direction;
+        let (group, zero) = (vertex.group, T::zero());
+        let sampled = self.sample_light_directions(point, &group, paths);
+        let wi = sampled.direction;
         let transmits = material.transmits();
         let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;
-        let reaches = arrival.on & zero.less(drawn.density) & is_ahead;
+        let reaches = vertex.active & zero.less(sampled.density) & is_ahead;
         let competing = match self.settings.strategy {
             Strategy::Mis => T::one(),
             _ => zero,
         };
-        let (tables, surface, density) = (self.tables, &point.surface, drawn.density);
+        let (tables, surface, density) = (self.tables, &point.surface, sampled.density);
         let evaluate = |competing| material_evaluate(material, tables, surface, layers, wi, density, competing);
         let mut value = Vec3::zero();
         if reaches.any() {
             value = Vec3::select(reaches, evaluate(competing), value);
         }
-        let mut whole = Vec3::zero();
+        let mut unweighted = Vec3::zero();
         if R::KEEPS {
-            whole = Vec3::select(zero.less(drawn.density), evaluate(zero), whole);
+            unweighted = Vec3::select(zero.less(sampled.density), evaluate(zero), unweighted);
         }
-        let mut radiance = drawn.radiance;
+        let mut radiance = sampled.radiance;
         if self.samples_emitters {
-            radiance = self.kept_from(point, material, [wi, radiance], drawn.distance, arrival, paths);
+            radiance = self.attenuated_emission(point, material, [wi, radiance], sampled.distance, vertex, paths);
         }
         let largest = value.max_component();
-        let is_lit = arrival.on & (zero.less(largest) | largest.is_nan());
+        let is_lit = vertex.active & (zero.less(largest) | largest.is_nan());
         let all = group.mask();
-        let lights = &mut paths.lights;
-        group.set_vector(&mut lights.direction, all, wi);
-        group.set_number(&mut lights.density, all, drawn.density);
-        group.set_number(&mut lights.distance, all, drawn.distance);
-        group.set_vector(&mut lights.origin, all, point.ray_origin(wi, transmits));
-        group.set_vector(&mut lights.value, all, value);
-        group.set_vector(&mut lights.throughput, all, arrival.throughput);
-        group.set_number(&mut lights.visible, all, T::one());
-        group.set_truth(&mut lights.meets_nothing, all, self.meets_nothing(point, wi));
-        group.set_truth(&mut lights.is_aimed, all, is_lit);
+        let shadow_rays = &mut paths.shadow_rays;
+        group.set_vector(&mut shadow_rays.direction, all, wi);
+        group.set_number(&mut shadow_rays.density, all, sampled.density);
+        group.set_number(&mut shadow_rays.distance, all, sampled.distance);
+        group.set_vector(&mut shadow_rays.origin, all, point.ray_origin(wi, transmits));
+        group.set_vector(&mut shadow_rays.value, all, value);
+        group.set_vector(&mut shadow_rays.throughput, all, vertex.throughput);
+        group.set_number(&mut shadow_rays.visibility, all, T::one());
+        group.set_flags(&mut shadow_rays.is_known_miss, all, self.is_known_miss(point, wi));
+        group.set_flags(&mut shadow_rays.is_pending, all, is_lit);
         if self.samples_emitters {
-            group.set_vector(&mut lights.radiance, all, radiance);
+            group.set_vector(&mut shadow_rays.radiance, all, radiance);
         }
         if R::KEEPS {
-            let light = paths.lights.get(0);
-            arrival.members.record(&mut paths.found, arrival.on & !is_lit, |lane| {
-                light.told(whole.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
-            });
+            let light = paths.shadow_rays.get(0);
+            vertex
+                .members
+                .record(&mut paths.outputs, vertex.active & !is_lit, |lane| {
+                    light.event(unweighted.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
+                });
         }
-        whole
+        unweighted
     }
 
-    /// The share of the light that a path is aimed at that is not stopped on its way.
+    /// Visibility along a shadow ray in [0, 1]: 0 is blocked, values between come from holes.
     #[inline(always)]
-    pub(super) fn visible(&self, light: &LightRay<T::Scalar>, rays: &mut u32) -> T::Scalar {
-        if light.meets_nothing {
+    pub(super) fn visibility(&self, light: &ShadowRay<T::Scalar>, rays: &mut u32) -> T::Scalar {
+        if light.is_known_miss {
             return T::Scalar::one();
         }
         self.transmittance(light.origin, light.direction, light.distance, rays)
     }
 
-    /// Adds the light that arrives; `whole` is what [`Integrator::aim`] told of a path that is recorded.
+    /// Next-event estimation, second half: adds the light of unoccluded shadow rays. `unweighted` is what
+    /// [`Integrator::sample_direct_light`] returned for a path that is recorded.
     #[inline(always)]
-    pub(super) fn arrive<R: Recorder>(
+    pub(super) fn add_direct_light<R: Recorder>(
         &self,
         group: &Group<T>,
         bounce: u32,
-        whole: Vec3<T>,
+        unweighted: Vec3<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
-        let lights = &paths.arriving;
-        let members = group.members(&lights.ids);
-        let is_far = self.are_far(group, lights);
+        let shadow_rays = &paths.unoccluded_rays;
+        let members = group.members(&shadow_rays.ids);
+        let is_environment = self.samples_of_environment(group, shadow_rays);
         let mut radiance = Vec3::zero();
-        if is_far.any() {
-            radiance = self.far_radiance([group.number(&lights.place[0]), group.number(&lights.place[1])]);
+        if is_environment.any() {
+            radiance = self.world_environment_radiance([
+                group.number(&shadow_rays.environment_uv[0]),
+                group.number(&shadow_rays.environment_uv[1]),
+            ]);
         }
-        if !is_far.all() {
-            radiance = Vec3::select(is_far, radiance, group.vector(&lights.radiance));
+        if !is_environment.all() {
+            radiance = Vec3::select(is_environment, radiance, group.vector(&shadow_rays.radiance));
         }
-        let share = group.number(&lights.visible) / group.number(&lights.density);
-        let light = group.vector(&lights.throughput) * (group.vector(&lights.value) * radiance * share);
+        let share = group.number(&shadow_rays.visibility) / group.number(&shadow_rays.density);
+        let light = group.vector(&shadow_rays.throughput) * (group.vector(&shadow_rays.value) * radiance * share);
         if R::KEEPS {
-            let ray = lights.get(0);
-            members.record(&mut paths.found, group.mask(), |lane| {
-                let (whole, radiance) = (whole.to_each().as_ref()[lane], radiance.to_each().as_ref()[lane]);
-                ray.told(whole, ray.visible, radiance)
+            let ray = shadow_rays.get(0);
+            members.record(&mut paths.outputs, group.mask(), |lane| {
+                let (unweighted, radiance) = (unweighted.to_each().as_ref()[lane], radiance.to_each().as_ref()[lane]);
+                ray.event(unweighted, ray.visibility, radiance)
             });
         }
-        // Each path has one light; accounts tell which kind it was.
-        let (near, far) = (group.mask() & !is_far, group.mask() & is_far);
-        if near.any() {
-            self.add(&members, near, Source::Surface, light, bounce + 1, &mut paths.found);
+        // A path has one light sample; accounts differ by its source.
+        let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
+        if of_emitters.any() {
+            self.add(
+                &members,
+                of_emitters,
+                Source::Surface,
+                light,
+                bounce + 1,
+                &mut paths.outputs,
+            );
         }
-        self.add(&members, far, Source::Environment, light, bounce + 1, &mut paths.found);
+        self.add(
+            &members,
+            of_environment,
+            Source::Environment,
+            light,
+            bounce + 1,
+            &mut paths.outputs,
+        );
     }
 
-    /// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
+    /// Radiance and alpha of the background for camera rays. `dimension` is the random pair that a blur draws.
     #[inline(always)]
     pub(super) fn camera_background<R: Recorder>(
         &self,
         group: &Group<T>,
         direction: Vec3<T>,
-        place: [T; 2],
+        uv: [T; 2],
         dimension: u32,
         paths: &mut Paths<T::Scalar, R>,
     ) -> (Vec3<T>, T) {
         let BackgroundKind::Blurred(sine) = self.settings.background else {
-            return self.plain_background(place);
+            return self.plain_background(uv);
         };
         let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
         let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
         let height = (T::one() - x * x - y * y).safe_sqrt();
         let around = frame_from_normal(direction);
         let blurred = world_from_local(&around, vec3(x, y, height));
-        (self.far_radiance(self.far_places(blurred)), T::one())
+        (
+            self.world_environment_radiance(self.world_environment_uv(blurred)),
+            T::one(),
+        )
     }
 
-    /// What the camera sees where it meets nothing and nothing is blurred, and its alpha.
+    /// Radiance and alpha of the unblurred background at environment map coordinates.
     #[inline(always)]
-    pub(super) fn plain_background(&self, place: [T; 2]) -> (Vec3<T>, T) {
+    pub(super) fn plain_background(&self, uv: [T; 2]) -> (Vec3<T>, T) {
         match self.settings.background {
-            BackgroundKind::Environment | BackgroundKind::Blurred(_) => (self.far_radiance(place), T::one()),
+            BackgroundKind::Environment | BackgroundKind::Blurred(_) => (self.world_environment_radiance(uv), T::one()),
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         }
     }
 }
 
-/// Notes where paths look at the environment's map.
+/// Stores environment map coordinates.
 #[inline(always)]
-fn set_places<T: Real>(group: &Group<T>, places: &mut [Vec<T::Scalar>; 2], place: [T; 2]) {
-    group.set_number(&mut places[0], group.mask(), place[0]);
-    group.set_number(&mut places[1], group.mask(), place[1]);
+fn store_uv<T: Real>(group: &Group<T>, field: &mut [Vec<T::Scalar>; 2], uv: [T; 2]) {
+    group.set_number(&mut field[0], group.mask(), uv[0]);
+    group.set_number(&mut field[1], group.mask(), uv[1]);
 }
 
-/// Rays towards lights, field by field.
-pub(super) struct LightRays<S> {
-    /// Which paths of the wave they belong to; of those that arrive.
+/// Shadow rays as structure of arrays, by path index.
+pub(super) struct ShadowRays<S> {
+    /// Path ids; only of unoccluded rays.
     ids: Vec<u16>,
-    /// Where they lie in the environment's map; of those that arrive.
-    place: [Vec<S>; 2],
-    /// Whether there is one: elsewhere the other fields hold whatever.
-    pub is_aimed: Vec<bool>,
+    /// Environment map coordinates; only of unoccluded rays.
+    environment_uv: [Vec<S>; 2],
+    /// True if the ray is to be traced; the other fields are arbitrary otherwise.
+    pub is_pending: Vec<bool>,
     /// See [`LightSample`].
     pub direction: Vectors<S>,
     density: Vec<S>,
     pub distance: Vec<S>,
-    /// Of those that are drawn from what emits.
+    /// Of the emitter; unused for the environment.
     radiance: Vectors<S>,
-    /// True where they are drawn from the environment, whose radiance is looked up once it is known to arrive. Nothing else
-    /// is there where no emitters are sampled. Told with the numbers, of all paths that met something.
-    is_far: Vec<bool>,
-    /// What the material reflects or refracts from there, weighed against sampling the lobe.
+    /// True for a sample of the environment, whose radiance is looked up later. Always true if no emitters are sampled. Set
+    /// together with the random numbers, for all hits.
+    is_environment: Vec<bool>,
+    /// The material's value (cosine included) times the MIS weight of light sampling.
     value: Vectors<S>,
-    /// Of the path before the surface.
+    /// Path throughput before the surface.
     throughput: Vectors<S>,
-    /// Where they start.
+    /// Ray origins.
     pub origin: Vectors<S>,
-    /// True where it is proven that nothing lies ahead.
-    pub meets_nothing: Vec<bool>,
-    /// The share of the light that is not stopped on its way.
-    pub visible: Vec<S>,
+    /// True if the ray is known to be unoccluded: no traversal needed.
+    pub is_known_miss: Vec<bool>,
+    /// Share of the light in [0, 1] that passes.
+    pub visibility: Vec<S>,
 }
 
-impl<S: Scalar> LightRays<S> {
-    /// Room for as many.
+impl<S: Scalar> ShadowRays<S> {
+    /// Fields for `count` paths.
     pub fn new(count: usize) -> Self {
         let numbers = || vec![S::zero(); count];
         Self {
             ids: vec![0; count],
-            place: [numbers(), numbers()],
-            is_aimed: vec![false; count],
+            environment_uv: [numbers(), numbers()],
+            is_pending: vec![false; count],
             direction: Vectors::new(count),
             density: numbers(),
             distance: numbers(),
             radiance: Vectors::new(count),
-            is_far: vec![true; count],
+            is_environment: vec![true; count],
             value: Vectors::new(count),
             throughput: Vectors::new(count),
             origin: Vectors::new(count),
-            meets_nothing: vec![false; count],
-            visible: numbers(),
+            is_known_miss: vec![false; count],
+            visibility: numbers(),
         }
     }
 
-    /// One of them.
-    pub fn get(&self, place: usize) -> LightRay<S> {
-        LightRay {
-            origin: self.origin.get(place),
-            direction: self.direction.get(place),
-            distance: self.distance[place],
-            density: self.density[place],
-            value: self.value.get(place),
-            is_far: self.is_far[place],
-            meets_nothing: self.meets_nothing[place],
-            visible: self.visible[place],
+    /// The shadow ray of one path.
+    pub fn get(&self, index: usize) -> ShadowRay<S> {
+        ShadowRay {
+            origin: self.origin.get(index),
+            direction: self.direction.get(index),
+            distance: self.distance[index],
+            density: self.density[index],
+            value: self.value.get(index),
+            is_environment: self.is_environment[index],
+            is_known_miss: self.is_known_miss[index],
+            visibility: self.visibility[index],
         }
     }
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
-    /// Puts what is needed of the rays at these places side by side, as they arrive; `may_be_near` where emitters are sampled,
-    /// too.
-    pub(super) fn take_arriving(&mut self, places: &[u16], may_be_near: bool) {
-        let (to, from) = (&mut self.arriving, &self.lights);
-        take(&mut to.ids, &self.state.ids, places);
-        to.direction.take(&from.direction, places);
-        take(&mut to.density, &from.density, places);
-        if may_be_near {
-            to.radiance.take(&from.radiance, places);
-            take(&mut to.is_far, &from.is_far, places);
+    /// Compacts the fields of unoccluded rays that adding their light needs, in the given order. Emitters' fields are copied
+    /// only if they are sampled.
+    pub(super) fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
+        let (to, from) = (&mut self.unoccluded_rays, &self.shadow_rays);
+        gather(&mut to.ids, &self.state.ids, order);
+        to.direction.gather(&from.direction, order);
+        gather(&mut to.density, &from.density, order);
+        if samples_emitters {
+            to.radiance.gather(&from.radiance, order);
+            gather(&mut to.is_environment, &from.is_environment, order);
         }
-        to.value.take(&from.value, places);
-        to.throughput.take(&from.throughput, places);
-        take(&mut to.visible, &from.visible, places);
+        to.value.gather(&from.value, order);
+        to.throughput.gather(&from.throughput, order);
+        gather(&mut to.visibility, &from.visibility, order);
     }
 }
 
-/// A ray towards a light.
+/// The shadow ray of one path; see [`ShadowRays`] for the fields.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LightRay<S> {
+pub(super) struct ShadowRay<S> {
     origin: Vec3<S>,
     direction: Vec3<S>,
     distance: S,
     density: S,
     value: Vec3<S>,
-    is_far: bool,
-    meets_nothing: bool,
-    visible: S,
+    is_environment: bool,
+    is_known_miss: bool,
+    visibility: S,
 }
 
-impl<S: Scalar> LightRay<S> {
+impl<S: Scalar> ShadowRay<S> {
     fn source(&self) -> Source {
-        if self.is_far {
+        if self.is_environment {
             Source::Environment
         } else {
             Source::Surface
         }
     }
 
-    /// The event of this light: `whole` is its value without the weight.
-    pub fn told(&self, whole: Vec3<S>, visible: S, radiance: Vec3<S>) -> Event {
-        let (whole, kept) = (whole.to_f32(), self.value.to_f32());
+    /// The recorded event of this ray; `unweighted` is its value without the MIS weight.
+    pub fn event(&self, unweighted: Vec3<S>, visibility: S, radiance: Vec3<S>) -> Event {
+        let (unweighted, kept) = (unweighted.to_f32(), self.value.to_f32());
         Event::Light {
             source: self.source(),
             direction: self.direction.to_f32(),
             density: single(self.density),
-            value: whole,
-            weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / whole[i] } else { 0.0 }),
-            visible: single(visible),
+            value: unweighted,
+            weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / unweighted[i] } else { 0.0 }),
+            visible: single(visibility),
             radiance: radiance.to_f32(),
         }
     }
 }
 
-/// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
+/// Balance-heuristic weight of BSDF sampling (Veach 1997).
 #[inline(always)]
-fn lobe_share<T: Real>(lobe_density: T, light_density: T) -> T {
+fn mis_weight_lobe<T: Real>(lobe_density: T, light_density: T) -> T {
     lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
 }

@@ -1,11 +1,12 @@
-//! The solid that a path is in, and what it absorbs. Twin of the functions of that name in `shaders/pass/path_trace.wgsl`.
+//! The medium that a path is in, and its absorption (Beer–Lambert). Twin of the media's functions in
+//! `shaders/pass/path_trace.wgsl`.
 //!
-//! A path remembers the slot of the solid that it entered last, so that a segment is absorbed whatever ends it: the back of
-//! that solid, something opaque or shining inside it, the front of another solid. It remembers one slot: beyond a solid
-//! inside another one it knows of none until it meets the outer one's back.
+//! A path remembers the slot of the medium that it entered last. So each segment is absorbed, no matter what ends it: the
+//! medium's back, an object inside it, or the front of another medium. It remembers one slot only: after leaving a nested
+//! medium it has none until it hits the outer one's back.
 
 use super::paths::Paths;
-use super::{Arrival, Integrator};
+use super::{Integrator, PathVertex};
 use crate::cpu::recorder::{Event, Recorder, single};
 use crate::optics::material::Material;
 use crate::optics::real::{Mask, Real};
@@ -14,95 +15,97 @@ use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
-    /// Multiplies the throughput by what the solid leaves of the light over the segment that ends here. The back of a
-    /// surface that transmits tells the solid by itself.
+    /// Multiplies the throughput by the medium's transmittance over the segment that ends here. At the back of a surface
+    /// that transmits, the medium is that surface's own.
     #[inline(always)]
     pub(super) fn absorb<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        arrival: &mut Arrival<T>,
+        vertex: &mut PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
         if !self.has_absorption {
             return;
         }
         let is_within = point.surface.is_inside & material.transmits();
-        let remembered = self.absorption(&arrival.group.each(&paths.state.media));
+        let remembered = self.absorption(&vertex.group.each(&paths.state.media));
         let absorption = Vec3::select(is_within, material.absorption, remembered);
-        let on = arrival.on & absorption.is_any();
-        if !on.any() {
+        let active = vertex.active & absorption.is_any();
+        if !active.any() {
             return;
         }
-        let kept = kept_over(absorption, arrival.distance);
-        arrival.members.record(&mut paths.found, on, |lane| Event::Absorption {
-            distance: single(arrival.distance.lane(lane)),
-            kept: kept.to_each().as_ref()[lane].to_f32(),
-        });
-        arrival.throughput = Vec3::select(on, arrival.throughput * kept, arrival.throughput);
+        let kept = transmittance_over(absorption, vertex.distance);
+        vertex
+            .members
+            .record(&mut paths.outputs, active, |lane| Event::Absorption {
+                distance: single(vertex.distance.lane(lane)),
+                kept: kept.to_each().as_ref()[lane].to_f32(),
+            });
+        vertex.throughput = Vec3::select(active, vertex.throughput * kept, vertex.throughput);
     }
 
-    /// Notes the solids that paths are in which go on from a surface in a direction.
+    /// Updates the media of paths that continue in direction `wi`.
     #[inline(always)]
-    pub(super) fn enter<R: Recorder>(
+    pub(super) fn update_media<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         wi: Vec3<T>,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
         if self.has_absorption {
-            let media = media_towards(point, material, wi, arrival, paths);
-            arrival.group.set_each(&mut paths.state.media, &media);
+            let media = media_towards(point, material, wi, vertex, paths);
+            vertex.group.set_each(&mut paths.state.media, &media);
         }
     }
 
-    /// What is left of the light of an emitter at a distance, in a direction from a surface.
+    /// An emitter's radiance after absorption over a distance, in direction `wi` from a surface.
     #[inline(always)]
-    pub(super) fn kept_from<R: Recorder>(
+    pub(super) fn attenuated_emission<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         [wi, radiance]: [Vec3<T>; 2],
         distance: T,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         if !self.has_absorption {
             return radiance;
         }
-        let absorption = self.absorption(&media_towards(point, material, wi, arrival, paths));
+        let absorption = self.absorption(&media_towards(point, material, wi, vertex, paths));
         if !absorption.is_any().any() {
             return radiance;
         }
-        radiance * kept_over(absorption, distance)
+        radiance * transmittance_over(absorption, distance)
     }
 
-    /// The absorption of the solids of these slots; 0 where there is none.
+    /// Absorption coefficients of media by slot, per unit of length; 0 without a medium.
     #[inline(always)]
     fn absorption(&self, media: &T::Each<u32>) -> Vec3<T> {
         Vec3::from_lanes(
             #[inline(always)]
             |lane| {
-                let medium = self.of_lane.get(media.as_ref()[lane] as usize);
+                let medium = self.scalar_materials.get(media.as_ref()[lane] as usize);
                 medium.map_or(Vec3::zero(), |material| material.absorption)
             },
         )
     }
 }
 
-/// The slots of the solids that paths are in which leave a surface towards `wi`.
+/// Slots of the media that paths enter in direction `wi`.
 #[inline(always)]
 fn media_towards<T: Real, R: Recorder>(
     point: &SurfacePoint<T>,
     material: &Material<T>,
     wi: Vec3<T>,
-    arrival: &Arrival<T>,
+    vertex: &PathVertex<T>,
     paths: &Paths<T::Scalar, R>,
 ) -> T::Each<u32> {
-    let media = arrival.group.each(&paths.state.media);
-    let transmits = arrival.on & material.transmits();
+    let media = vertex.group.each(&paths.state.media);
+    let transmits = vertex.active & material.transmits();
     if !transmits.any() {
         return media;
     }
@@ -120,9 +123,9 @@ fn media_towards<T: Real, R: Recorder>(
     )
 }
 
-/// What is left of light over a distance.
+/// Beer–Lambert transmittance over a distance, per channel.
 #[inline(always)]
-fn kept_over<T: Real>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
+fn transmittance_over<T: Real>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
     let thickness = absorption * distance;
     Vec3 {
         x: (-thickness.x).exp(),

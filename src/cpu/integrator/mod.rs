@@ -1,5 +1,5 @@
-//! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the numbers that it shades with, of which
-//! there may be many in lanes.
+//! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over its number type, which may be a vector of
+//! SIMD lanes.
 
 mod camera;
 mod catcher;
@@ -31,48 +31,48 @@ use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
-use catcher::Caught;
+use catcher::CatcherHit;
 use group::{Group, Members};
-use paths::{Beginning, Found, Look, Paths};
+use paths::{GuideRecord, PathOutput, Paths, StartOptions};
 pub(in crate::cpu) use results::Results;
 pub use wave::WAVE_SAMPLES;
-pub(in crate::cpu) use wave::{NEAR, Tile, Wave};
+pub(in crate::cpu) use wave::{BLOCK_PIXELS, Tile, Wave};
 
-/// Pairs of numbers before the first bounce: pixel, lens.
+/// Random pairs before the first bounce: pixel and lens.
 pub const FIRST_DIMENSION: u32 = 2;
-/// Pairs of numbers a bounce: lobe twice, light twice.
+/// Random pairs per bounce: two for the lobe, two for light sampling and Russian roulette.
 pub const BOUNCE_DIMENSIONS: u32 = 4;
-/// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+/// First dimension of the directions below the specular lobe, two pairs per bounce: beyond the dimensions of every path.
 pub const BELOW_DIMENSION: u32 = 4096;
-/// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
+/// First dimension of the opacity tests, one pair per bounce.
 pub const OPACITY_DIMENSION: u32 = 8192;
-/// Surfaces that a ray may go straight on through.
+/// Transparent hits per ray at most. Beyond them a path's ray counts as a miss, and a shadow ray as blocked.
 pub const PASSES_MAX: u32 = 256;
-/// Bounces before Russian roulette.
+/// Number of bounces without Russian roulette.
 pub const ROULETTE_START: u32 = 3;
-/// Beyond it the square would overflow f32: dropped and counted.
+/// Largest radiance per channel that is kept. Its square would overflow f32; larger samples are dropped and counted.
 pub const RADIANCE_MAX: f64 = 1e18;
 
-/// What one path found.
+/// Result of one path.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PathResult<T> {
     /// Linear RGB.
     pub radiance: Vec3<T>,
-    /// 1 where the path met something that is not transparent background.
+    /// Coverage in [0, 1]: 0 if the camera ray saw transparent background.
     pub alpha: T,
-    /// Rays traced.
+    /// Rays traced, shadow rays included.
     pub rays: u32,
-    /// Luminance that limiting fireflies took.
+    /// Luminance that the firefly clamp removed.
     pub clamped: T,
-    /// What it saw first, where it is one of those that tell.
-    pub seen: GuideSums,
+    /// First-hit guides (albedo, normal, depth); zero for samples from [`GUIDE_SAMPLES`] on.
+    pub guides: GuideSums,
 }
 
-/// A job with its numbers in the precision of the shading.
+/// A job's scene and settings, converted to the precision of shading.
 pub(in crate::cpu) struct Integrator<'a, T: Real> {
     geometry: &'a Geometry,
     environment: &'a Environment,
-    /// What directions to the environment's light are drawn with.
+    /// Distribution from which light sampling draws environment directions.
     distribution: &'a Distribution,
     tables: &'a [f32],
     textures: &'a Textures,
@@ -81,8 +81,8 @@ pub(in crate::cpu) struct Integrator<'a, T: Real> {
     has_transmission: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
-    /// The materials for one lane.
-    of_lane: Vec<Material<T::Scalar>>,
+    /// The same materials for a single lane.
+    scalar_materials: Vec<Material<T::Scalar>>,
     camera: Camera<T>,
     rotation: [T; 2],
     lights: &'a Lights,
@@ -91,34 +91,34 @@ pub(in crate::cpu) struct Integrator<'a, T: Real> {
     samples_environment: bool,
     samples_emitters: bool,
     is_interreflecting: bool,
-    /// Samples of a pixel that tell what they see first.
+    /// Samples per pixel that record first-hit guides.
     guide_samples: u32,
-    /// Where fireflies are limited.
+    /// Largest component of an indirect contribution; `None` without a limit.
     firefly_clamp: Option<T>,
 }
 
-/// Paths of a group that have met surfaces, and how they got there.
+/// Path vertices of a group: where its rays ended, on a surface or outside the scene, and how they got there.
 #[derive(Clone, Copy)]
-struct Arrival<T: Real> {
+struct PathVertex<T: Real> {
     group: Group<T>,
     members: Members<T>,
     bounce: u32,
-    /// Which of them it is about.
-    on: T::Mask,
-    /// What light from their rays' other ends is multiplied by.
+    /// Active lanes.
+    active: T::Mask,
+    /// Path throughput: weight of the light that arrives along the rays.
     throughput: Vec3<T>,
-    /// Of their rays.
+    /// Unit directions of the rays.
     direction: Vec3<T>,
     lobe_density: T,
     is_mirror: T::Mask,
-    /// From their rays' origins.
+    /// Distances from the rays' origins, in the geometry's units.
     distance: T,
-    /// True where a shadow catcher mirrors them, all of them.
-    is_caught_mirrored: bool,
+    /// True if the shadow catcher mirrors all active lanes.
+    is_catcher_mirror: bool,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
-    /// Reads the job.
+    /// The integrator of a job.
     pub fn new(job: &'a Job) -> Self {
         let samples_light = job.settings.strategy != Strategy::Lobe;
         let choice = job.settings.light_choice;
@@ -133,7 +133,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             has_transmission: job.plan.has(EffectId::Transmission),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
-            of_lane: job.materials.iter().map(Material::cast).collect(),
+            scalar_materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
             rotation: job.settings.environment_rotation.map(T::from_f64),
             lights: &job.lights,
@@ -158,19 +158,19 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// Which numbers paths draw.
+    /// The random sequence from which paths draw.
     pub fn sequence(&self) -> Sequence {
         self.settings.sequence
     }
 
-    /// Whether directions to lights are drawn at all.
+    /// Whether light is sampled (next-event estimation).
     fn samples_light(&self) -> bool {
         self.samples_environment || self.samples_emitters
     }
 
-    /// What is noted of paths besides what they find.
-    fn beginning(&self) -> Beginning {
-        Beginning {
+    /// The state that paths need beyond their rays.
+    fn start_options(&self) -> StartOptions {
+        StartOptions {
             guide_samples: self.guide_samples,
             has_catcher: self.settings.catcher.is_some(),
             counts_rough: self.settings.roulette_floor < 1.0,
@@ -180,54 +180,56 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// What a path of a wave found that has come to its end.
+    /// Result of a path by its id; the path has ended.
     fn result<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, number: usize) -> PathResult<T::Scalar> {
         paths.result(number, self.settings.least_reflections == 0)
     }
 
-    /// The surfaces that paths met, all of one slot.
+    /// Surface points of a group's hits, all of one material slot.
     #[inline(always)]
     fn surfaces<R: Recorder>(
         &self,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         slot: u32,
         paths: &mut Paths<T::Scalar, R>,
     ) -> SurfacePoint<T> {
-        let hits: Hits<T> = arrival.group.each(&paths.state.hits);
-        let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
-        let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
-        // Behind a surface that transmits, light goes on from the triangle itself.
+        let hits: Hits<T> = vertex.group.each(&paths.state.hits);
+        let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
+        let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, vertex.direction);
+        // Surfaces that transmit stay flat: refracted light starts on the triangle itself.
         if self.settings.rounds_surfaces && !materials.1.least_metallic().transmits().any() {
             point.round(self.geometry, &hits);
         }
-        arrival.members.record(&mut paths.found, arrival.on, |lane| Event::Hit {
-            bounce: arrival.bounce,
-            triangle: hits.as_ref()[lane].triangle,
-            slot,
-            distance: single(arrival.distance.lane(lane)),
-            position: point.position.to_each().as_ref()[lane].to_f32(),
-            normal: point.surface.normal.to_each().as_ref()[lane].to_f32(),
-            shading_normal: point.surface.frame.normal.to_each().as_ref()[lane].to_f32(),
-            is_inside: point.surface.is_inside.to_bits() >> lane & 1 == 1,
-        });
+        vertex
+            .members
+            .record(&mut paths.outputs, vertex.active, |lane| Event::Hit {
+                bounce: vertex.bounce,
+                triangle: hits.as_ref()[lane].triangle,
+                slot,
+                distance: single(vertex.distance.lane(lane)),
+                position: point.position.to_each().as_ref()[lane].to_f32(),
+                normal: point.surface.normal.to_each().as_ref()[lane].to_f32(),
+                shading_normal: point.surface.frame.normal.to_each().as_ref()[lane].to_f32(),
+                is_inside: point.surface.is_inside.to_bits() >> lane & 1 == 1,
+            });
         point
     }
 
-    /// Where it is proven that nothing lies ahead: outside a convex body.
+    /// Lanes whose continuation is known to miss: outside a convex body, in a scene without interreflection.
     #[inline(always)]
-    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
+    fn is_known_miss(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
         let is_outside = !point.surface.is_inside & T::zero().less(point.flat_normal().dot(wi));
         T::Mask::splat(!self.is_interreflecting) & is_outside
     }
 
-    /// The material of paths that have met surfaces, with what its textures say there.
+    /// The material at path vertices, with its textures evaluated.
     #[inline(always)]
-    fn material(&self, point: &SurfacePoint<T>, arrival: &Arrival<T>) -> Cow<'_, Material<T>> {
+    fn material(&self, point: &SurfacePoint<T>, vertex: &PathVertex<T>) -> Cow<'_, Material<T>> {
         let slot = match self.settings.catcher {
-            Some(catcher) if arrival.is_caught_mirrored => catcher.reflection_slot,
+            Some(catcher) if vertex.is_catcher_mirror => catcher.reflection_slot,
             _ => point.slot,
         };
-        let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
+        let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
         if materials.1.is_varied() {
             let (textures, tables) = (self.textures, self.tables);
             Cow::Owned(T::out_of_line(
@@ -239,156 +241,172 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// What paths find at the surfaces that stopped them, by themselves; false where they end there.
+    /// Shades path vertices but for scattering: absorbs along the segment, records guides, adds emission. Returns false if
+    /// the paths end here, because their bounces are used up.
     #[inline(always)]
-    fn meet<R: Recorder>(
+    fn shade_hit<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         layers: &Layers<T>,
-        arrival: &mut Arrival<T>,
+        vertex: &mut PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> bool {
-        self.absorb(point, material, arrival, paths);
-        self.look(point, material, layers, arrival, paths);
+        self.absorb(point, material, vertex, paths);
+        self.record_guides(point, material, layers, vertex, paths);
         if material.emission.is_any().any() {
-            let found = arrival.throughput * self.emitted_light(point, material, arrival, paths);
+            let contribution = vertex.throughput * self.emitted_light(point, material, vertex, paths);
             self.add(
-                &arrival.members,
-                arrival.on,
+                &vertex.members,
+                vertex.active,
                 Source::Surface,
-                found,
-                arrival.bounce,
-                &mut paths.found,
+                contribution,
+                vertex.bounce,
+                &mut paths.outputs,
             );
         }
-        let goes_on = arrival.bounce < self.settings.bounces;
-        if !goes_on {
+        let is_active = vertex.bounce < self.settings.bounces;
+        if !is_active {
             if self.has_transmission {
-                let cut = arrival.throughput.luminance().to_each();
-                let lanes = std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| arrival.on.to_bits() >> lane & 1 == 1);
+                let cut = vertex.throughput.luminance().to_each();
+                let lanes =
+                    std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| vertex.active.to_bits() >> lane & 1 == 1);
                 paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
             }
             let nowhere = T::Mask::splat(false);
-            arrival.group.set_truth(&mut paths.goes_on, arrival.on, nowhere);
-            arrival
+            vertex.group.set_flags(&mut paths.is_active, vertex.active, nowhere);
+            vertex
                 .members
-                .record(&mut paths.found, arrival.on, |_| Event::Ended { why: End::Bounces });
+                .record(&mut paths.outputs, vertex.active, |_| Event::Ended {
+                    why: End::Bounces,
+                });
         }
-        goes_on
+        is_active
     }
 
-    /// Notes what is seen here: at the first surface, and behind mirrors and clear glass.
+    /// Records first-hit guides: at the first surface, then behind mirrors and clear glass.
     #[inline(always)]
-    fn look<R: Recorder>(
+    fn record_guides<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         layers: &Layers<T>,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
-        let members = arrival.members;
-        if paths.looks.is_empty() {
+        let members = vertex.members;
+        if paths.guides.is_empty() {
             return;
         }
-        let is_looking = arrival.on & members.truths(&paths.looks, |look| look.goes_on);
-        if !is_looking.any() {
+        let is_recorded = vertex.active & members.flags(&paths.guides, |record| record.is_active);
+        if !is_recorded.any() {
             return;
         }
-        let albedo = arrival.throughput * material_albedo(material, &point.surface, layers);
-        let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
+        let albedo = vertex.throughput * material_albedo(material, &point.surface, layers);
+        let depth = vertex.distance * vertex.direction.dot(self.camera.forward);
         let normal = material_normal(material, self.tables, &point.surface, layers);
         let (albedos, normals) = (albedo.to_each(), normal.to_each());
         let depths = depth.to_each();
-        members.for_each(&mut paths.looks, is_looking, |Look { seen, .. }, lane| {
-            seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
-            seen.normal = normals.as_ref()[lane].to_f32();
-            if arrival.bounce == 0 {
-                seen.hits = 1.0;
-                seen.depth = single(depths.as_ref()[lane]);
+        members.for_each(&mut paths.guides, is_recorded, |GuideRecord { guides, .. }, lane| {
+            guides.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
+            guides.normal = normals.as_ref()[lane].to_f32();
+            if vertex.bounce == 0 {
+                guides.hits = 1.0;
+                guides.depth = single(depths.as_ref()[lane]);
             }
         });
     }
 
-    /// The end of paths that met nothing, and see these places in the environment's map.
+    /// Ends escaped paths: adds the background to camera rays and the environment to others. `uv` is where they look up the
+    /// environment map.
     #[inline(always)]
-    fn leave<R: Recorder>(&self, arrival: &Arrival<T>, place: [T; 2], paths: &mut Paths<T::Scalar, R>) {
-        let Arrival {
+    fn escape<R: Recorder>(&self, vertex: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<T::Scalar, R>) {
+        let PathVertex {
             group,
             members,
             bounce,
-            on,
+            active,
             ..
-        } = *arrival;
+        } = *vertex;
         if bounce == 0 {
-            // The numbers of the first bounce, which there is none of.
-            let (radiance, alpha) = self.camera_background(&group, arrival.direction, place, FIRST_DIMENSION, paths);
-            self.add(&members, on, Source::Background, radiance, 0, &mut paths.found);
+            // The dimensions of the first bounce are free, because there is none.
+            let (radiance, alpha) = self.camera_background(&group, vertex.direction, uv, FIRST_DIMENSION, paths);
+            self.add(&members, active, Source::Background, radiance, 0, &mut paths.outputs);
             let alphas = alpha.to_each();
-            members.for_each(&mut paths.found, on, |path, lane| path.alpha = alphas.as_ref()[lane]);
+            members.for_each(&mut paths.outputs, active, |path, lane| {
+                path.alpha = alphas.as_ref()[lane]
+            });
         } else {
             let is_caught = match self.settings.catcher {
-                Some(_) => on & members.truths(&paths.caught, Caught::is_mirrored),
+                Some(_) => active & members.flags(&paths.catcher_hits, CatcherHit::is_mirrored),
                 None => T::Mask::splat(false),
             };
             if is_caught.any() {
-                self.leave_catcher(&members, is_caught, bounce, paths);
+                self.escape_mirrored(&members, is_caught, bounce, paths);
             }
-            let ray = Arrival {
-                on: on & !is_caught,
-                ..*arrival
+            let ray = PathVertex {
+                active: active & !is_caught,
+                ..*vertex
             };
-            if ray.on.any() {
-                let found = arrival.throughput * self.far_light(&ray, place, paths);
-                self.add(&members, ray.on, Source::Environment, found, bounce, &mut paths.found);
+            if ray.active.any() {
+                let contribution = vertex.throughput * self.weighted_environment(&ray, uv, paths);
+                self.add(
+                    &members,
+                    ray.active,
+                    Source::Environment,
+                    contribution,
+                    bounce,
+                    &mut paths.outputs,
+                );
             }
         }
-        group.set_truth(&mut paths.goes_on, on, T::Mask::splat(false));
-        members.record(&mut paths.found, on, |_| Event::Ended { why: End::Left });
+        group.set_flags(&mut paths.is_active, active, T::Mask::splat(false));
+        members.record(&mut paths.outputs, active, |_| Event::Ended { why: End::Escaped });
     }
 
-    /// The same of paths that a shadow catcher mirrors: they see the background.
+    /// Ends escaped paths that the shadow catcher mirrors: they show the camera's background.
     #[inline(always)]
-    fn leave_catcher<R: Recorder>(
+    fn escape_mirrored<R: Recorder>(
         &self,
         members: &Members<T>,
-        on: T::Mask,
+        active: T::Mask,
         bounce: u32,
         paths: &mut Paths<T::Scalar, R>,
     ) {
-        let Paths { found, caught, .. } = paths;
-        let background = Vec3::from_lanes(|lane| match *members.of(caught, lane) {
-            Caught::Mirrored { background, .. } => background,
+        let Paths {
+            outputs, catcher_hits, ..
+        } = paths;
+        let background = Vec3::from_lanes(|lane| match *members.of(catcher_hits, lane) {
+            CatcherHit::Mirrored { background, .. } => background,
             _ => Vec3::zero(),
         });
-        self.add(members, on, Source::Background, background, bounce, found);
-        members.for_each(found, on, |path, lane| {
-            if let Caught::Mirrored { alpha, .. } = *members.of(caught, lane) {
+        self.add(members, active, Source::Background, background, bounce, outputs);
+        members.for_each(outputs, active, |path, lane| {
+            if let CatcherHit::Mirrored { alpha, .. } = *members.of(catcher_hits, lane) {
                 path.alpha = alpha;
             }
         });
     }
 
-    /// Adds light that was reflected so many times, no more than firefly limiting allows.
+    /// Adds a contribution after `reflections` bounces of the light, limited by the firefly clamp.
     #[inline(always)]
     fn add<R: Recorder>(
         &self,
         members: &Members<T>,
-        on: T::Mask,
+        active: T::Mask,
         source: Source,
         light: Vec3<T>,
         reflections: u32,
-        found: &mut [Found<T::Scalar, R>],
+        outputs: &mut [PathOutput<T::Scalar, R>],
     ) {
-        let [added, taken] = self.limited(light, reflections);
+        let [added, clamped] = self.clamp_fireflies(light, reflections);
         let radiances = added.to_each();
-        members.for_each(found, on, |path, lane| path.radiance += radiances.as_ref()[lane]);
+        members.for_each(outputs, active, |path, lane| path.radiance += radiances.as_ref()[lane]);
         if self.firefly_clamp.is_some() {
-            let taken = taken.luminance().to_each();
-            members.for_each(found, on, |path, lane| path.clamped += taken.as_ref()[lane]);
+            let clamped = clamped.luminance().to_each();
+            members.for_each(outputs, active, |path, lane| path.clamped += clamped.as_ref()[lane]);
         }
-        members.record(found, on & light.is_any(), |lane| Event::Contribution {
+        members.record(outputs, active & light.is_any(), |lane| Event::Contribution {
             source,
             reflections,
             found: light.to_each().as_ref()[lane].to_f32(),
@@ -396,9 +414,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         });
     }
 
-    /// What contributions that were reflected so many times add, and what is beyond the limit.
+    /// A contribution's kept part and the part that the firefly clamp removes. Both are zero below `least_reflections`.
     #[inline(always)]
-    fn limited(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
+    fn clamp_fireflies(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
         let nothing = Vec3::zero();
         if reflections < self.settings.least_reflections {
             return [nothing, nothing];
@@ -417,7 +435,7 @@ impl<'a, T: Real> Integrator<'a, T> {
 }
 
 impl<S: Scalar> Integrator<'_, S> {
-    /// One path through a pixel, its events told to a recorder.
+    /// Traces one path through a pixel and reports its events to a recorder.
     pub(in crate::cpu) fn record_path<R: Recorder>(
         &self,
         pixel: [u32; 2],
@@ -428,66 +446,67 @@ impl<S: Scalar> Integrator<'_, S> {
         let mut paths = Paths::new(1, S::LANES, settings.sequence);
         paths.add(pixel, &[[0, 0]], sample);
         paths.set_counters(settings.seed);
-        paths.start([recorder], &self.beginning());
-        self.first_rays(&Group::ALONE, &mut paths);
+        paths.start([recorder], &self.start_options());
+        self.camera_rays(&Group::ALONE, &mut paths);
         for bounce in 0.. {
-            let is_stopped = self.stop(bounce, 0, &mut paths);
-            let arrival = Arrival::new(Group::ALONE, bounce, &paths);
-            if !is_stopped {
-                self.leave(&arrival, self.left_places(arrival.direction, bounce), &mut paths);
+            let is_hit = self.intersect(bounce, 0, &mut paths);
+            let vertex = PathVertex::new(Group::ALONE, bounce, &paths);
+            if !is_hit {
+                self.escape(&vertex, self.escaped_uv(vertex.direction, bounce), &mut paths);
                 break;
             }
-            self.bounce_alone(arrival, &mut paths);
-            if !paths.goes_on[0] {
+            self.shade_alone(vertex, &mut paths);
+            if !paths.is_active[0] {
                 break;
             }
         }
         self.result(&paths, 0)
     }
 
-    /// What a path does at the surface that stopped it.
-    fn bounce_alone<R: Recorder>(&self, mut arrival: Arrival<S>, paths: &mut Paths<S, R>) {
-        let (group, bounce) = (arrival.group, arrival.bounce);
+    /// Shades a single path at its hit.
+    fn shade_alone<R: Recorder>(&self, mut vertex: PathVertex<S>, paths: &mut Paths<S, R>) {
+        let (group, bounce) = (vertex.group, vertex.bounce);
         let slot = self.geometry.slot(paths.state.hits[0].triangle as usize);
-        let point = self.surfaces(&arrival, slot, paths);
-        let passed = self.pass_catcher(&point, &mut arrival, paths);
-        if !passed.is_there {
-            self.leave(&arrival, self.left_places(arrival.direction, bounce), paths);
+        let point = self.surfaces(&vertex, slot, paths);
+        let catcher = self.apply_catcher(&point, &mut vertex, paths);
+        if !catcher.is_visible {
+            self.escape(&vertex, self.escaped_uv(vertex.direction, bounce), paths);
             return;
         }
-        arrival.is_caught_mirrored = passed.is_mirrored;
-        let material = &*self.material(&point, &arrival);
+        vertex.is_catcher_mirror = catcher.is_mirrored;
+        let material = &*self.material(&point, &vertex);
         let layers = &material_layers(material, self.tables, &point.surface);
-        if !self.meet(&point, material, layers, &mut arrival, paths) {
+        if !self.shade_hit(&point, material, layers, &mut vertex, paths) {
             return;
         }
-        if self.samples_light() && !arrival.is_caught_mirrored {
-            self.light_numbers(&group, bounce, paths);
-            paths.lights.is_aimed[0] = false;
-            let whole = self.aim(&point, material, layers, &arrival, paths);
-            if paths.lights.is_aimed[0] {
-                self.arrive_alone(whole, bounce, paths);
+        if self.samples_light() && !vertex.is_catcher_mirror {
+            self.light_xi(&group, bounce, paths);
+            paths.shadow_rays.is_pending[0] = false;
+            let unweighted = self.sample_direct_light(&point, material, layers, &vertex, paths);
+            if paths.shadow_rays.is_pending[0] {
+                self.add_direct_light_alone(unweighted, bounce, paths);
             }
         }
-        self.scatter(&point, material, layers, &arrival, paths);
+        self.scatter(&point, material, layers, &vertex, paths);
     }
 
-    /// Adds the light that a path is aimed at, if it arrives; `whole` is what [`Integrator::aim`] told.
-    fn arrive_alone<R: Recorder>(&self, whole: Vec3<S>, bounce: u32, paths: &mut Paths<S, R>) {
-        let light = paths.lights.get(0);
-        let visible = self.visible(&light, &mut paths.found[0].rays);
-        paths.lights.visible[0] = visible;
-        if visible > S::zero() {
-            paths.take_arriving(&[0], true);
-            self.locate_lights(&Group::ALONE, paths);
-            self.arrive(&Group::ALONE, bounce, whole, paths);
+    /// Traces the pending shadow ray of a single path and adds its light. `unweighted` is the result of
+    /// [`Integrator::sample_direct_light`].
+    fn add_direct_light_alone<R: Recorder>(&self, unweighted: Vec3<S>, bounce: u32, paths: &mut Paths<S, R>) {
+        let light = paths.shadow_rays.get(0);
+        let visibility = self.visibility(&light, &mut paths.outputs[0].rays);
+        paths.shadow_rays.visibility[0] = visibility;
+        if visibility > S::zero() {
+            paths.gather_unoccluded(&[0], true);
+            self.locate_unoccluded(&Group::ALONE, paths);
+            self.add_direct_light(&Group::ALONE, bounce, unweighted, paths);
         } else {
-            paths.found[0].record(|| light.told(whole, visible, Vec3::zero()));
+            paths.outputs[0].record(|| light.event(unweighted, visibility, Vec3::zero()));
         }
     }
 }
 
-/// Finite and not negative: what may be added to the picture.
+/// True for a finite, non-negative colour of at most [`RADIANCE_MAX`]: only such samples enter the film.
 #[inline(always)]
 pub fn is_sound<S: Scalar>(color: Vec3<S>) -> bool {
     let is_within = |x: S| (0.0..=RADIANCE_MAX).contains(&x.to_f64());

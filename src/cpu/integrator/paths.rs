@@ -1,14 +1,14 @@
-//! The paths of a wave, field by field: what is done with as many of them as there are lanes takes whole vectors out of
-//! memory and puts whole vectors back.
+//! The paths of a wave as structure of arrays: groups of lanes load and store whole vectors.
 //!
-//! What a path needs to go on lies in [`State`], in an order that changes from bounce to bounce, so that paths which are
-//! shaded together lie side by side. What it has found lies in [`Found`], by its number in the wave.
+//! [`State`] holds what a path needs to continue. Its order changes from bounce to bounce, so that paths which are shaded
+//! together are adjacent; a position in it is an *index*. [`PathOutput`] holds what a path accumulates, by its *id*: its
+//! fixed number in the wave.
 
 use std::mem::swap;
 
 use super::PathResult;
-use super::catcher::Caught;
-use super::light::LightRays;
+use super::catcher::CatcherHit;
+use super::light::ShadowRays;
 use crate::cpu::recorder::{Event, Recorder};
 use crate::job::guides::GuideSums;
 use crate::optics::random::{RandomState, Sequence, path_state};
@@ -16,7 +16,7 @@ use crate::optics::real::Scalar;
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::Hit;
 
-/// Three numbers of each path.
+/// A vector per path, axis by axis.
 pub(super) struct Vectors<S> {
     pub x: Vec<S>,
     pub y: Vec<S>,
@@ -24,7 +24,7 @@ pub(super) struct Vectors<S> {
 }
 
 impl<S: Scalar> Vectors<S> {
-    /// All zero.
+    /// Zero vectors.
     pub fn new(count: usize) -> Self {
         Self {
             x: vec![S::zero(); count],
@@ -33,16 +33,14 @@ impl<S: Scalar> Vectors<S> {
         }
     }
 
-    /// Those of one path.
     #[inline(always)]
-    pub fn get(&self, place: usize) -> Vec3<S> {
-        vec3(self.x[place], self.y[place], self.z[place])
+    pub fn get(&self, index: usize) -> Vec3<S> {
+        vec3(self.x[index], self.y[index], self.z[index])
     }
 
-    /// Sets those of one path.
     #[inline(always)]
-    pub fn set(&mut self, place: usize, value: Vec3<S>) {
-        (self.x[place], self.y[place], self.z[place]) = (value.x, value.y, value.z);
+    pub fn set(&mut self, index: usize, value: Vec3<S>) {
+        (self.x[index], self.y[index], self.z[index]) = (value.x, value.y, value.z);
     }
 
     pub fn fill(&mut self, value: S) {
@@ -51,45 +49,45 @@ impl<S: Scalar> Vectors<S> {
         self.z.fill(value);
     }
 
-    /// Takes those of other paths, in this order.
+    /// Gathers vectors from `from` by index.
     #[inline(always)]
-    pub fn take(&mut self, from: &Self, order: &[u16]) {
-        take(&mut self.x, &from.x, order);
-        take(&mut self.y, &from.y, order);
-        take(&mut self.z, &from.z, order);
+    pub fn gather(&mut self, from: &Self, order: &[u16]) {
+        gather(&mut self.x, &from.x, order);
+        gather(&mut self.y, &from.y, order);
+        gather(&mut self.z, &from.z, order);
     }
 }
 
-/// Takes what other paths have of something, in this order.
+/// Gathers elements of `from` by index: `field[i] = from[order[i]]`.
 #[inline(always)]
-pub(super) fn take<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
-    for (to, &place) in field.iter_mut().zip(order) {
-        *to = from[usize::from(place)];
+pub(super) fn gather<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
+    for (to, &index) in field.iter_mut().zip(order) {
+        *to = from[usize::from(index)];
     }
 }
 
-/// What paths need to go on.
+/// What paths need to continue, by index.
 pub(super) struct State<S> {
-    /// Which paths of the wave they are.
+    /// Path ids.
     pub ids: Vec<u16>,
-    /// The counters from which they draw their numbers, see [`RandomState`].
+    /// Keys of the random sequences, see [`RandomState`].
     pub keys: Vec<u32>,
     pub samples: Vec<u32>,
-    /// What light from the rays' other ends is multiplied by.
+    /// Path throughput: weight of the light that arrives along the ray.
     pub throughput: Vectors<S>,
-    /// Of the rays: unit vectors.
+    /// Unit directions of the rays.
     pub direction: Vectors<S>,
-    /// The density of the direction, for what competes with light sampling.
+    /// Density of the direction per steradian, for the MIS weight.
     pub lobe_density: Vec<S>,
-    /// True where light sampling could not have drawn the direction.
+    /// True if light sampling could not have drawn the direction (a specular bounce or a camera ray).
     pub is_mirror: Vec<bool>,
-    /// Bounces that were not a mirror's or clear glass's; empty where nothing is refracted.
+    /// Bounces that were not specular; empty if nothing refracts.
     pub rough_bounces: Vec<u32>,
-    /// What the rays met.
+    /// The rays' hits.
     pub hits: Vec<Hit>,
-    /// How far from the rays' origins: farther than in `hits` where they went through surfaces before.
+    /// Distances of the hits from the rays' origins. More than in `hits` if the ray passed transparent surfaces.
     pub distance: Vec<S>,
-    /// The slots of the solids that they are in; empty where none absorbs.
+    /// Slots of the media that the paths are in; empty if none absorbs.
     pub media: Vec<u32>,
 }
 
@@ -110,29 +108,29 @@ impl<S: Scalar> State<S> {
         }
     }
 
-    fn take(&mut self, from: &Self, order: &[u16]) {
-        take(&mut self.ids, &from.ids, order);
-        take(&mut self.keys, &from.keys, order);
-        take(&mut self.samples, &from.samples, order);
-        self.throughput.take(&from.throughput, order);
-        self.direction.take(&from.direction, order);
-        take(&mut self.lobe_density, &from.lobe_density, order);
-        take(&mut self.is_mirror, &from.is_mirror, order);
-        take(&mut self.rough_bounces, &from.rough_bounces, order);
-        take(&mut self.hits, &from.hits, order);
-        take(&mut self.distance, &from.distance, order);
-        take(&mut self.media, &from.media, order);
+    fn gather(&mut self, from: &Self, order: &[u16]) {
+        gather(&mut self.ids, &from.ids, order);
+        gather(&mut self.keys, &from.keys, order);
+        gather(&mut self.samples, &from.samples, order);
+        self.throughput.gather(&from.throughput, order);
+        self.direction.gather(&from.direction, order);
+        gather(&mut self.lobe_density, &from.lobe_density, order);
+        gather(&mut self.is_mirror, &from.is_mirror, order);
+        gather(&mut self.rough_bounces, &from.rough_bounces, order);
+        gather(&mut self.hits, &from.hits, order);
+        gather(&mut self.distance, &from.distance, order);
+        gather(&mut self.media, &from.media, order);
     }
 }
 
-/// What is noted of paths besides what they find.
-pub(super) struct Beginning {
-    /// How many samples of a pixel tell what they see.
+/// Which optional state the paths of a wave have.
+pub(super) struct StartOptions {
+    /// Samples per pixel that record first-hit guides.
     pub guide_samples: u32,
     pub has_catcher: bool,
-    /// Whether bounces are counted that are not a mirror's.
+    /// Whether non-specular bounces are counted.
     pub counts_rough: bool,
-    /// The solid around the camera; `None` where no solid absorbs.
+    /// Slot of the medium around the camera; `None` if no medium absorbs.
     pub medium: Option<u32>,
 }
 
@@ -140,82 +138,82 @@ pub(super) struct Beginning {
 pub(super) struct Paths<S, R> {
     pub sequence: Sequence,
     pub state: State<S>,
-    /// Where `state` is put in another order.
-    other: State<S>,
-    /// Where rays start.
+    /// Target of [`Paths::reorder`], which then swaps it with `state`.
+    scratch: State<S>,
+    /// Ray origins.
     pub origin: Vectors<S>,
-    /// True where it is proven that nothing lies ahead.
-    pub leaves: Vec<bool>,
-    /// True until they have come to their end.
-    pub goes_on: Vec<bool>,
-    /// Where they look at the environment's map.
-    pub place: [Vec<S>; 2],
-    /// The numbers that draw their light.
-    pub light_numbers: Vectors<S>,
-    /// The rows of the environment's cells that those draw.
+    /// True if the ray is known to miss: no traversal needed.
+    pub is_known_miss: Vec<bool>,
+    /// True until the path ends.
+    pub is_active: Vec<bool>,
+    /// Environment map coordinates of escaped rays.
+    pub environment_uv: [Vec<S>; 2],
+    /// Random numbers of light sampling, each in [0, 1).
+    pub light_xi: Vectors<S>,
+    /// Rows of environment cells that `light_xi` selects.
     pub light_rows: Vec<u32>,
-    /// The rays to lights, of paths that are aimed at one.
-    pub lights: LightRays<S>,
-    /// Those that arrive, side by side.
-    pub arriving: LightRays<S>,
-    /// How many there are.
+    /// Shadow rays, by index.
+    pub shadow_rays: ShadowRays<S>,
+    /// The unoccluded shadow rays, compacted.
+    pub unoccluded_rays: ShadowRays<S>,
+    /// Number of paths.
     count: usize,
-    /// Pixels and numbers of the samples in them, by the paths' numbers in the wave.
+    /// Pixel coordinates (x, y), by path id; `samples` are sample numbers.
     pub pixels: [Vec<u32>; 2],
     pub samples: Vec<u32>,
-    /// What they have found, by their numbers in the wave.
-    pub found: Vec<Found<S, R>>,
-    /// What they see first, by their numbers in the wave; empty where none of them tells.
-    pub looks: Vec<Look>,
-    /// What a shadow catcher has made of them, by their numbers in the wave; empty where there is none.
-    pub caught: Vec<Caught<S>>,
-    /// Sum of the luminances of the throughputs of paths that ended at their last bounce.
+    /// Accumulated results, by path id.
+    pub outputs: Vec<PathOutput<S, R>>,
+    /// First-hit guides by path id; empty if no path records them.
+    pub guides: Vec<GuideRecord>,
+    /// Shadow-catcher hits by path id; empty without a catcher.
+    pub catcher_hits: Vec<CatcherHit<S>>,
+    /// Sum over paths of the throughput's luminance where the bounce limit ended them.
     pub cut: f64,
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
-    /// Room for paths, of which as many go on side by side as there are lanes.
+    /// Fields for `count` paths that are processed in groups of `lanes`.
     pub fn new(count: usize, lanes: usize, sequence: Sequence) -> Self {
-        // The last group may reach beyond them.
+        // The last group loads past the last path.
         let count = count + lanes;
         Self {
             sequence,
             state: State::new(count),
-            other: State::new(count),
+            scratch: State::new(count),
             origin: Vectors::new(count),
-            leaves: vec![false; count],
-            goes_on: vec![false; count],
-            place: [vec![S::zero(); count], vec![S::zero(); count]],
-            light_numbers: Vectors::new(count),
+            is_known_miss: vec![false; count],
+            is_active: vec![false; count],
+            environment_uv: [vec![S::zero(); count], vec![S::zero(); count]],
+            light_xi: Vectors::new(count),
             light_rows: vec![0; count],
-            lights: LightRays::new(count),
-            arriving: LightRays::new(count),
+            shadow_rays: ShadowRays::new(count),
+            unoccluded_rays: ShadowRays::new(count),
             count: 0,
             pixels: [vec![0; count], vec![0; count]],
             samples: vec![0; count],
-            found: Vec::with_capacity(count),
-            looks: Vec::new(),
-            caught: Vec::new(),
+            outputs: Vec::with_capacity(count),
+            guides: Vec::new(),
+            catcher_hits: Vec::new(),
             cut: 0.0,
         }
     }
 
-    /// Forgets all paths.
+    /// Removes all paths.
     pub fn clear(&mut self) {
         self.count = 0;
-        self.found.clear();
-        self.looks.clear();
-        self.caught.clear();
+        self.outputs.clear();
+        self.guides.clear();
+        self.catcher_hits.clear();
         self.cut = 0.0;
     }
 
-    /// How many paths the wave has.
+    /// Number of paths in the wave.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Adds a sample of each of these pixels, from a corner on: paths before their first rays, of which
-    /// [`Paths::set_counters`] and [`Paths::start`] make the rest.
+    /// Adds one sample of each pixel, offset by `corner`. [`Paths::set_counters`] and [`Paths::start`] complete the new
+    /// paths.
     #[inline(always)]
     pub fn add(&mut self, corner: [u32; 2], pixels: &[[u32; 2]], sample: u32) {
         let added = self.count..self.count + pixels.len();
@@ -228,7 +226,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         self.samples[added].fill(sample);
     }
 
-    /// Sets the counters from which paths draw their numbers. Written so that compilers turn it into lanes.
+    /// Initialises the random states. Written so that compilers vectorise it.
     #[inline(always)]
     pub fn set_counters(&mut self, seed: u32) {
         let state = &mut self.state;
@@ -241,118 +239,121 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         }
     }
 
-    /// Has the paths that were added start from the camera, having found nothing: one recorder for each.
-    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, beginning: &Beginning) {
-        let guide_samples = beginning.guide_samples;
+    /// Initialises the added paths for their camera rays, with one recorder each.
+    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, start_options: &StartOptions) {
+        let guide_samples = start_options.guide_samples;
         self.state.throughput.fill(S::one());
         self.state.lobe_density.fill(S::zero());
         self.state.is_mirror.fill(true);
-        self.leaves.fill(false);
-        self.goes_on.fill(true);
-        self.found
-            .extend(recorders.into_iter().take(self.count).map(Found::new));
+        self.is_known_miss.fill(false);
+        self.is_active.fill(true);
+        self.outputs
+            .extend(recorders.into_iter().take(self.count).map(PathOutput::new));
         let samples = &self.samples[..self.count];
         if samples.iter().any(|sample| *sample < guide_samples) {
-            self.looks
-                .extend(samples.iter().map(|sample| Look::new(*sample < guide_samples)));
+            self.guides
+                .extend(samples.iter().map(|sample| GuideRecord::new(*sample < guide_samples)));
         }
-        if beginning.has_catcher {
-            self.caught.resize(self.count, Caught::Not);
+        if start_options.has_catcher {
+            self.catcher_hits.resize(self.count, CatcherHit::Miss);
         }
-        if beginning.counts_rough {
-            for state in [&mut self.state, &mut self.other] {
+        if start_options.counts_rough {
+            for state in [&mut self.state, &mut self.scratch] {
                 state.rough_bounces.clear();
                 state.rough_bounces.resize(state.ids.len(), 0);
             }
         }
-        if let Some(medium) = beginning.medium {
-            for state in [&mut self.state, &mut self.other] {
+        if let Some(medium) = start_options.medium {
+            for state in [&mut self.state, &mut self.scratch] {
                 state.media.clear();
                 state.media.resize(state.ids.len(), medium);
             }
         }
     }
 
-    /// Puts these paths first, in this order, and forgets the others.
-    pub fn arrange(&mut self, order: &[u16]) {
+    /// Reorders the state: index i becomes the path of index `order[i]`. Drops all others.
+    pub fn reorder(&mut self, order: &[u16]) {
         if !order.iter().copied().eq(0..order.len() as u16) {
-            self.other.take(&self.state, order);
-            swap(&mut self.state, &mut self.other);
+            self.scratch.gather(&self.state, order);
+            swap(&mut self.state, &mut self.scratch);
         }
     }
 
-    /// The counters of a path.
+    /// Random state of a path, by index.
     #[inline(always)]
-    pub fn random_state(&self, place: usize) -> RandomState {
+    pub fn random_state(&self, index: usize) -> RandomState {
         RandomState {
-            key: self.state.keys[place],
-            sample: self.state.samples[place],
+            key: self.state.keys[index],
+            sample: self.state.samples[index],
             sequence: self.sequence,
         }
     }
 
-    /// What a path found, by its number in the wave, of all light or of a part.
+    /// Result of a path by id; `is_all_light` is false if only a part of the light is rendered.
     pub fn result(&self, number: usize, is_all_light: bool) -> PathResult<S> {
-        let found = &self.found[number];
+        let output = &self.outputs[number];
         let result = PathResult {
-            radiance: found.radiance,
-            alpha: found.alpha,
-            rays: found.rays,
-            clamped: found.clamped,
-            seen: self.looks.get(number).map_or_else(GuideSums::default, |look| look.seen),
+            radiance: output.radiance,
+            alpha: output.alpha,
+            rays: output.rays,
+            clamped: output.clamped,
+            guides: self
+                .guides
+                .get(number)
+                .map_or_else(GuideSums::default, |record| record.guides),
         };
-        let caught = self.caught.get(number).copied().unwrap_or_default();
-        caught.result(result, is_all_light)
+        let catcher_hit = self.catcher_hits.get(number).copied().unwrap_or_default();
+        catcher_hit.result(result, is_all_light)
     }
 
-    /// What the path at a place has found.
+    /// Accumulated result of the path at an index.
     #[inline(always)]
-    pub fn found_at(&mut self, place: usize) -> &mut Found<S, R> {
-        &mut self.found[usize::from(self.state.ids[place])]
+    pub fn output_at(&mut self, index: usize) -> &mut PathOutput<S, R> {
+        &mut self.outputs[usize::from(self.state.ids[index])]
     }
 
-    /// Notes what a ray was found to meet; false where that is nothing.
+    /// Stores a ray's hit and counts the ray. Returns false for a miss.
     #[inline(always)]
-    pub fn note(&mut self, place: usize, hit: Option<Hit>) -> bool {
-        self.found_at(place).rays += 1;
+    pub fn record_hit(&mut self, index: usize, hit: Option<Hit>) -> bool {
+        self.output_at(index).rays += 1;
         if let Some(hit) = hit {
-            self.state.hits[place] = hit;
-            self.state.distance[place] = S::from_f64(f64::from(hit.t));
+            self.state.hits[index] = hit;
+            self.state.distance[index] = S::from_f64(f64::from(hit.t));
         }
         hit.is_some()
     }
 }
 
-/// What a path has found.
-pub(super) struct Found<S, R> {
+/// Accumulated result of a path.
+pub(super) struct PathOutput<S, R> {
     pub radiance: Vec3<S>,
-    /// Luminance that limiting fireflies took.
+    /// Luminance that the firefly clamp removed.
     pub clamped: S,
-    /// 1 where it met something that is not transparent background.
+    /// Coverage in [0, 1].
     pub alpha: S,
-    /// Rays traced.
+    /// Rays traced, shadow rays included.
     pub rays: u32,
     recorder: R,
 }
 
-/// What a path sees first.
-pub(super) struct Look {
-    /// True while the path is one of those that tell, and has met nothing but mirrors and clear glass.
-    pub goes_on: bool,
-    pub seen: GuideSums,
+/// First-hit guides of a path.
+pub(super) struct GuideRecord {
+    /// True while the path still records: it has met only mirrors and clear glass.
+    pub is_active: bool,
+    pub guides: GuideSums,
 }
 
-impl Look {
-    fn new(goes_on: bool) -> Self {
+impl GuideRecord {
+    fn new(is_active: bool) -> Self {
         Self {
-            goes_on,
-            seen: GuideSums::default(),
+            is_active,
+            guides: GuideSums::default(),
         }
     }
 }
 
-impl<S: Scalar, R: Recorder> Found<S, R> {
-    /// Nothing.
+impl<S: Scalar, R: Recorder> PathOutput<S, R> {
+    /// An empty result.
     #[inline(always)]
     pub fn new(recorder: R) -> Self {
         Self {
@@ -364,7 +365,6 @@ impl<S: Scalar, R: Recorder> Found<S, R> {
         }
     }
 
-    /// Tells of an event.
     #[inline(always)]
     pub fn record(&mut self, event: impl FnOnce() -> Event) {
         self.recorder.record(event);

@@ -1,4 +1,4 @@
-//! What the rays of a path meet. Twin of `shaders/scene/visibility.wgsl`.
+//! Rays of a path: camera rays, intersection and transmittance.
 
 use super::group::Group;
 use super::paths::Paths;
@@ -11,9 +11,9 @@ use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::surface::{hit_opacity, passed_origin};
 
 impl<T: Real> Integrator<'_, T> {
-    /// The paths' first rays.
+    /// Generates the camera rays.
     #[inline(always)]
-    pub(super) fn first_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn camera_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
         let has_lens = T::zero().less(self.camera.lens_radius).any();
         let for_pixel = group.pairs(paths, PIXEL_DIMENSION, [Purpose::Pixel; 2]);
         let for_lens = if has_lens {
@@ -22,18 +22,19 @@ impl<T: Real> Integrator<'_, T> {
             [T::zero(); 2]
         };
         let [x, y] = &paths.pixels;
-        let pixel = [group.whole_number(x), group.whole_number(y)];
+        let pixel = [group.integer(x), group.integer(y)];
         let [origin, direction] = pixel_ray(&self.camera, pixel, self.settings.image_size, [for_pixel, for_lens]);
         group.set_vector(&mut paths.origin, group.mask(), origin);
         group.set_vector(&mut paths.state.direction, group.mask(), direction);
         let members = group.members(&paths.state.ids);
-        members.record(&mut paths.found, group.mask(), |lane| Event::Camera {
+        members.record(&mut paths.outputs, group.mask(), |lane| Event::Camera {
             origin: origin.to_each().as_ref()[lane].to_f32(),
             direction: direction.to_each().as_ref()[lane].to_f32(),
         });
     }
 
-    /// The share of light that reaches the origin of a ray from so far.
+    /// Share of light in [0, 1] that passes along a ray of length `distance`: the product of (1 − opacity) of the surfaces
+    /// on it.
     pub(super) fn transmittance(
         &self,
         mut origin: Vec3<T::Scalar>,
@@ -48,38 +49,38 @@ impl<T: Real> Integrator<'_, T> {
             let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
             return if is_occluded { zero } else { one };
         }
-        let (mut share, mut left) = (one, distance);
+        let (mut transmittance, mut remaining) = (one, distance);
         for _ in 0..PASSES_MAX {
             *rays += 1;
-            let far = left.to_f64() as f32;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), far) else {
-                return share;
+            let t_max = remaining.to_f64() as f32;
+            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), t_max) else {
+                return transmittance;
             };
-            share = share * (one - hit_opacity(self.geometry, &self.of_lane, self.textures, &hit));
-            if share <= zero {
+            transmittance =
+                transmittance * (one - hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit));
+            if transmittance <= zero {
                 break;
             }
-            left = left - T::Scalar::from_f64(f64::from(hit.t));
+            remaining = remaining - T::Scalar::from_f64(f64::from(hit.t));
             origin = passed_origin(self.geometry, &hit, direction);
         }
         zero
     }
 
-    /// Follows the ray of the path at a place to the surface that stops it, through those that do not; false where there is
-    /// none.
+    /// Intersects the ray of the path at `index`, passing surfaces at random by their opacity. Returns false for a miss.
     #[inline(always)]
-    pub(super) fn stop<R: Recorder>(&self, bounce: u32, place: usize, paths: &mut Paths<T::Scalar, R>) -> bool {
-        if paths.leaves[place] {
+    pub(super) fn intersect<R: Recorder>(&self, bounce: u32, index: usize, paths: &mut Paths<T::Scalar, R>) -> bool {
+        if paths.is_known_miss[index] {
             return false;
         }
-        let (mut origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
+        let (mut origin, direction) = (paths.origin.get(index), paths.state.direction.get(index));
         if !self.has_holes {
             let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
-            return paths.note(place, hit);
+            return paths.record_hit(index, hit);
         }
         let dimension = OPACITY_DIMENSION + bounce;
-        let [mut xi, _]: [T::Scalar; 2] = random_pair(paths.random_state(place), dimension);
-        paths.found_at(place).record(|| Event::Number {
+        let [mut xi, _]: [T::Scalar; 2] = random_pair(paths.random_state(index), dimension);
+        paths.output_at(index).record(|| Event::Number {
             dimension,
             half: 0,
             value: single(xi),
@@ -88,17 +89,17 @@ impl<T: Real> Integrator<'_, T> {
         let mut distance = T::Scalar::zero();
         for _ in 0..PASSES_MAX {
             let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
-            if !paths.note(place, hit) {
+            if !paths.record_hit(index, hit) {
                 return false;
             }
-            let hit = paths.state.hits[place];
+            let hit = paths.state.hits[index];
             distance += T::Scalar::from_f64(f64::from(hit.t));
-            paths.state.distance[place] = distance;
-            let opacity = hit_opacity(self.geometry, &self.of_lane, self.textures, &hit);
+            paths.state.distance[index] = distance;
+            let opacity = hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit);
             if xi < opacity {
                 return true;
             }
-            paths.found_at(place).record(|| Event::Passed {
+            paths.output_at(index).record(|| Event::Passed {
                 slot: self.geometry.slot(hit.triangle as usize),
                 distance: hit.t,
                 opacity: single(opacity),

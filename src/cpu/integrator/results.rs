@@ -1,4 +1,4 @@
-//! What the paths of a wave have found in the end, field by field.
+//! Results of a wave's paths as structure of arrays.
 
 use super::PathResult;
 use super::group::Group;
@@ -7,48 +7,48 @@ use crate::job::guides::GuideSums;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::Vec3;
 
-/// What paths have found, by their numbers in the wave. Behind the last there is room for as many as there are lanes.
+/// Results by path id. The fields have room for one more group of lanes.
 pub struct Results<S> {
     count: usize,
-    /// See [`Results::have_more`].
-    has_more: bool,
-    /// Sum of the luminances of the throughputs of paths that ended at their last bounce.
+    /// See [`Results::has_extras`].
+    has_extras: bool,
+    /// Sum over paths of the throughput's luminance where the bounce limit ended them.
     pub cut: f64,
     radiance: Vectors<S>,
     alpha: Vec<S>,
     clamped: Vec<S>,
     rays: Vec<u32>,
-    /// Empty where no path tells what it sees.
-    seen: Vec<GuideSums>,
+    /// First-hit guides; empty if no path records them.
+    guides: Vec<GuideSums>,
 }
 
 impl<S: Scalar> Results<S> {
-    /// Room for those of as many paths.
+    /// Fields for `count` paths.
     pub(super) fn new(count: usize) -> Self {
         Self {
             count: 0,
-            has_more: false,
+            has_extras: false,
             cut: 0.0,
             radiance: Vectors::new(count),
             alpha: vec![S::zero(); count],
             clamped: vec![S::zero(); count],
             rays: vec![0; count],
-            seen: Vec::with_capacity(count),
+            guides: Vec::with_capacity(count),
         }
     }
 
-    /// What one path has found.
+    /// The result of one path.
     pub fn get(&self, path: usize) -> PathResult<S> {
         PathResult {
             radiance: self.radiance.get(path),
             alpha: self.alpha[path],
             rays: self.rays[path],
             clamped: self.clamped[path],
-            seen: self.seen.get(path).copied().unwrap_or_default(),
+            guides: self.guides.get(path).copied().unwrap_or_default(),
         }
     }
 
-    /// The radiances of `N` paths from one on, channel by channel; of less where there are no more, then whatever.
+    /// Radiances of `N` consecutive paths, channel by channel; arbitrary beyond the last path.
     #[inline(always)]
     pub fn radiances<const N: usize>(&self, first: usize) -> [[f64; N]; 3] {
         let mut radiances = [[0.0; N]; 3];
@@ -61,37 +61,37 @@ impl<S: Scalar> Results<S> {
         radiances
     }
 
-    /// Rays traced by all paths.
+    /// Number of rays traced by all paths.
     pub fn rays(&self) -> u64 {
         self.rays[..self.count].iter().copied().map(u64::from).sum()
     }
 
-    /// Whether any path may have found more than radiance and alpha, as fireflies are limited or paths tell what they see.
-    pub fn have_more(&self) -> bool {
-        self.has_more
+    /// Whether results have more than radiance and alpha: clamped luminance or guides.
+    pub fn has_extras(&self) -> bool {
+        self.has_extras
     }
 
-    /// Forgets all, and has as many paths take their place whose first rays have been traced.
-    pub(super) fn start(&mut self, count: usize, has_more: bool) {
-        (self.count, self.has_more, self.cut) = (count, has_more, 0.0);
-        self.seen.clear();
+    /// Starts over with `count` paths, each counting its camera ray.
+    pub(super) fn start(&mut self, count: usize, has_extras: bool) {
+        (self.count, self.has_extras, self.cut) = (count, has_extras, 0.0);
+        self.guides.clear();
         self.rays[..count].fill(1);
     }
 
-    /// Puts in what all paths have found.
+    /// Stores the results of all paths.
     pub(super) fn fill(&mut self, results: impl Iterator<Item = PathResult<S>>) {
         for (path, result) in results.enumerate() {
             self.radiance.set(path, result.radiance);
             self.alpha[path] = result.alpha;
             self.clamped[path] = result.clamped;
             self.rays[path] = result.rays;
-            if self.has_more {
-                self.seen.push(result.seen);
+            if self.has_extras {
+                self.guides.push(result.guides);
             }
         }
     }
 
-    /// Sets what paths have found that lie side by side.
+    /// Stores the results of a group of consecutive paths.
     #[inline(always)]
     pub(super) fn set<T: Real<Scalar = S>>(&mut self, group: &Group<T>, radiance: Vec3<T>, alpha: T, clamped: T) {
         let mask = group.mask();

@@ -1,8 +1,8 @@
-//! How paths go on from a surface.
+//! Scattering at a path vertex: BSDF sampling and Russian roulette.
 
 use super::group::Group;
 use super::paths::Paths;
-use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
+use super::{BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex, ROULETTE_START};
 use crate::cpu::recorder::{End, Event, LayerChance, Purpose, Recorder, single};
 use crate::job::Strategy;
 use crate::optics::layer::{
@@ -14,65 +14,68 @@ use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
-    /// Gives paths the rays on which they go on, or ends them.
+    /// Samples the next direction of each path, or ends it.
     #[inline(always)]
     pub(super) fn scatter<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
         layers: &Layers<T>,
-        arrival: &Arrival<T>,
+        vertex: &PathVertex<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
-        let group = arrival.group;
-        let numbers = material_numbers(material, arrival, paths);
-        let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
-        let mut drawn = material_sample(material, self.tables, &point.surface, layers, numbers, wants_density);
-        let mut leaves = self.meets_nothing(point, drawn.wi);
-        if !paths.looks.is_empty() {
-            let mirrors = drawn.is_mirror.to_bits();
-            arrival.members.for_each(&mut paths.looks, arrival.on, |look, lane| {
-                look.goes_on &= mirrors >> lane & 1 == 1;
-            });
+        let group = vertex.group;
+        let numbers = material_numbers(material, vertex, paths);
+        let needs_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
+        let mut sampled = material_sample(material, self.tables, &point.surface, layers, numbers, needs_density);
+        let mut known_miss = self.is_known_miss(point, sampled.wi);
+        if !paths.guides.is_empty() {
+            let mirrors = sampled.is_mirror.to_bits();
+            vertex
+                .members
+                .for_each(&mut paths.guides, vertex.active, |record, lane| {
+                    record.is_active &= mirrors >> lane & 1 == 1;
+                });
         }
-        if arrival.is_caught_mirrored {
-            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
-            leaves = leaves | !T::zero().less(drawn.throughput.max_component());
-            drawn.throughput = Vec3::splat(T::one());
-            drawn.is_mirror = T::Mask::splat(true);
+        if vertex.is_catcher_mirror {
+            // The mirrored ray keeps its full weight, also the light that facets would block. Its light must not compete
+            // with light sampling, which the catcher does not do.
+            known_miss = known_miss | !T::zero().less(sampled.throughput.max_component());
+            sampled.throughput = Vec3::splat(T::one());
+            sampled.is_mirror = T::Mask::splat(true);
         }
-        let mut throughput = arrival.throughput * drawn.throughput;
-        record_scattered(layers, arrival, &drawn, throughput, paths);
-        let goes_on = survive(arrival, &mut throughput, self.settings.roulette_floor, paths);
-        self.count_rough(arrival, &drawn, paths);
-        let origin = point.ray_origin(drawn.wi, material.transmits());
-        self.enter(point, material, drawn.wi, arrival, paths);
-        let on = arrival.on;
-        group.set_truth(&mut paths.goes_on, on, goes_on);
-        group.set_vector(&mut paths.state.throughput, on, throughput);
-        group.set_vector(&mut paths.origin, on, origin);
-        group.set_vector(&mut paths.state.direction, on, drawn.wi);
-        group.set_number(&mut paths.state.lobe_density, on, drawn.density);
-        group.set_truth(&mut paths.state.is_mirror, on, drawn.is_mirror);
-        group.set_truth(&mut paths.leaves, on, leaves);
+        let mut throughput = vertex.throughput * sampled.throughput;
+        record_scattered(layers, vertex, &sampled, throughput, paths);
+        let is_active = russian_roulette(vertex, &mut throughput, self.settings.roulette_floor, paths);
+        self.count_rough(vertex, &sampled, paths);
+        let origin = point.ray_origin(sampled.wi, material.transmits());
+        self.update_media(point, material, sampled.wi, vertex, paths);
+        let active = vertex.active;
+        group.set_flags(&mut paths.is_active, active, is_active);
+        group.set_vector(&mut paths.state.throughput, active, throughput);
+        group.set_vector(&mut paths.origin, active, origin);
+        group.set_vector(&mut paths.state.direction, active, sampled.wi);
+        group.set_number(&mut paths.state.lobe_density, active, sampled.density);
+        group.set_flags(&mut paths.state.is_mirror, active, sampled.is_mirror);
+        group.set_flags(&mut paths.is_known_miss, active, known_miss);
     }
 
-    /// Counts bounces that are not a mirror's or clear glass's.
+    /// Counts non-specular bounces.
     #[inline(always)]
     fn count_rough<R: Recorder>(
         &self,
-        arrival: &Arrival<T>,
-        drawn: &MaterialSample<T>,
+        vertex: &PathVertex<T>,
+        sampled: &MaterialSample<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) {
         if self.settings.roulette_floor < 1.0 {
-            let counts = arrival.group.each(&paths.state.rough_bounces);
-            let rough = (arrival.on & !drawn.is_mirror).to_bits();
+            let counts = vertex.group.each(&paths.state.rough_bounces);
+            let rough = (vertex.active & !sampled.is_mirror).to_bits();
             let counts = T::each(
                 #[inline(always)]
                 |lane| counts.as_ref()[lane] + (rough >> lane & 1),
             );
-            arrival.group.set_each(&mut paths.state.rough_bounces, &counts);
+            vertex.group.set_each(&mut paths.state.rough_bounces, &counts);
         }
     }
 }
@@ -80,8 +83,8 @@ impl<T: Real> Integrator<'_, T> {
 #[inline(always)]
 fn record_scattered<T: Real, R: Recorder>(
     layers: &Layers<T>,
-    arrival: &Arrival<T>,
-    drawn: &MaterialSample<T>,
+    vertex: &PathVertex<T>,
+    sampled: &MaterialSample<T>,
     throughput: Vec3<T>,
     paths: &mut Paths<T::Scalar, R>,
 ) {
@@ -95,29 +98,29 @@ fn record_scattered<T: Real, R: Recorder>(
         }
     };
     let probabilities = layers.probabilities();
-    arrival
+    vertex
         .members
-        .record(&mut paths.found, arrival.on, |lane| Event::Scattered {
-            layer: drawn.layer,
+        .record(&mut paths.outputs, vertex.active, |lane| Event::Scattered {
+            layer: sampled.layer,
             probabilities: Layer::ALL.iter().zip(probabilities).map(probability(lane)).collect(),
-            direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
-            factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
-            density: single(drawn.density.lane(lane)),
-            is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
+            direction: sampled.wi.to_each().as_ref()[lane].to_f32(),
+            factor: sampled.throughput.to_each().as_ref()[lane].to_f32(),
+            density: single(sampled.density.lane(lane)),
+            is_mirror: sampled.is_mirror.to_bits() >> lane & 1 == 1,
             throughput: throughput.to_each().as_ref()[lane].to_f32(),
         });
 }
 
-/// The numbers with which a material's directions are drawn.
+/// Random numbers of material sampling.
 #[inline(always)]
 fn material_numbers<T: Real, R: Recorder>(
     material: &Material<T>,
-    arrival: &Arrival<T>,
+    vertex: &PathVertex<T>,
     paths: &mut Paths<T::Scalar, R>,
 ) -> MaterialNumbers<T> {
-    let Arrival { group, bounce, .. } = *arrival;
+    let PathVertex { group, bounce, .. } = *vertex;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-    // Elsewhere the number that draws the direction chooses the layer.
+    // Other materials reuse the direction's number to choose the layer.
     let facet = if decides_by_facet(material).any() {
         Purpose::Layer
     } else {
@@ -136,25 +139,27 @@ fn material_numbers<T: Real, R: Recorder>(
     MaterialNumbers { lobe, facet, below }
 }
 
-/// Where paths go on: Russian roulette, its survivors made up for by their throughput.
+/// Paths that survive Russian roulette; their throughput is divided by the survival probability.
 #[inline(always)]
-fn survive<T: Real, R: Recorder>(
-    arrival: &Arrival<T>,
+fn russian_roulette<T: Real, R: Recorder>(
+    vertex: &PathVertex<T>,
     throughput: &mut Vec3<T>,
     floor: f64,
     paths: &mut Paths<T::Scalar, R>,
 ) -> T::Mask {
-    let Arrival {
+    let PathVertex {
         group,
         members,
         bounce,
-        on,
+        active,
         ..
-    } = *arrival;
+    } = *vertex;
     let strength = throughput.max_component();
-    // Also ends paths that are NaN.
+    // Ends NaN paths, too.
     let is_left = T::zero().less(strength);
-    members.record(&mut paths.found, on & !is_left, |_| Event::Ended { why: End::Absorbed });
+    members.record(&mut paths.outputs, active & !is_left, |_| Event::Ended {
+        why: End::Absorbed,
+    });
     if bounce < ROULETTE_START {
         return is_left;
     }
@@ -169,26 +174,26 @@ fn survive<T: Real, R: Recorder>(
             },
         );
     }
-    let plays = on & is_left & strength.less(limit);
+    let plays = active & is_left & strength.less(limit);
     if !plays.any() {
         return is_left;
     }
     let survival = strength / limit;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
     let [_, number] = group.pairs(paths, dimension, [Purpose::Unused, Purpose::Roulette]);
-    members.record(&mut paths.found, plays, |lane| Event::Roulette {
+    members.record(&mut paths.outputs, plays, |lane| Event::Roulette {
         survival: single(survival.lane(lane)),
         number: single(number.lane(lane)),
     });
     let is_out = plays & !number.less(survival);
-    members.record(&mut paths.found, is_out, |_| Event::Ended { why: End::Roulette });
+    members.record(&mut paths.outputs, is_out, |_| Event::Ended { why: End::Roulette });
     let raised = *throughput / survival;
     *throughput = Vec3::select(plays, raised, *throughput);
     is_left & !is_out
 }
 
-impl<T: Real> Arrival<T> {
-    /// Paths of a group whose rays came to an end after so many bounces.
+impl<T: Real> PathVertex<T> {
+    /// The path vertices of a group after `bounce` bounces.
     #[inline(always)]
     pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<T::Scalar, R>) -> Self {
         let state = &paths.state;
@@ -196,13 +201,13 @@ impl<T: Real> Arrival<T> {
             group,
             members: group.members(&state.ids),
             bounce,
-            on: group.mask(),
+            active: group.mask(),
             throughput: group.vector(&state.throughput),
             direction: group.vector(&state.direction),
             lobe_density: group.number(&state.lobe_density),
-            is_mirror: group.truth(&state.is_mirror),
+            is_mirror: group.flags(&state.is_mirror),
             distance: group.number(&state.distance),
-            is_caught_mirrored: false,
+            is_catcher_mirror: false,
         }
     }
 }

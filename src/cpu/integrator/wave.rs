@@ -1,15 +1,17 @@
-//! Some samples of every pixel of a tile, the paths going on together: rays that go the same way are traced in packets, paths
-//! that met the same material are shaded side by side in lanes.
+//! The wavefront path tracer of a tile: several samples of all its pixels advance together, one bounce at a time.
 //!
-//! Lanes hold what each path would have by itself, and rays in packets meet what they would meet alone, to the last bit. So it
-//! does not matter which paths go on together, and no picture depends on how the work is shared out.
+//! Rays of the same direction octant are traced in packets. Paths that hit the same material slot are shaded together in SIMD
+//! lanes. Each bounce has five steps: intersect the rays, sort the hits by material, shade, trace shadow rays, add direct light.
+//!
+//! Invariant: a path's result is the same to the last bit in any lane, packet or wave. So the image does not depend on how the
+//! work is divided.
 
 use std::ops::Range;
 
 use super::group::{Group, Groups};
 use super::paths::Paths;
 use super::results::Results;
-use super::{Arrival, Integrator};
+use super::{Integrator, PathVertex};
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
@@ -17,450 +19,466 @@ use crate::optics::layer::material_layers;
 use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
-use crate::scene::{Hit, PACKET, Packet, WAYS, ray_way};
+use crate::scene::{Hit, OCTANTS, PACKET, Packet, ray_octant};
 
 /// Pixels of a tile at most.
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
-/// Samples of each pixel that go on together.
+/// Samples per pixel of a wave at most.
 pub const WAVE_SAMPLES: u32 = 8;
-/// Paths that go on together at most.
+/// Paths of a wave at most.
 const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
-/// Pixels near each other whose samples lie side by side: 2 × 2, of which four samples make a packet.
-pub const NEAR: usize = 4;
-/// Fewer rays to lights than this are traced one by one.
-const LIGHT_RAYS_MIN: usize = 4;
-/// Fewer of the rays with which paths go on: a packet of them takes more of the hierarchy, as each has to find the nearest
-/// triangle.
-const RAYS_MIN: usize = 8;
+/// Pixels of a block, 2 × 2: four samples of each make one ray packet.
+pub const BLOCK_PIXELS: usize = 4;
+/// Fewer shadow rays than this are traced one by one.
+const SHADOW_PACKET_MIN: usize = 4;
+/// Fewer continuation rays than this are traced one by one. The bound is higher than that of shadow rays, because a packet that
+/// needs the closest hits visits more of the hierarchy.
+const PACKET_MIN: usize = 8;
 
-/// A tile of a picture.
+/// A tile of the image, at most [`TILE_SIDE`] pixels wide and high.
 pub struct Tile {
     pub(super) origin: [u32; 2],
-    /// Its pixels from its corner on, those near each other one after the other.
+    /// Its pixels from its corner on, in Morton order, so that the pixels of a block are consecutive.
     places: Vec<[u32; 2]>,
 }
 
-/// Where the paths of a tile are followed, for one tile after the other.
+/// The buffers of a wavefront, reused from tile to tile. A `u16` is the index of a path in the fields of [`Paths`].
 pub struct Wave<T: Real> {
     paths: Paths<T::Scalar, Unrecorded>,
-    /// The places of those on their way.
-    under_way: Vec<u16>,
-    /// Those whose rays met a surface, each with its slot.
-    met: Vec<(u32, u16)>,
-    /// Those whose rays met nothing.
-    left: Vec<u16>,
-    /// The order in which all are shaded: those by their slots, then those whose rays met nothing.
+    /// Paths that have not ended.
+    active: Vec<u16>,
+    /// Paths whose rays hit a surface, with the material slot as sort key.
+    hits: Vec<(u32, u16)>,
+    /// Paths whose rays left the scene.
+    escaped: Vec<u16>,
+    /// The order of shading: `hits` sorted by slot, then `escaped`.
     order: Vec<u16>,
-    /// The camera rays of all of them.
+    /// The camera rays.
     packets: Vec<Packet>,
-    /// What the rays of all of them met, where no surface has holes.
-    hits: Vec<Option<Hit>>,
-    /// The ways of rays.
-    ways: Ways,
-    /// The places of paths whose light arrives.
-    lit: Vec<u16>,
-    /// What they found.
+    /// Per path the closest hit of its ray; unused if surfaces have holes.
+    intersections: Vec<Option<Hit>>,
+    /// Rays to trace, binned by octant.
+    octants: OctantBins,
+    /// Paths whose shadow ray is not blocked.
+    unoccluded: Vec<u16>,
     results: Results<T::Scalar>,
 }
 
 impl<T: Real> Wave<T> {
-    /// Room for any tile's, whose numbers are drawn from this sequence.
+    /// Buffers for a tile of any size; the paths draw from `sequence`.
     pub fn new(sequence: Sequence) -> Self {
         Self {
             paths: Paths::new(PATHS, T::LANES, sequence),
-            under_way: Vec::with_capacity(PATHS),
-            met: Vec::with_capacity(PATHS),
-            left: Vec::with_capacity(PATHS),
+            active: Vec::with_capacity(PATHS),
+            hits: Vec::with_capacity(PATHS),
+            escaped: Vec::with_capacity(PATHS),
             order: Vec::with_capacity(PATHS),
             packets: Vec::with_capacity(PATHS / PACKET),
-            hits: Vec::with_capacity(PATHS),
-            ways: Ways::default(),
-            lit: Vec::with_capacity(PATHS),
+            intersections: Vec::with_capacity(PATHS),
+            octants: OctantBins::default(),
+            unoccluded: Vec::with_capacity(PATHS),
             results: Results::new(PATHS + T::LANES),
         }
     }
 
-    /// The places of those whose rays met a surface, shaded first.
-    fn met(&self) -> Range<usize> {
-        0..self.met.len()
+    /// Indices of the paths that hit a surface, after [`Integrator::sort_hits`].
+    fn hit_range(&self) -> Range<usize> {
+        0..self.hits.len()
     }
 
-    /// The places of those whose rays met nothing.
-    fn left(&self) -> Range<usize> {
-        self.met.len()..self.order.len()
+    /// Indices of the paths that escaped, after [`Integrator::sort_hits`].
+    fn escaped_range(&self) -> Range<usize> {
+        self.hits.len()..self.order.len()
     }
 }
 
 impl<T: Real> Integrator<'_, T> {
-    /// What samples of each pixel of a tile find, from sample `first` on: `tell` hears of as many samples of each pixel as go
-    /// on together, the first of them and how many there are.
+    /// Renders `count` samples per pixel of a tile, from sample `first` on. Calls `report` once per wave with that wave's first
+    /// sample, its number of samples per pixel, and their results.
     pub fn trace_tile(
         &self,
         tile: &Tile,
         wave: &mut Wave<T>,
         [first, count]: [u32; 2],
-        mut tell: impl FnMut([u32; 2], &Results<T::Scalar>),
+        mut report: impl FnMut([u32; 2], &Results<T::Scalar>),
     ) {
         for from in (first..first + count).step_by(WAVE_SAMPLES as usize) {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
-            let is_background = self.trace_wave(tile, samples, wave);
-            if !is_background {
+            let is_all_background = self.trace_wave(tile, samples, wave);
+            if !is_all_background {
                 let results = (0..wave.paths.count()).map(|number| self.result(&wave.paths, number));
                 wave.results.fill(results);
                 wave.results.cut = wave.paths.cut;
             }
-            tell(samples, &wave.results);
+            report(samples, &wave.results);
         }
     }
 
-    /// Follows the paths of some samples to their end; true where none of them met anything, and `results` has what is there.
+    /// Traces the paths of `samples` (first, count) to their ends. Returns true if every camera ray missed: then `wave.results`
+    /// is already complete.
     fn trace_wave(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<T>) -> bool {
+        // One path per pixel and sample, with its camera ray.
         self.add_paths(tile, samples, &mut wave.paths);
-        let has_more = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
-        wave.results.start(wave.paths.count(), has_more);
+        let has_extras = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
+        wave.results.start(wave.paths.count(), has_extras);
+        // Camera rays of neighbouring pixels are coherent: trace them in packets. A tile of background alone ends here, which
+        // is cheaper, because no path state is set up. Surfaces with holes need a random number per hit instead (`intersect`).
         if !self.has_holes {
-            self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.hits);
-            if self.has_plain_background() && wave.hits.iter().all(Option::is_none) {
-                self.see_background(&wave.paths, &mut wave.results);
+            self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.intersections);
+            if self.has_plain_background() && wave.intersections.iter().all(Option::is_none) {
+                self.shade_background(&wave.paths, &mut wave.results);
                 return true;
             }
-            wave.hits.resize(wave.paths.count(), None);
+            wave.intersections.resize(wave.paths.count(), None);
         }
-        wave.paths.start(std::iter::repeat(Unrecorded), &self.beginning());
-        wave.under_way.clear();
-        wave.under_way.extend(0..wave.paths.count() as u16);
+        wave.paths.start(std::iter::repeat(Unrecorded), &self.start_options());
+        wave.active.clear();
+        wave.active.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {
+            // 1. Continuation rays; those of the camera have been traced above.
             if bounce > 0 && !self.has_holes {
                 self.trace_rays(wave);
             }
-            self.trace(bounce, wave);
+            // 2. Sort by material, so that the lanes of a group shade the same one.
+            self.sort_hits(bounce, wave);
+            // 3. Emission, a shadow ray per path (next-event estimation), and the next direction.
             self.shade(bounce, wave);
-            self.look_for_lights(wave);
-            self.light(bounce, wave);
+            // 4. and 5. Shadow rays are traced only now, all of the wave together, because packets need many rays. Their light
+            // is added last, where they arrive.
+            self.trace_shadow_rays(wave);
+            self.shade_direct_light(bounce, wave);
+            // Paths that ended leave the wave. The others keep their order, which is nearly sorted for the next bounce.
             let Wave {
-                under_way,
-                paths,
-                order,
-                ..
+                active, paths, order, ..
             } = wave;
-            under_way.clear();
-            under_way.extend((0..order.len() as u16).filter(|&place| paths.goes_on[usize::from(place)]));
-            if under_way.is_empty() {
+            active.clear();
+            active.extend((0..order.len() as u16).filter(|&index| paths.is_active[usize::from(index)]));
+            if active.is_empty() {
                 break;
             }
         }
         false
     }
 
-    /// Finds what the rays meet with which paths go on, where no surface has holes: those that go the same way together.
+    /// Intersects the continuation rays of the active paths, in packets by octant. For scenes without holes.
     fn trace_rays(&self, wave: &mut Wave<T>) {
         let Wave {
             paths,
-            under_way,
-            ways,
-            hits,
+            active,
+            octants,
+            intersections,
             ..
         } = wave;
-        ways.clear();
-        for &place in &*under_way {
-            let place = usize::from(place);
-            if !paths.leaves[place] {
-                ways.add(ray_way(paths.state.direction.get(place).to_f32()), place);
+        // Rays that are known to miss, as those that leave a convex body, need no traversal.
+        octants.clear();
+        for &index in &*active {
+            let index = usize::from(index);
+            if !paths.is_known_miss[index] {
+                octants.add(ray_octant(paths.state.direction.get(index).to_f32()), index);
             }
         }
-        let ray = |place: &u16| {
-            let place = usize::from(*place);
-            let (origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
+        let ray = |index: &u16| {
+            let index = usize::from(*index);
+            let (origin, direction) = (paths.origin.get(index), paths.state.direction.get(index));
             (origin.to_f32(), direction.to_f32(), f32::MAX)
         };
-        for group in ways.groups() {
-            let mut met = [None; PACKET];
-            if group.len() < RAYS_MIN {
-                for (met, (origin, direction, t_max)) in met.iter_mut().zip(group.iter().map(ray)) {
-                    *met = self.geometry.intersect(origin, direction, t_max);
+        for group in octants.groups() {
+            let mut found = [None; PACKET];
+            if group.len() < PACKET_MIN {
+                for (found, (origin, direction, t_max)) in found.iter_mut().zip(group.iter().map(ray)) {
+                    *found = self.geometry.intersect(origin, direction, t_max);
                 }
             } else {
                 let packet = Packet::of(group.iter().map(ray));
-                met = self.geometry.intersect_packet(instructions::level(), &packet);
+                found = self.geometry.intersect_packet(instructions::level(), &packet);
             }
-            for (&place, met) in group.iter().zip(met) {
-                hits[usize::from(place)] = met;
+            for (&index, hit) in group.iter().zip(found) {
+                intersections[usize::from(index)] = hit;
             }
         }
     }
 
-    /// Traces the rays of all paths under way where surfaces have holes, has the processor fetch what shading will look up,
-    /// and puts those side by side that met the same material.
-    fn trace(&self, bounce: u32, wave: &mut Wave<T>) {
+    /// Splits the active paths into hits, sorted by material slot, and escaped ones, and puts the paths' state in that order.
+    /// Traces the rays first if surfaces have holes.
+    fn sort_hits(&self, bounce: u32, wave: &mut Wave<T>) {
         let Wave {
             paths,
-            under_way,
-            met,
-            left,
-            order,
+            active,
             hits,
+            escaped,
+            order,
+            intersections,
             ..
         } = wave;
-        met.clear();
-        left.clear();
-        for &member in &*under_way {
-            let place = usize::from(member);
-            let is_stopped = if self.has_holes {
-                self.stop(bounce, place, paths)
+        hits.clear();
+        escaped.clear();
+        for &member in &*active {
+            let index = usize::from(member);
+            let is_hit = if self.has_holes {
+                self.intersect(bounce, index, paths)
             } else {
-                !paths.leaves[place] && paths.note(place, hits[place])
+                !paths.is_known_miss[index] && paths.record_hit(index, intersections[index])
             };
-            if is_stopped {
-                let triangle = paths.state.hits[place].triangle;
-                self.geometry.fetch(triangle);
-                met.push((self.geometry.slot(triangle as usize), member));
+            if is_hit {
+                // Shading waits for these vertices otherwise: the sort hides the latency.
+                let triangle = paths.state.hits[index].triangle;
+                self.geometry.prefetch(triangle);
+                hits.push((self.geometry.slot(triangle as usize), member));
             } else {
-                left.push(member);
+                escaped.push(member);
             }
         }
-        met.sort_unstable();
+        hits.sort_unstable();
         order.clear();
-        order.extend(met.iter().map(|(_, member)| *member).chain(left.iter().copied()));
-        paths.arrange(order);
+        order.extend(hits.iter().map(|(_, member)| *member).chain(escaped.iter().copied()));
+        paths.reorder(order);
     }
 
-    /// What all paths find where they are, and where they go on.
+    /// Ends escaped paths with the environment's light, and shades the hits slot by slot.
     fn shade(&self, bounce: u32, wave: &mut Wave<T>) {
-        let (met, left) = (wave.met(), wave.left());
+        let (hits, escaped) = (wave.hit_range(), wave.escaped_range());
         let paths = &mut wave.paths;
-        paths.lights.is_aimed[met.clone()].fill(false);
-        let draws = self.samples_light() && bounce < self.settings.bounces;
+        paths.shadow_rays.is_pending[hits.clone()].fill(false);
+        let samples_light = self.samples_light() && bounce < self.settings.bounces;
+        // Look-ups into the environment miss the cache. So each group's addresses are computed and prefetched in one pass and
+        // read in a later one; the numbers of light sampling are drawn in between.
         T::vectorize(
             #[inline(always)]
             || {
-                for group in Groups::new(left.clone()) {
-                    self.locate_left(&group, bounce, paths);
+                for group in Groups::new(escaped.clone()) {
+                    self.locate_escaped(&group, bounce, paths);
                 }
-                if draws {
-                    for group in Groups::new(met.clone()) {
-                        self.light_numbers(&group, bounce, paths);
+                if samples_light {
+                    for group in Groups::new(hits.clone()) {
+                        self.light_xi(&group, bounce, paths);
                     }
                 }
-                for group in Groups::<T>::new(left.clone()) {
-                    let place = [group.number(&paths.place[0]), group.number(&paths.place[1])];
+                for group in Groups::<T>::new(escaped.clone()) {
+                    let uv = paths.environment_uv.each_ref().map(|axis| group.number(axis));
                     T::out_of_line(
                         #[inline(always)]
-                        || self.leave(&Arrival::new(group, bounce, paths), place, paths),
+                        || self.escape(&PathVertex::new(group, bounce, paths), uv, paths),
                     );
                 }
-                if draws && self.samples_environment {
-                    for group in Groups::new(met.clone()) {
-                        self.fetch_lights(&group, paths);
+                if samples_light && self.samples_environment {
+                    for group in Groups::new(hits.clone()) {
+                        self.prefetch_lights(&group, paths);
                     }
                 }
             },
         );
+        // Groups must not span slots: a group's material is uniform over its lanes.
         let mut first = 0;
-        for same in wave.met.chunk_by(|(a, _), (b, _)| a == b) {
-            let places = first..first + same.len();
-            first = places.end;
-            self.bounce_together(same[0].0, places, bounce, paths);
+        for same in wave.hits.chunk_by(|(a, _), (b, _)| a == b) {
+            let indices = first..first + same.len();
+            first = indices.end;
+            self.shade_slot(same[0].0, indices, bounce, paths);
         }
     }
 
-    /// What paths do at surfaces of one slot, but for the light that arrives from elsewhere.
-    fn bounce_together(&self, slot: u32, places: Range<usize>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
+    /// Shades hits of one slot, but for direct light.
+    fn shade_slot(&self, slot: u32, indices: Range<usize>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
         T::vectorize(
             #[inline(always)]
             || {
-                for group in Groups::new(places.clone()) {
-                    self.bounce_group(slot, group, bounce, paths);
+                for group in Groups::new(indices.clone()) {
+                    self.shade_group(slot, group, bounce, paths);
                 }
             },
         );
     }
 
     #[inline(always)]
-    fn bounce_group(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
-        let mut arrival = Arrival::new(group, bounce, paths);
+    fn shade_group(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
+        let mut vertex = PathVertex::new(group, bounce, paths);
         let point = T::out_of_line(
             #[inline(always)]
-            || self.surfaces(&arrival, slot, paths),
+            || self.surfaces(&vertex, slot, paths),
         );
-        let passed = self.pass_catcher(&point, &mut arrival, paths);
-        let is_passed = arrival.on & !passed.is_there;
+        // The shadow catcher is not there from below or without light: those camera rays escape to the background.
+        let catcher = self.apply_catcher(&point, &mut vertex, paths);
+        let is_passed = vertex.active & !catcher.is_visible;
         if is_passed.any() {
-            let ray = Arrival {
-                on: is_passed,
-                ..arrival
+            let ray = PathVertex {
+                active: is_passed,
+                ..vertex
             };
             T::out_of_line(
                 #[inline(always)]
-                || self.leave(&ray, self.left_places(ray.direction, ray.bounce), paths),
+                || self.escape(&ray, self.escaped_uv(ray.direction, ray.bounce), paths),
             );
         }
-        let ways = [
-            (passed.is_there & !passed.is_mirrored, false),
-            (passed.is_there & passed.is_mirrored, true),
+        // Lanes that the catcher mirrors shade with another material: two passes, usually one of them empty.
+        let passes = [
+            (catcher.is_visible & !catcher.is_mirrored, false),
+            (catcher.is_visible & catcher.is_mirrored, true),
         ];
-        for (on, is_caught_mirrored) in ways {
-            if !on.any() {
+        for (active, is_catcher_mirror) in passes {
+            if !active.any() {
                 continue;
             }
-            let mut arrival = Arrival {
-                on,
-                is_caught_mirrored,
-                ..arrival
+            let mut vertex = PathVertex {
+                active,
+                is_catcher_mirror,
+                ..vertex
             };
-            let material = &*self.material(&point, &arrival);
+            let material = &*self.material(&point, &vertex);
             let layers = &material_layers(material, self.tables, &point.surface);
-            if self.meet(&point, material, layers, &mut arrival, paths) {
-                if self.samples_light() && !is_caught_mirrored {
+            if self.shade_hit(&point, material, layers, &mut vertex, paths) {
+                // A mirror of the catcher reflects in one direction, which light sampling cannot hit.
+                if self.samples_light() && !is_catcher_mirror {
                     T::out_of_line(
                         #[inline(always)]
-                        || self.aim(&point, material, layers, &arrival, paths),
+                        || self.sample_direct_light(&point, material, layers, &vertex, paths),
                     );
                 }
                 T::out_of_line(
                     #[inline(always)]
-                    || self.scatter(&point, material, layers, &arrival, paths),
+                    || self.scatter(&point, material, layers, &vertex, paths),
                 );
             }
         }
     }
 
-    /// Finds which of the lights that paths are aimed at are visible.
-    fn look_for_lights(&self, wave: &mut Wave<T>) {
-        let met = wave.met();
-        let Wave { paths, ways, .. } = wave;
-        ways.clear();
-        for place in met {
-            if !paths.lights.is_aimed[place] {
+    /// Traces the pending shadow rays and clears the visibility of those that are blocked.
+    fn trace_shadow_rays(&self, wave: &mut Wave<T>) {
+        let hits = wave.hit_range();
+        let Wave { paths, octants, .. } = wave;
+        octants.clear();
+        for index in hits {
+            if !paths.shadow_rays.is_pending[index] {
                 continue;
             }
-            let rays = &mut paths.found[usize::from(paths.state.ids[place])].rays;
+            let rays = &mut paths.outputs[usize::from(paths.state.ids[index])].rays;
             if self.has_holes {
-                paths.lights.visible[place] = self.visible(&paths.lights.get(place), rays);
-            } else if !paths.lights.meets_nothing[place] {
+                paths.shadow_rays.visibility[index] = self.visibility(&paths.shadow_rays.get(index), rays);
+            } else if !paths.shadow_rays.is_known_miss[index] {
                 *rays += 1;
-                ways.add(ray_way(paths.lights.direction.get(place).to_f32()), place);
+                octants.add(ray_octant(paths.shadow_rays.direction.get(index).to_f32()), index);
             }
         }
-        for group in ways.groups() {
-            self.look_together(group, paths);
+        for group in octants.groups() {
+            self.trace_shadow_packet(group, paths);
         }
     }
 
-    /// The same of paths whose rays go the same way.
-    fn look_together(&self, places: &[u16], paths: &mut Paths<T::Scalar, Unrecorded>) {
-        let lights = &mut paths.lights;
-        let ray = |place: usize| {
-            let distance = lights.distance[place].to_f64() as f32;
+    /// Traces shadow rays of one octant, at most a packet.
+    fn trace_shadow_packet(&self, indices: &[u16], paths: &mut Paths<T::Scalar, Unrecorded>) {
+        let shadow_rays = &mut paths.shadow_rays;
+        let ray = |index: usize| {
+            let distance = shadow_rays.distance[index].to_f64() as f32;
             (
-                lights.origin.get(place).to_f32(),
-                lights.direction.get(place).to_f32(),
+                shadow_rays.origin.get(index).to_f32(),
+                shadow_rays.direction.get(index).to_f32(),
                 distance,
             )
         };
-        let rays = places.iter().map(|&place| ray(usize::from(place)));
-        let mut is_hidden = [false; PACKET];
-        if places.len() < LIGHT_RAYS_MIN {
-            for (is_hidden, (origin, direction, distance)) in is_hidden.iter_mut().zip(rays) {
-                *is_hidden = self.geometry.occluded(origin, direction, distance);
+        let rays = indices.iter().map(|&index| ray(usize::from(index)));
+        let mut is_occluded = [false; PACKET];
+        if indices.len() < SHADOW_PACKET_MIN {
+            for (is_occluded, (origin, direction, distance)) in is_occluded.iter_mut().zip(rays) {
+                *is_occluded = self.geometry.occluded(origin, direction, distance);
             }
         } else {
-            is_hidden = self.geometry.occluded_packet(instructions::level(), &Packet::of(rays));
+            is_occluded = self.geometry.occluded_packet(instructions::level(), &Packet::of(rays));
         }
-        for (&place, is_hidden) in places.iter().zip(is_hidden) {
-            if is_hidden {
-                lights.visible[usize::from(place)] = T::Scalar::zero();
+        for (&index, is_occluded) in indices.iter().zip(is_occluded) {
+            if is_occluded {
+                shadow_rays.visibility[usize::from(index)] = T::Scalar::zero();
             }
         }
     }
 
-    /// Adds the light that arrives.
-    fn light(&self, bounce: u32, wave: &mut Wave<T>) {
-        let met = wave.met();
-        let Wave { paths, lit, .. } = wave;
-        let lights = &paths.lights;
-        let is_lit = |place: &u16| {
-            let place = usize::from(*place);
-            lights.is_aimed[place] && lights.visible[place] > T::Scalar::zero()
+    /// Adds the light of the shadow rays that are not blocked.
+    fn shade_direct_light(&self, bounce: u32, wave: &mut Wave<T>) {
+        let hits = wave.hit_range();
+        let Wave { paths, unoccluded, .. } = wave;
+        let shadow_rays = &paths.shadow_rays;
+        let is_unoccluded = |index: &u16| {
+            let index = usize::from(*index);
+            shadow_rays.is_pending[index] && shadow_rays.visibility[index] > T::Scalar::zero()
         };
-        lit.clear();
-        lit.extend((0..met.len() as u16).filter(is_lit));
-        paths.take_arriving(lit, self.samples_emitters);
+        // Compacted, so that no lane evaluates the environment in vain.
+        unoccluded.clear();
+        unoccluded.extend((0..hits.len() as u16).filter(is_unoccluded));
+        paths.gather_unoccluded(unoccluded, self.samples_emitters);
         T::vectorize(
             #[inline(always)]
             || {
-                for group in Groups::new(0..lit.len()) {
-                    self.locate_lights(&group, paths);
+                for group in Groups::new(0..unoccluded.len()) {
+                    self.locate_unoccluded(&group, paths);
                 }
-                for group in Groups::new(0..lit.len()) {
-                    self.arrive(&group, bounce, Vec3::zero(), paths);
+                for group in Groups::new(0..unoccluded.len()) {
+                    self.add_direct_light(&group, bounce, Vec3::zero(), paths);
                 }
             },
         );
     }
 }
 
-/// The places of paths whose rays go each way, in their order.
-struct Ways {
-    places: [[u16; PATHS]; WAYS],
-    counts: [u16; WAYS],
+/// Path indices binned by the octant of their rays, in the order in which they were added.
+struct OctantBins {
+    indices: [[u16; PATHS]; OCTANTS],
+    counts: [u16; OCTANTS],
 }
 
-impl Default for Ways {
+impl Default for OctantBins {
     fn default() -> Self {
         Self {
-            places: [[0; PATHS]; WAYS],
-            counts: [0; WAYS],
+            indices: [[0; PATHS]; OCTANTS],
+            counts: [0; OCTANTS],
         }
     }
 }
 
-impl Ways {
+impl OctantBins {
     fn clear(&mut self) {
-        self.counts = [0; WAYS];
+        self.counts = [0; OCTANTS];
     }
 
     #[inline(always)]
-    fn add(&mut self, way: usize, place: usize) {
-        let count = &mut self.counts[way];
-        self.places[way][usize::from(*count)] = place as u16;
+    fn add(&mut self, octant: usize, index: usize) {
+        let count = &mut self.counts[octant];
+        self.indices[octant][usize::from(*count)] = index as u16;
         *count += 1;
     }
 
-    /// Those that go the same way, as many as a packet has at most.
+    /// Runs of at most [`PACKET`] indices, each of one octant.
     fn groups(&self) -> impl Iterator<Item = &[u16]> {
-        let of_way = self.places.iter().zip(self.counts);
-        of_way.flat_map(|(places, count)| places[..usize::from(count)].chunks(PACKET))
+        let of_octant = self.indices.iter().zip(self.counts);
+        of_octant.flat_map(|(indices, count)| indices[..usize::from(count)].chunks(PACKET))
     }
 }
 
 impl Tile {
-    /// The tile at a place of the picture, of a size in pixels.
+    /// A tile from its top left pixel and its size, both in pixels.
     pub fn new(origin: [u32; 2], size: [u32; 2]) -> Self {
-        // Along Morton's curve: squares of 2 × 2, of which four make a square again.
+        // Morton order: a block of 2 × 2 pixels, then the next three blocks of a square, and so on.
         let every_second = |bits: u32| (bits & 1) | (bits >> 1 & 2) | (bits >> 2 & 4);
         let places = (0..PIXELS as u32).map(|place| [every_second(place), every_second(place >> 1)]);
         let places = places.filter(|[x, y]| *x < size[0] && *y < size[1]).collect();
         Self { origin, places }
     }
 
-    /// Its pixels, those near each other together.
-    pub fn near(&self) -> impl Iterator<Item = Near<'_>> {
-        let firsts = (0..).step_by(NEAR);
-        let near = self.places.chunks(NEAR).zip(firsts);
-        near.map(|(places, first)| Near { places, first })
+    /// Its pixels in blocks of up to [`BLOCK_PIXELS`].
+    pub fn blocks(&self) -> impl Iterator<Item = PixelBlock<'_>> {
+        let firsts = (0..).step_by(BLOCK_PIXELS);
+        let blocks = self.places.chunks(BLOCK_PIXELS).zip(firsts);
+        blocks.map(|(places, first)| PixelBlock { places, first })
     }
 }
 
-/// Pixels of a tile near each other, the paths of a sample of which lie side by side.
+/// Neighbouring pixels of a tile; the paths of one sample of them have consecutive ids.
 #[derive(Clone, Copy)]
-pub struct Near<'a> {
-    /// From the tile's corner on.
+pub struct PixelBlock<'a> {
+    /// From the tile's corner on, in pixels.
     pub places: &'a [[u32; 2]],
+    /// Index of the first pixel in the tile's order.
     first: usize,
 }
 
-impl Near<'_> {
-    /// Which path of a wave is a sample, of so many, of the first of the pixels; those of the others follow.
+impl PixelBlock<'_> {
+    /// The id in the wave of the first pixel's path for a sample out of `count` per pixel; the other pixels' follow.
     #[inline(always)]
     pub fn path(&self, [sample, count]: [u32; 2]) -> usize {
         self.first * count as usize + sample as usize * self.places.len()

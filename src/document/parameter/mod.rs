@@ -11,10 +11,10 @@ mod text;
 use serde_json::Value as Json;
 
 use super::custom_curve::CustomCurve;
-use super::own_textures::{map_key, target_of_key};
+use super::user_textures::{map_key, target_of_key};
 use super::{Document, MaterialSettings};
 use crate::named::Named;
-use crate::scene::texture::{OwnTexture, TextureTarget};
+use crate::scene::texture::{TextureTarget, UserTexture};
 use text::shortened;
 
 pub use of_document::SETTINGS;
@@ -245,7 +245,7 @@ fn texture_key(key: &str) -> Option<(TextureTarget, &str)> {
 }
 
 /// The parameter of a picture on a material with this key.
-fn texture_parameter(key: &str) -> Result<&'static Parameter<OwnTexture>, ParameterError> {
+fn texture_parameter(key: &str) -> Result<&'static Parameter<UserTexture>, ParameterError> {
     let found = TEXTURE_PARAMETERS.iter().find(|parameter| parameter.key == key);
     found.ok_or_else(|| ParameterError::UnknownKey {
         key: key.to_owned(),
@@ -294,10 +294,13 @@ pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), P
     if let Some((target, key)) = texture_key(key) {
         let parameter = texture_parameter(key)?;
         let value = parameter.parse(text)?;
-        let texture = material.own.get_mut(target).ok_or(ParameterError::NoTexture {
-            key: map_key(target),
-            target: target.name(),
-        })?;
+        let texture = material
+            .user_textures
+            .get_mut(target)
+            .ok_or(ParameterError::NoTexture {
+                key: map_key(target),
+                target: target.name(),
+            })?;
         return parameter.set(texture, value);
     }
     let parameter = parameter(key)?;

@@ -4,16 +4,16 @@ use std::sync::LazyLock;
 
 use super::accessors::{choice, field};
 use super::{Kind, Parameter, Stage, choices};
-use crate::scene::texture::{OwnTexture, TextureChannel, TextureProjection, TextureSpace};
+use crate::scene::texture::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 
 /// Every parameter of a picture on a material, in the order of its rows; the keys are those inside its object in files, and on
 /// the command line behind that of what it is put on.
-pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<OwnTexture>>> = LazyLock::new(all);
+pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<UserTexture>>> = LazyLock::new(all);
 
-type Accessors = super::Accessors<OwnTexture>;
+type Accessors = super::Accessors<UserTexture>;
 
 #[rustfmt::skip]
-fn all() -> Vec<Parameter<OwnTexture>> {
+fn all() -> Vec<Parameter<UserTexture>> {
     vec![
         of("strength", "Strength", "Blend amount. 0 leaves the parameter unchanged. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).row([0.0, 1.0], 3),
         of("scale", "Scale", "Repetitions across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).row([0.1, 10.0], 3),
@@ -38,7 +38,7 @@ fn of(
     help: &'static str,
     kind: Kind,
     accessors: Accessors,
-) -> Parameter<OwnTexture> {
+) -> Parameter<UserTexture> {
     Parameter {
         group: "Texture",
         ..Parameter::plain(key, label, help, kind, Stage::Materials, accessors)

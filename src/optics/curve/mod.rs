@@ -1,9 +1,9 @@
-//! D(ξ): how far from the mirror direction the geometric lobe's samples lie (paper, section 4.6 and eq. 13).
+//! Curves D(ξ): distance of the geometric lobe's samples from the mirror direction (paper, section 4.6 and eq. 13).
 //!
-//! A curve is the quantile function of the distance D. The lobe's density needs h(D) = f_D(D)/D, f_D being the density
-//! of D (docs/MATHEMATICS.md, section 1). A curve module has three functions of a table, which only the custom curve reads:
-//! `distance` is D(ξ) for ξ in [0, 1]; `distance_max` the largest; `h` is h(D) for D in [0, the largest], bounded where
-//! it goes to infinity.
+//! A curve is the quantile function of the distance D. The lobe's density needs h(D) = f_D(D)/D, with the density f_D of D
+//! (docs/MATHEMATICS.md, section 1). A curve module has three functions of a table, which only the custom curve reads:
+//! `distance` is D(ξ) for ξ in [0, 1]; `distance_max` its maximum; `h` is h(D) for D in [0, the maximum], bounded at
+//! singularities.
 //!
 //! To add a curve: one Rust file with its [`CurveTraits`], one WGSL file of the same name, one line in the registry below.
 
@@ -30,7 +30,7 @@ macro_rules! curves {
                 match self { $(Curve::$variant => stringify!($module),)* }
             }
 
-            /// What is special about it.
+            /// Its properties.
             #[inline(always)]
             pub const fn traits(self) -> CurveTraits {
                 match self { $(Curve::$variant => $module::TRAITS,)* }
@@ -49,7 +49,7 @@ macro_rules! curves {
             match curve { $(Curve::$variant => $module::distance_max(table),)* }
         }
 
-        /// h(D) = f_D(D)/D, for D in [0, D's maximum]; bounded where it goes to infinity.
+        /// h(D) = f_D(D)/D, for D in [0, D's maximum]; bounded at singularities.
         #[inline(always)]
         pub fn curve_h<T: Real>(curve: Curve, table: &[f32], distance: T) -> T {
             match curve { $(Curve::$variant => $module::h(table, distance),)* }
@@ -66,25 +66,26 @@ curves! {
     custom Custom = 5, "custom", "Custom", "A monotone curve of your own.";
 }
 
-/// What is special about a curve: said in its own file, read by everything else.
+/// Properties of a curve, stated in its own file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveTraits {
-    /// D(ξ) written out.
+    /// Formula of D(ξ).
     pub formula: &'static str,
-    /// How the lobe's density is integrated over it.
+    /// Integration of the lobe's density over it.
     pub integral: Integral,
     /// Largest D worth plotting.
     pub plotted_max: f64,
 }
 
-/// How the lobe's density, an integral over h, is computed (`super::chord`).
+/// Integration method of the lobe's density, an integral over h (`super::chord`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Integral {
     /// In closed form: h is 1/D.
     Reciprocal,
     /// In closed form: h is a polynomial, with these coefficients of 1, D, D².
     Polynomial([f64; 3]),
-    /// The same with an h that vanishes at D's maximum: near the silhouette the closed form cancels, and nodes take its place.
+    /// The same with an h that vanishes at D's maximum: near the silhouette, where the closed form cancels, quadrature
+    /// replaces it.
     PolynomialToZero([f64; 3]),
     /// By Gauss–Legendre nodes.
     Quadrature,
@@ -104,7 +105,7 @@ impl Integral {
         }
     }
 
-    /// h as coefficients of 1, D, D²; zeros where it is no polynomial.
+    /// h as coefficients of 1, D, D²; zeros if it is no polynomial.
     pub const fn polynomial(self) -> [f64; 3] {
         match self {
             Self::Polynomial(h) | Self::PolynomialToZero(h) => h,
@@ -114,17 +115,17 @@ impl Integral {
 }
 
 impl Curve {
-    /// True where the curve is a table, not a formula.
+    /// True if the curve is a table.
     pub fn has_table(self) -> bool {
         self.traits().integral == Integral::Table
     }
 
-    /// True where D(ξ) is at most 1 whatever ξ.
+    /// True if D(ξ) is at most 1 for every ξ.
     pub fn is_within_unit(self) -> bool {
         !self.has_table() && curve_distance_max::<f64>(self, &[]) <= 1.0
     }
 
-    /// D(ξ) written out.
+    /// Formula of D(ξ).
     pub fn formula(self) -> &'static str {
         self.traits().formula
     }

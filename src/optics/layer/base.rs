@@ -1,6 +1,6 @@
-//! The Lambertian base. Seen from within it lies behind the interface, and what it scatters is refracted into the solid: a
-//! Lambertian lobe whose sines are divided by the index of refraction. So it fills the cone from which light gets out again,
-//! and none of it is caught by total reflection.
+//! The Lambertian base. Seen from within it is behind the interface, and its scattered light is refracted into the solid: a
+//! Lambertian lobe with sines divided by the index of refraction. So it fills the cone from which light gets out again, and
+//! none is trapped by total reflection.
 
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
 use crate::optics::curve::Curve;
@@ -12,7 +12,7 @@ use crate::optics::vector::Vec3;
 /// Rounding of a squared sine at the edge of the cone.
 pub const BASE_EDGE: f64 = 1.00001;
 
-/// The base.
+/// The Lambertian base layer.
 #[derive(Debug)]
 pub struct Base;
 
@@ -37,7 +37,7 @@ impl<T: Real> LayerModel<T> for Base {
         }
     }
 
-    /// Under the metal's share there is nothing.
+    /// A metal has no layer below.
     #[inline(always)]
     fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
         let left_by_metal = left * (T::one() - material.metalness);

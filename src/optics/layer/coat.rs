@@ -1,9 +1,9 @@
-//! A clear dielectric coat over everything else: OpenPBR's coat, glTF's clearcoat.
+//! A clear dielectric coat over all other layers: OpenPBR's coat, glTF's clearcoat.
 //!
-//! It reflects by the isotropic geometric lobe with the curve `smooth`, whatever lobe is below, under the exact equations
-//! of a dielectric. What it does not reflect on average reaches what is below, tinted by its colour: coat + (1 − albedo of
-//! the coat) · colour · below, so that no energy is made (the layering of OpenPBR 1.1, section on the coat). It does not
-//! roughen what is seen through it, and lies smooth over a normal texture. From within a solid it is not there.
+//! Its lobe is the isotropic geometric lobe with the curve `smooth`, for any lobe below, with the exact Fresnel equations of
+//! a dielectric. The rest reaches the layers below, tinted by its colour: coat + (1 − albedo of the coat) · colour · below,
+//! so that no energy is created (the layering of OpenPBR 1.1, section on the coat). It neither blurs the layers below nor
+//! follows a normal map. It is absent from within a solid.
 
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
 use crate::optics::albedo::albedo_lookup;
@@ -15,7 +15,7 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 
-/// The coat.
+/// The clear coat layer.
 #[derive(Debug)]
 pub struct Coat;
 

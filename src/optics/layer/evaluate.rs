@@ -1,4 +1,4 @@
-//! What a material reflects or refracts of light from a direction that was drawn towards it.
+//! Evaluation of a material for a sampled light direction.
 
 use super::{LayerLobe, LayerModel, LayerVisitor, Layers, each_layer};
 use crate::optics::lobe::{is_mirror, lobe_evaluate};
@@ -6,10 +6,10 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
-/// The material's evaluate (cosine included) for light from `wi` that was drawn with density `light_density`, each layer
-/// multiplied by its share under multiple importance sampling (Veach 1997, balance heuristic): light_density/
-/// (light_density + `competing` × density of that layer). `competing` is 1, or 0 where light sampling works alone.
-/// Layers weighed as mirrors give nothing: only sampling the lobe finds what they reflect or refract.
+/// Value of a material (cosine included) for light from `wi`, which was sampled with density `light_density`. Each layer is
+/// multiplied by its MIS weight (Veach 1997, balance heuristic): light_density / (light_density + `competing` × density of
+/// that layer). `competing` is 1, or 0 if light sampling is the only strategy. Mirror layers give 0: only BSDF sampling
+/// finds their light.
 pub fn material_evaluate<T: Real>(
     material: &Material<T>,
     tables: &[f32],
@@ -39,7 +39,7 @@ pub fn material_evaluate<T: Real>(
     )
 }
 
-/// The walk that sums up what the layers give.
+/// Visitor that sums the layers' values.
 struct Evaluation<'a, T: Real> {
     material: &'a Material<T>,
     tables: &'a [f32],
@@ -98,7 +98,7 @@ pub(super) fn lobe_of<T: Real, L: LayerModel<T>>(
     L::refined(material, surface, wi, evaluated)
 }
 
-/// (evaluate, density) of a layer's lobe for a direction, for itself; both 0 where it is weighed as a mirror.
+/// (evaluate, density) of a layer's own lobe for a direction; both 0 for a mirror.
 pub fn layer_evaluate<T: Real, L: LayerModel<T>>(
     material: &Material<T>,
     tables: &[f32],
@@ -110,7 +110,7 @@ pub fn layer_evaluate<T: Real, L: LayerModel<T>>(
     lobe_of::<T, L>(material, surface, &lobe, wi).map(|x| T::select(is_mirror, T::zero(), x))
 }
 
-/// True where every direction that a material can draw is weighed as a mirror's, seen from without.
+/// Lanes where every sampled direction of a material counts as a mirror's, seen from outside.
 pub fn material_is_mirror<T: Real>(material: &Material<T>) -> T::Mask {
     let mut mirrors = Mirrors {
         material,

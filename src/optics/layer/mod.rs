@@ -1,12 +1,12 @@
 //! The layers of a material behind one interface, and their registry.
 //!
-//! A layer says in its own file where it is there, which lobe it has, what share of light from everywhere it reflects or
-//! transmits (its albedo) and what it lets through, how often it is sampled, and its colour in a direction
-//! ([`LayerModel`]). All else is one walk over the list, from the outermost layer inwards: what each layer has of a view
-//! ([`material_layers`]), light that is reflected ([`material_evaluate`]), directions that are drawn ([`material_sample`]).
+//! A layer's file states when the layer is present, its lobe, its albedo (the share of uniform light that it reflects or
+//! transmits), its transmittance, its sampling probability, and its colour in a direction ([`LayerModel`]). Everything else
+//! is one walk over the list, from the outermost layer inwards: the layers' shares of a view ([`material_layers`]),
+//! reflected light ([`material_evaluate`]), sampled directions ([`material_sample`]).
 //!
-//! Covers lie over everything after them, and are sampled as often as what they reflect has it. The layers below share the
-//! light that covers let through: the specular lobe reflects some, the base and the refracting lobe share the rest.
+//! Covers lie over all layers after them and are sampled by their albedo. The layers below share the light that the covers
+//! transmit: the specular lobe reflects some, the base and the refracting lobe share the rest.
 //!
 //! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below.
 
@@ -42,7 +42,7 @@ macro_rules! layers {
         $(pub mod $module;)*
 
         named! {
-            /// A layer of a material; in the order in which light from without meets them.
+            /// A layer of a material, in the order in which light from outside arrives.
             Layer {
                 $($variant, $name, $label, $help;)*
             }
@@ -53,7 +53,7 @@ macro_rules! layers {
             pub fn module(self) -> &'static str {
                 match self { $(Layer::$variant => stringify!($module),)* }
             }
-            /// What is special about it.
+            /// Its properties.
             pub const fn traits(self) -> LayerTraits {
                 match self { $(Layer::$variant => <$module::$variant as LayerModel<f32>>::TRAITS,)* }
             }
@@ -83,16 +83,16 @@ layers! {
 
 /// Something that is done with each layer.
 trait LayerVisitor<T: Real> {
-    /// Does it.
+    /// Visits a layer.
     fn visit<L: LayerModel<T>>(&mut self);
 }
 
-/// What is special about a layer: said in its own file, read by everything else.
+/// Properties of a layer, stated in its own file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LayerTraits {
-    /// It lies over all layers after it; the others share what the covers let through.
+    /// True if it covers all layers after it; the others share the light that covers transmit.
     pub is_cover: bool,
-    /// It changes what its lobe draws and says ([`LayerModel::refined_sample`], [`LayerModel::refined`]).
+    /// True if it modifies its lobe's samples and values ([`LayerModel::refined_sample`], [`LayerModel::refined`]).
     pub refines: bool,
     /// The Fresnel factor of a direction that is drawn may decide whether it is sampled ([`LayerModel::decides_by_facet`]).
     pub decides: bool,
@@ -107,7 +107,7 @@ impl LayerTraits {
     };
 }
 
-/// A layer's lobe, and the frame that it lies in.
+/// A layer's lobe and its frame.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerLobe<'a, T> {
     /// The lobe.
@@ -116,38 +116,38 @@ pub struct LayerLobe<'a, T> {
     pub frame: Frame<T>,
 }
 
-/// What a layer does with light from everywhere, seen from one direction.
+/// A layer's behaviour under uniform light, seen from one direction.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerAlbedo<T> {
-    /// What it reflects or transmits towards the viewer, in [0, 1].
+    /// Albedo: share reflected or transmitted to the viewer, in [0, 1].
     pub reflected: Vec3<T>,
-    /// What it leaves of the layers after it, in [0, 1].
+    /// Transmittance to the layers after it, in [0, 1].
     pub transmittance: Vec3<T>,
 }
 
 /// A layer in one direction towards the light.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerToward<T> {
-    /// What its lobe is multiplied by.
+    /// Factor of its lobe.
     pub color: Vec3<T>,
-    /// The probability of sampling the layer that this direction tells, where no cover over it is sampled.
+    /// Sampling probability of the layer by this direction, if no cover over it is sampled.
     pub probability: T,
 }
 
-/// A layer. What is given here serves covers.
+/// A layer. The defaults serve covers.
 pub trait LayerModel<T: Real> {
     /// Its entry in the registry.
     const LAYER: Layer;
-    /// What is special about it.
+    /// Its properties.
     const TRAITS: LayerTraits;
 
-    /// True where this side of the surface has the layer.
+    /// Lanes where this side of the surface has the layer.
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask;
 
     /// The layer's lobe. `tables` holds all materials' tables.
     fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T>;
 
-    /// The layer's albedo and transmittance. `left`: what the layers before it leave, but for the covers.
+    /// Albedo and transmittance of the layer. `left`: the light that the layers before it leave, but for the covers.
     fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T>;
 
     /// The layer in a direction of its lobe.
@@ -169,7 +169,7 @@ pub trait LayerModel<T: Real> {
         reflected + rest
     }
 
-    /// The probability of sampling the layer where none before it is sampled.
+    /// Sampling probability of the layer if none before it is sampled.
     #[inline(always)]
     fn chance(layers: &Layers<T>) -> T {
         layers[Self::LAYER].probability
@@ -181,34 +181,34 @@ pub trait LayerModel<T: Real> {
         share.albedo
     }
 
-    /// What is made of a direction that the layer's lobe draws with the numbers `xi`.
+    /// Modifies a direction that the layer's lobe sampled with the numbers `xi`.
     #[inline(always)]
     fn refined_sample(_: &Material<T>, _: &Surface<T>, _xi: [T; 3], drawn: LobeSample<T>) -> LobeSample<T> {
         drawn
     }
 
-    /// What is made of the lobe's (evaluate, density).
+    /// Modifies the lobe's (evaluate, density).
     #[inline(always)]
     fn refined(_: &Material<T>, _: &Surface<T>, _wi: Vec3<T>, evaluated: [T; 2]) -> [T; 2] {
         evaluated
     }
 
-    /// True where a direction is drawn first, and its Fresnel factor decides whether the layer is sampled.
+    /// Lanes where a direction is sampled first, and its Fresnel factor decides whether the layer is.
     #[inline(always)]
     fn decides_by_facet(_: &Material<T>) -> T::Mask {
         T::Mask::splat(false)
     }
 
-    /// Sets how often the layer and those after it are sampled, by a direction that was drawn first, with its weight and
-    /// the probability that it tells. True where the layers after it draw directions with numbers of their own.
+    /// Sets the sampling probabilities of the layer and those after it from a direction sampled first, with its weight and
+    /// probability. Returns the lanes in which the later layers sample with numbers of their own.
     #[inline(always)]
     fn pass_on(_: &Material<T>, _: &mut Layers<T>, _weight: T, _probability: T) -> T::Mask {
         T::Mask::splat(false)
     }
 }
 
-/// How often a cover is sampled that reflects `reflected`, where what is below would reflect `rest`: as [`sampled_share`]
-/// says; always where there is nothing below.
+/// Sampling probability of a cover that reflects `reflected`, if the layers below would reflect `rest`, as in
+/// [`sampled_share`]; 1 without layers below.
 #[inline(always)]
 fn cover_probability<T: Real>(reflected: T, rest: T) -> T {
     let (zero, one) = (T::zero(), T::one());

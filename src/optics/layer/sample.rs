@@ -11,16 +11,15 @@ use crate::optics::warp::split;
 /// A direction drawn from a material.
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialSample<T: Real> {
-    /// Towards the light.
+    /// Unit direction to the light.
     pub wi: Vec3<T>,
-    /// What the path's throughput is multiplied by; 0 where the sample was absorbed.
+    /// Factor of the path's throughput; 0 if absorbed.
     pub throughput: Vec3<T>,
-    /// Density of the lobe that was chosen times the probability of choosing it, per steradian; 0 where that lobe is
-    /// weighed as a mirror (or the strategy asks for no density).
+    /// Density of the chosen lobe times its probability, per steradian; 0 for a mirror, or if the strategy needs no density.
     pub density: T,
-    /// True where the lobe is weighed as a mirror: light sampling has no share in this direction.
+    /// True for a mirror: light sampling cannot have drawn this direction.
     pub is_mirror: T::Mask,
-    /// The layer that was chosen, in some lane: for accounts of paths, nothing is computed from it.
+    /// The chosen layer of some lane: for records of paths only.
     pub layer: Layer,
 }
 
@@ -37,7 +36,7 @@ impl<T: Real> MaterialSample<T> {
         }
     }
 
-    /// `other` in its place where the mask holds.
+    /// `other` in the masked lanes, else `self`.
     #[inline(always)]
     fn replaced(self, mask: T::Mask, other: Self) -> Self {
         Self {
@@ -50,19 +49,20 @@ impl<T: Real> MaterialSample<T> {
     }
 }
 
-/// The numbers that a sample of a material takes, each in [0, 1).
+/// Random numbers of a material sample, each in [0, 1).
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialNumbers<T> {
-    /// Draw the direction. The first one also chooses the layer, and is stretched again ([`split`]), but where a facet's
-    /// Fresnel factor decides.
+    /// For the direction. The first one also chooses the layer and is remapped ([`split`]), unless a facet's Fresnel factor
+    /// decides.
     pub lobe: [T; 3],
-    /// Chooses the layer where the Fresnel factor of the direction decides ([`decides_by_facet`](super::decides_by_facet)).
+    /// For the choice of the layer, if the direction's Fresnel factor decides
+    /// ([`decides_by_facet`](super::decides_by_facet)).
     pub facet: T,
-    /// Draws the direction where the specular lobe passed it on to what is below.
+    /// For the direction below the specular lobe, if that passed it on.
     pub below: [T; 3],
 }
 
-/// Draws a direction from one of the layers. `wants_density` is false where no other strategy competes: then the geometric
+/// Samples a direction from one of the layers. `needs_density` is false if no other strategy competes: then the geometric
 /// lobe never computes its density.
 pub fn material_sample<T: Real>(
     material: &Material<T>,
@@ -70,7 +70,7 @@ pub fn material_sample<T: Real>(
     surface: &Surface<T>,
     layers: &Layers<T>,
     numbers: MaterialNumbers<T>,
-    wants_density: bool,
+    needs_density: bool,
 ) -> MaterialSample<T> {
     T::out_of_line(
         #[inline(always)]
@@ -81,7 +81,7 @@ pub fn material_sample<T: Real>(
                 surface,
                 layers: *layers,
                 numbers,
-                wants_density,
+                needs_density,
                 xi: numbers.lobe,
                 choice: numbers.lobe[0],
                 is_apart: T::Mask::splat(false),
@@ -99,17 +99,17 @@ struct Drawing<'a, T: Real> {
     material: &'a Material<T>,
     tables: &'a [f32],
     surface: &'a Surface<T>,
-    /// With what directions have told that were drawn first.
+    /// Shares, updated by directions that were sampled first.
     layers: Layers<T>,
     numbers: MaterialNumbers<T>,
-    wants_density: bool,
+    needs_density: bool,
     /// The numbers that draw a direction.
     xi: [T; 3],
     /// The number that chooses a layer.
     choice: T,
-    /// True where that is none of those that draw a direction.
+    /// Lanes in which the current layer samples no direction.
     is_apart: T::Mask,
-    /// True where no layer is chosen yet.
+    /// Lanes without a chosen layer.
     left: T::Mask,
     sample: MaterialSample<T>,
 }
@@ -149,8 +149,8 @@ impl<T: Real> LayerVisitor<T> for Drawing<'_, T> {
 }
 
 impl<T: Real> Drawing<'_, T> {
-    /// What a direction drawn from a layer makes of a path. The probability with which the layer was chosen and the one
-    /// that the direction tells differ where the horizon policy has turned the direction.
+    /// Effect on the path of a direction sampled from a layer. If the horizon policy has turned the direction, its own
+    /// selection probability differs from the one used to sample: keep the latter.
     #[inline(always)]
     fn finished<L: LayerModel<T>>(
         &self,
@@ -161,7 +161,7 @@ impl<T: Real> Drawing<'_, T> {
         let share = &self.layers[L::LAYER];
         let is_mirror = is_mirror(&lobe.shape);
         let mut density = T::zero();
-        if self.wants_density && !is_mirror.all() {
+        if self.needs_density && !is_mirror.all() {
             let [_, of_lobe] = lobe_of::<T, L>(self.material, self.surface, lobe, drawn.wi);
             let density_there = share.reached * toward.probability * of_lobe;
             density = T::select(is_mirror, T::zero(), density_there);

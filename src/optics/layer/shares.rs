@@ -1,4 +1,4 @@
-//! What each layer has of a material's light and samples, for one view direction.
+//! Shares of a material's layers in light and samples, for one view direction.
 
 use std::ops::{Index, IndexMut};
 
@@ -7,20 +7,20 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 
-/// What a layer has for one view direction.
+/// Share of one layer for a view direction.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerShare<T> {
-    /// What it reflects or transmits of light from everywhere, of what the covers over it let through.
+    /// Albedo under uniform light, relative to the light that the covers over it transmit.
     pub albedo: Vec3<T>,
-    /// What the covers over it let through, in and out.
+    /// Transmittance of the covers over it, in and out.
     pub transmittance: Vec3<T>,
     /// The probability that no cover over it is sampled.
     pub reached: T,
-    /// The probability of sampling it then; on average, where a facet decides.
+    /// Sampling probability if no cover is sampled; on average, if a facet decides.
     pub probability: T,
 }
 
-/// What the layers have for one view direction, by [`Layer`].
+/// Shares of the layers for a view direction, by [`Layer`].
 #[derive(Clone, Copy, Debug)]
 pub struct Layers<T>([LayerShare<T>; Layer::ALL.len()]);
 
@@ -46,7 +46,7 @@ impl<T: Real> Layers<T> {
     }
 }
 
-/// What each layer has for this view.
+/// Computes the shares of all layers for a view.
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
     T::out_of_line(
         #[inline(always)]
@@ -89,9 +89,9 @@ struct Albedos<'a, T: Real> {
     tables: &'a [f32],
     surface: &'a Surface<T>,
     layers: Layers<T>,
-    /// What the covers so far let through.
+    /// Transmittance of the covers so far.
     transmittance: Vec3<T>,
-    /// What the other layers so far leave.
+    /// Light left by the other layers so far.
     left: Vec3<T>,
 }
 
@@ -150,8 +150,8 @@ impl<T: Real> LayerVisitor<T> for Reached<T> {
     }
 }
 
-/// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
-/// is only the specular lobe below the covers, its Fresnel term at the view's angle.
+/// Albedo of all layers, linear RGB in [0, 1]. If only the specular lobe is below the covers, its Fresnel term at the view's
+/// angle.
 #[inline(always)]
 pub fn material_albedo<T: Real>(material: &Material<T>, surface: &Surface<T>, layers: &Layers<T>) -> Vec3<T> {
     let mut seen = SeenAlbedo {
@@ -173,7 +173,7 @@ struct SeenAlbedo<'a, T: Real> {
     layers: &'a Layers<T>,
     covers: Vec3<T>,
     below: Vec3<T>,
-    /// What all covers let through.
+    /// Transmittance of all covers.
     transmittance: Vec3<T>,
 }
 
@@ -191,7 +191,7 @@ impl<T: Real> LayerVisitor<T> for SeenAlbedo<'_, T> {
     }
 }
 
-/// The shading normal that leads a denoiser: the covers' and that of what lies below, by how often each is sampled.
+/// The shading normal that guides a denoiser: the covers' and that of the layers below, weighted by sampling probability.
 #[inline(always)]
 pub fn material_normal<T: Real>(
     material: &Material<T>,

@@ -1,4 +1,4 @@
-//! The specular lobe: it reflects the Fresnel share, and leaves the rest to base and transmission.
+//! The specular lobe: it reflects the Fresnel share; base and transmission share the rest.
 
 use super::facet::{decides_by_facet, left_by_facet, mirrored_share, passes_on, shares_facets};
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerShare, LayerToward, LayerTraits, Layers};
@@ -35,7 +35,7 @@ impl<T: Real> LayerModel<T> for Specular {
         }
     }
 
-    /// Nothing is looked up where nothing lies below.
+    /// No look-up without layers below.
     #[inline(always)]
     fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
         let white = Vec3::splat(T::one());
@@ -45,7 +45,7 @@ impl<T: Real> LayerModel<T> for Specular {
         }
         LayerAlbedo {
             reflected: taken,
-            // Under the metal's share there is nothing; the rest lies under the dielectric alone.
+            // A metal has no layer below; the rest lies below the dielectric alone.
             transmittance: (white - by_dielectric).at_least_zero(),
         }
     }
@@ -66,8 +66,8 @@ impl<T: Real> LayerModel<T> for Specular {
         }
     }
 
-    /// All of what lies below the covers is shared out here: in proportion to the luminance that it reflects or transmits,
-    /// the specular lobe as [`sampled_share`] says.
+    /// Distributes all samples below the covers: in proportion to reflected and transmitted luminance, the specular lobe as
+    /// in [`sampled_share`].
     #[inline(always)]
     fn choose(material: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
         let (zero, one) = (T::zero(), T::one());
@@ -75,7 +75,7 @@ impl<T: Real> LayerModel<T> for Specular {
         let through = layers[Layer::Transmission].albedo.luminance();
         let share = sampled_share(specular / (specular + below).max(T::from_f64(1e-9)));
         let share = T::select(zero.less(below), share, one);
-        // What is passed on is what was not reflected, no estimate.
+        // The part passed on is exactly the part not reflected, no estimate.
         let share = T::select(passes_on(material), specular.min(one), share);
         let through = (one - share) * (through / below.max(T::from_f64(1e-9)));
         layers[Layer::Specular].probability = share;
@@ -85,7 +85,7 @@ impl<T: Real> LayerModel<T> for Specular {
         T::select(has_more(material), specular + below, alone)
     }
 
-    /// The Fresnel term at the view's angle where nothing lies below.
+    /// Without layers below: the Fresnel term at the view's angle.
     #[inline(always)]
     fn seen_albedo(material: &Material<T>, surface: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
         let cosine = surface.frame.normal.dot(surface.wo);
@@ -111,13 +111,13 @@ impl<T: Real> LayerModel<T> for Specular {
     }
 }
 
-/// True where anything lies below the specular lobe.
+/// Lanes with layers below the specular lobe.
 #[inline(always)]
 fn has_more<T: Real>(material: &Material<T>) -> T::Mask {
     material.has_base() | material.transmits()
 }
 
-/// What the specular lobe reflects of this view, and what it would if nothing of it were metal.
+/// Albedo of the specular lobe for a view, and that of its dielectric alone.
 #[inline(always)]
 fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
     let cosine = surface.frame.normal.dot(surface.wo);
@@ -137,7 +137,7 @@ fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &S
     ]
 }
 
-/// The same from a table, at a place in it.
+/// The same from a table at a position.
 #[inline(always)]
 fn albedos_in<T: Real>(
     material: &Material<T>,
@@ -154,12 +154,12 @@ fn albedos_in<T: Real>(
             rough_albedo(&terms.of_dielectric(), integrals),
         ];
     }
-    // What is metal in part has the other table.
+    // A partly metallic material has the other table.
     [albedo_lookup(tables, table, place); 2]
 }
 
-/// The probability of sampling the specular lobe, where no cover is sampled, for a direction that it mirrors to with this
-/// Fresnel factor.
+/// Sampling probability of the specular lobe, if no cover is sampled, for a direction that it mirrors to with this Fresnel
+/// factor.
 #[inline(always)]
 fn specular_probability<T: Real>(
     material: &Material<T>,
@@ -176,7 +176,7 @@ fn specular_probability<T: Real>(
         let cosine = half_vector_cosine(surface.wo, wi);
         let square = refracted_square(cosine, ior);
         let left = left_by_facet(material, surface, [cosine, square.safe_sqrt() / ior]);
-        // What is reflected totally is not refracted, whatever the model of the Fresnel factor says.
+        // Total reflection leaves nothing to refract, whichever Fresnel model is used.
         let refracted = T::select(T::zero().less(square), left.luminance(), T::zero());
         let of_facets = T::one() - layers[Layer::Base].probability;
         let share = mirrored_share(reflected, refracted);

@@ -1,5 +1,5 @@
-//! The refracting lobe: of lobes made of facets what the facet does not reflect, of others what the specular lobe leaves
-//! over on average.
+//! The refracting lobe: for microfacet lobes the share that the facet does not reflect, for others the mean share that the
+//! specular lobe leaves.
 
 use super::facet::{left_by_facet, mirrored_share, shares_facets};
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
@@ -75,7 +75,7 @@ impl<T: Real> LayerModel<T> for Transmission {
         layers[Layer::Transmission].albedo.luminance()
     }
 
-    /// It takes what no other layer does.
+    /// It takes the rest of the samples.
     #[inline(always)]
     fn chance(_: &Layers<T>) -> T {
         T::one()

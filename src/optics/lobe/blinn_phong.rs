@@ -9,7 +9,7 @@ use crate::optics::numeric::{expm1, log1p};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// What is special about the lobe.
+/// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
     // Single scattering.
     is_hemispherical: true,
@@ -44,8 +44,8 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
 pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let facet = facet(frame, wo, wi);
     let n = exponent(shape.roughness);
-    // ln cosθh: where the lobe is narrow from sin²θh by the tangential components, else from the cosine itself; each loses
-    // its digits where the other is taken.
+    // ln cosθh: for narrow lobes from sin²θh by the tangential components, else from the cosine; each loses precision where
+    // the other is used.
     let half = T::from_f64(0.5);
     let sine2 = facet.h.x * facet.h.x + facet.h.y * facet.h.y;
     let near = half * log1p(-sine2.min(half));

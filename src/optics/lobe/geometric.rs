@@ -13,7 +13,7 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
 
-/// What is special about the lobe.
+/// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
     // The horizon policy decides about samples below the surface.
     is_hemispherical: false,
@@ -101,7 +101,7 @@ pub fn weight<T: Real>(_shape: &LobeShape<'_, T>, _frame: &Frame<T>, _wo: Vec3<T
     T::one()
 }
 
-/// True where the widths differ.
+/// Lanes with different widths.
 #[inline(always)]
 fn is_stretched<T: Real>(shape: &LobeShape<'_, T>) -> bool {
     shape.anisotropy.differs(T::zero()).any()

@@ -8,7 +8,7 @@ use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// What is special about the lobe.
+/// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
     // Single scattering.
     is_hemispherical: true,

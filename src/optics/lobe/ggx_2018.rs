@@ -8,7 +8,7 @@ use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// What is special about the lobe: the same, since only the sampling differs.
+/// Properties of the lobe: those of GGX, since only the sampling differs.
 pub const TRAITS: LobeTraits = super::ggx::TRAITS;
 
 /// The reflection at a visible normal: a uniform point on the projected half disc of the stretched hemisphere.

@@ -7,7 +7,7 @@ use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_sphere;
 
-/// What is special about the lobe.
+/// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
     is_hemispherical: true,
     is_anisotropic: false,

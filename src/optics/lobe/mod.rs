@@ -1,8 +1,8 @@
 //! The lobes behind one interface, and their registry.
 //!
-//! A lobe module has three functions. `sample` turns uniform numbers into a direction towards the light; `density` is
-//! the density of what `sample` returns, per steradian over the whole sphere; `weight` is evaluate/density, the factor
-//! that a sample carries. What lies below the horizon is settled here, once for all lobes ([`lobe_sample`]).
+//! A lobe module has three functions. `sample` turns uniform numbers into a direction to the light; `density` is the density
+//! of `sample`'s results, per steradian over the whole sphere; `weight` is evaluate/density, the factor of a sample. The
+//! horizon policy is common to all lobes ([`lobe_sample`]).
 //!
 //! To add a lobe: one Rust file with its [`LobeTraits`], one WGSL file of the same name, one line in the registry below.
 
@@ -57,7 +57,7 @@ macro_rules! lobes {
             pub fn module(self) -> &'static str {
                 match self { $(Lobe::$variant => stringify!($module),)* }
             }
-            /// What is special about it.
+            /// Its properties.
             #[inline(always)]
             pub const fn traits(self) -> LobeTraits {
                 match self { $(Lobe::$variant => $module::TRAITS,)* }
@@ -120,47 +120,47 @@ impl Lobe {
         self.traits().has_curves
     }
 
-    /// The curves that make a difference: any one where it reads none.
+    /// The curves that affect the lobe; a single one if none does.
     pub fn curves(self) -> &'static [Curve] {
         if self.has_curves() { Curve::ALL } else { &[Curve::Sqrt] }
     }
 
-    /// True where the roughness makes a difference.
+    /// True if the lobe depends on roughness.
     pub fn has_roughness(self) -> bool {
         self.traits().width != Width::Fixed
     }
 }
 
-/// What is special about a lobe: said in its own file, read by everything else.
+/// Properties of a lobe, stated in its own file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LobeTraits {
-    /// The model loses what it samples below the shading normal's horizon; else the horizon policy decides.
+    /// True if the model loses samples below the shading normal's horizon; otherwise the horizon policy decides.
     pub is_hemispherical: bool,
-    /// It reads the anisotropy.
+    /// True if it depends on anisotropy.
     pub is_anisotropic: bool,
     /// Whether it is made of facets, each of which refracts by itself.
     pub facets: Facets,
-    /// How wide it is.
+    /// Dependence of its width.
     pub width: Width,
-    /// It is a ball around the mirror direction whose radius is drawn by a curve D(ξ): for D ≤ 1 no sample is lower above
-    /// the surface than (1 − R)(n·r − R).
+    /// True if it is a ball around the mirror direction whose radius follows a curve D(ξ): for D ≤ 1 no sample is lower
+    /// above the surface than (1 − R)(n·r − R).
     pub has_curves: bool,
-    /// Evaluate over density is always 1. Then what a mirror does not reflect is passed on to what is below it, and under
-    /// the mirror policy no light is lost.
+    /// True if evaluate over density is always 1. Then the light that a mirror does not reflect is passed on to the layers
+    /// below, and the mirror policy loses no light.
     pub weighs_one: bool,
-    /// Radius about the mirror direction, in radians per roughness, where plots leave the density out: its peak is infinite
-    /// there, though integrable.
+    /// Radius about the mirror direction, in radians per roughness, that plots omit: the density has an integrable
+    /// singularity there.
     pub peak: f64,
 }
 
-/// What the angular width of a lobe goes with.
+/// Dependence of a lobe's angular width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
-    /// It is as wide at any roughness.
+    /// Constant width.
     Fixed,
-    /// With the roughness.
+    /// Proportional to roughness.
     Roughness,
-    /// With its square, α: the roughness of GGX, which textures and files are made for.
+    /// Proportional to its square, α: the roughness of GGX, for which textures and files are made.
     Alpha,
 }
 
@@ -174,8 +174,8 @@ pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
     }
 }
 
-/// The roughness at which a lobe is as wide as one of this roughness that is turned about a refracted direction. Facets turn
-/// what they refract by |1 − 1/η| of their tilt, what they mirror by twice the tilt (mathematics, section 7).
+/// Roughness of a lobe that is as wide as a microfacet refraction of this roughness. Facets turn refracted light by |1 −
+/// 1/η| of their tilt, mirrored light by twice the tilt (mathematics, section 7).
 #[inline(always)]
 pub fn refracting_roughness<T: Real>(lobe: Lobe, roughness: T, eta: T) -> T {
     let share = (T::one() - T::one() / eta).abs() * T::from_f64(0.5);
@@ -194,7 +194,7 @@ fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
     let square = roughness * roughness;
     let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
     let turn = share * tilt;
-    // The positive root of 4 x² + 3 x = turn, so written that nothing cancels.
+    // The positive root of 4 x² + 3 x = turn, written without cancellation.
     let root = (number(9.0) + number(16.0) * turn).sqrt();
     (turn + turn) / (number(3.0) + root)
 }
@@ -203,7 +203,7 @@ fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
 pub type RawSampler<T> = for<'a> fn(&LobeShape<'a, T>, &Frame<T>, Vec3<T>, [T; 3]) -> Vec3<T>;
 
 named! {
-    /// What happens to samples that point below the surface.
+    /// Horizon policy: treatment of samples below the surface.
     Horizon {
         Mirror = 0, "mirror", "Mirror", "They are reflected at the surface: no light is lost.";
         Absorb = 1, "absorb", "Absorb", "They are lost: the surface darkens towards grazing angles.";
@@ -211,22 +211,22 @@ named! {
     }
 }
 
-/// How a lobe draws the facets that it is made of.
+/// Sampling of a microfacet lobe's facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Facets {
-    /// It has none.
+    /// No facets.
     None = 0,
-    /// Those that the viewer sees, in proportion to D G1 (wo·h)/cosθo.
+    /// Visible facets, in proportion to D G1 (wo·h)/cosθo.
     Visible = 1,
-    /// All, in proportion to D cosθh.
+    /// All facets, in proportion to D cosθh.
     All = 2,
 }
 
-/// What a lobe needs to know besides directions.
+/// Parameters of a lobe, besides directions.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeShape<'a, T> {
-    /// The lobe.
+    /// Model of the lobe.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,
@@ -236,14 +236,14 @@ pub struct LobeShape<'a, T> {
     pub roughness: T,
     /// Stretch along the tangent in [−1, 1]; 0 is isotropic.
     pub anisotropy: T,
-    /// 0 where the lobe reflects. Where it refracts: the index of refraction behind the surface over that before it.
+    /// Relative index of refraction, behind over before the surface; 0 for reflection.
     pub eta: T,
-    /// The custom curve's table; empty where the curve has a name.
+    /// Table of the custom curve; empty for a named curve.
     pub table: &'a [f32],
 }
 
 impl<T: Real> LobeShape<'_, T> {
-    /// True where the lobe refracts, which it does in all lanes or in none.
+    /// True if the lobe refracts, in all lanes or none.
     #[inline(always)]
     pub fn refracts(&self) -> bool {
         self.eta.differs(T::zero()).any()
@@ -253,9 +253,9 @@ impl<T: Real> LobeShape<'_, T> {
 /// A direction drawn from a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeSample<T> {
-    /// Towards the light, above the geometric horizon; below it under [`Horizon::None`], or where the sample was absorbed.
+    /// Unit direction to the light, above the geometric horizon; below it under [`Horizon::None`], or if absorbed.
     pub wi: Vec3<T>,
-    /// Evaluate over density: 0 where the sample was absorbed.
+    /// Evaluate over density; 0 if absorbed.
     pub weight: T,
 }
 
@@ -272,21 +272,21 @@ pub fn alpha_from_roughness<T: Real>(roughness: T) -> T {
     (roughness * roughness).max(T::from_f64(ALPHA_MIN))
 }
 
-/// The stretch of a width along tangent and bitangent: √((1 + s)/(1 − s)), s = 0.9 × anisotropy, so that the product
-/// of both widths stays what it was.
+/// Scale of the widths along tangent and bitangent: √((1 + s)/(1 − s)), s = 0.9 × anisotropy, so that the product of both is
+/// unchanged.
 #[inline(always)]
 pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
     let s = T::from_f64(0.9) * anisotropy.clamp(-T::one(), T::one());
     ((T::one() + s) / (T::one() - s)).sqrt()
 }
 
-/// The anisotropy in [0, 1] whose narrower width is this share of the wider one; 1 where none is so narrow.
+/// Anisotropy in [0, 1] with this ratio of the narrower width to the wider one; 1 for smaller ratios.
 pub fn anisotropy_from_ratio(ratio: f64) -> f64 {
     ((1.0 - ratio) / (0.9 * (1.0 + ratio))).clamp(0.0, 1.0)
 }
 
-/// True where the lobe is so narrow that it is weighed as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted
-/// direction by |1 − 1/η| of their own tilt: where both sides are nearly alike, everything goes straight on.
+/// Lanes where the lobe is so narrow that it counts as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted direction by
+/// |1 − 1/η| of their tilt: for similar indices, light passes straight through.
 #[inline(always)]
 pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
     let mut width = lobe_width(shape.lobe, shape.roughness);
@@ -298,20 +298,20 @@ pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
     width.less(T::from_f64(MIRROR_WIDTH))
 }
 
-/// True where the lobe refracts, and does so facet by facet.
+/// Lanes where the lobe refracts facet by facet.
 #[inline(always)]
 pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
     shape.refracts() && shape.lobe.facets() != Facets::None
 }
 
-/// How a lobe is seen: where it refracts as a whole, by a viewer behind the surface.
+/// View of a lobe; if it refracts as a whole, that of a viewer behind the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeView<T> {
-    /// The shading frame on the side that the lobe fills; on the viewer's where facets refract.
+    /// Shading frame on the lobe's side; on the viewer's side if facets refract.
     pub frame: Frame<T>,
     /// The geometric normal on the side that the lobe fills.
     pub normal: Vec3<T>,
-    /// Towards the viewer whose mirror direction is the lobe's middle; the real viewer where facets refract.
+    /// Unit direction to the viewer whose mirror direction is the lobe's centre; the real viewer if facets refract.
     pub wo: Vec3<T>,
     /// The roughness of the lobe that is seen reflected there.
     pub roughness: T,
@@ -328,10 +328,10 @@ impl<T: Real> LobeView<T> {
     }
 }
 
-/// The view in which a refracting lobe is a reflecting one. Facets refract each by itself, so only the side changes. Any
-/// other lobe is turned about the refracted direction: what a viewer behind the surface, whose mirror direction that is,
-/// sees reflected, by a lobe as narrow as facets would make it ([`refracting_roughness`]; mathematics, section 7). Under
-/// total reflection, and for `eta` 0, the lobe reflects.
+/// View in which a refracting lobe is a reflecting one. Facets refract individually, so only the side changes. Any other
+/// lobe is centred on the refracted direction: the reflection seen by a viewer behind the surface, whose mirror direction
+/// that is, by a lobe as narrow as facets would make it ([`refracting_roughness`]; mathematics, section 7). Under total
+/// reflection, and for `eta` 0, the lobe reflects.
 #[inline(always)]
 pub fn lobe_view<T: Real>(
     shape: &LobeShape<'_, T>,
@@ -372,8 +372,8 @@ pub fn lobe_view<T: Real>(
     }
 }
 
-/// The middle of the lobe: the mirror direction, or the refracted one. Behind the critical angle a lobe made of facets
-/// has none, and what is left of it lies on the other side of the view.
+/// Centre of the lobe: the mirror direction, or the refracted one. Beyond the critical angle a microfacet lobe has none, and
+/// its remainder is on the other side of the view.
 pub fn lobe_middle<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -387,9 +387,9 @@ pub fn lobe_middle<T: Real>(
     view.wo.mirrored_about(view.frame.normal)
 }
 
-/// Draws a direction. `surface_normal` is the geometric normal, on the side of `wo`: it is its horizon that counts, so
-/// that no reflected ray enters the surface, and no refracted one stays outside, where the shading normal leans. Source
-/// of the mirror policy: mathematics, section 3.
+/// Samples a direction. `surface_normal` is the geometric normal, on the side of `wo`. Its horizon is decisive, so that no
+/// reflected ray enters the surface, and no refracted one stays outside, under a leaning shading normal. Source of the
+/// mirror policy: mathematics, section 3.
 pub fn lobe_sample<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -418,7 +418,7 @@ pub fn lobe_sample<T: Real>(
             };
             let below = view.normal.dot(raw).less(T::zero());
             match shape.horizon {
-                // What is lost in any case is left where it is: it tells of the facet that it was drawn for.
+                // A lost sample keeps its direction, which identifies its facet.
                 Horizon::Mirror => LobeSample {
                     wi: Vec3::select(below & T::zero().less(weight), raw.reflected_at_plane(view.normal), raw),
                     weight,
@@ -433,8 +433,8 @@ pub fn lobe_sample<T: Real>(
     )
 }
 
-/// (evaluate, density) of [`lobe_sample`] for a direction: evaluate with the cosine included, density per steradian of
-/// what is kept. Both 0 on the side of the surface that the lobe does not fill, except under [`Horizon::None`].
+/// (evaluate, density) of [`lobe_sample`] for a direction: evaluate includes the cosine, density is per steradian, of kept
+/// samples. Both 0 on the side that the lobe does not fill, except under [`Horizon::None`].
 pub fn lobe_evaluate<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,

@@ -1,4 +1,4 @@
-//! A lobe with all its settings: what is sampled, fitted, drawn and compared.
+//! A lobe with all its settings, for sampling, fitting, plotting and comparison.
 
 use super::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, Width, lobe_evaluate, raw_density};
 use crate::optics::curve::Curve;
@@ -11,21 +11,21 @@ use crate::optics::vector::{Vec3, vec3};
 pub struct LobeModel {
     /// Name in legends and columns.
     pub name: String,
-    /// The lobe.
+    /// Model of the lobe.
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,
-    /// What happens below the horizon.
+    /// Horizon policy.
     pub horizon: Horizon,
     /// Perceptual roughness in [0, 1].
     pub roughness: f64,
     /// Stretch in [−1, 1].
     pub anisotropy: f64,
-    /// 0 where the lobe reflects, else the relative index of refraction.
+    /// Relative index of refraction; 0 for reflection.
     pub eta: f64,
     /// Turn of the tangent out of the plane of incidence, radians.
     pub rotation_rad: f64,
-    /// The custom curve's table; empty where the curve has a name.
+    /// Table of the custom curve; empty for a named curve.
     pub table: Vec<f32>,
 }
 
@@ -60,7 +60,7 @@ impl LobeModel {
         }
     }
 
-    /// As the optics take it, in a precision.
+    /// The lobe's parameters in a precision.
     pub fn shape<T: Real>(&self) -> LobeShape<'_, T> {
         LobeShape {
             lobe: self.lobe,
@@ -83,23 +83,23 @@ impl LobeModel {
         lobe_evaluate(&self.shape(), &self.frame(), NORMAL, wo, wi)
     }
 
-    /// Density of what the lobe draws before the horizon policy, per steradian over the whole sphere.
+    /// Density of the lobe's samples before the horizon policy, per steradian over the whole sphere.
     pub fn raw_density(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> f64 {
         raw_density(&self.shape(), &self.frame(), wo, wi)
     }
 
-    /// True where the lobe looks the same on both sides of the plane of incidence.
+    /// True if the lobe is symmetric about the plane of incidence.
     pub fn is_symmetric(&self) -> bool {
         self.anisotropy == 0.0 || !self.lobe.is_anisotropic()
     }
 
-    /// Radius about the mirror direction, in radians, that plots leave out: where the density has an (integrable) infinite
-    /// peak, its height would be that of the nearest point drawn.
+    /// Radius about the mirror direction, in radians, that plots omit: an integrable singularity would be as high as its
+    /// nearest sample point.
     pub fn peak_radius_rad(&self) -> f64 {
         self.lobe.traits().peak * self.roughness
     }
 
-    /// False where the roughness is so small that the lobe has no density to plot or fit.
+    /// False if the roughness is too small for a density to plot or fit.
     pub fn has_density(&self) -> bool {
         self.roughness >= roughness_min(self.lobe)
     }

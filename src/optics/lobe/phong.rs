@@ -9,7 +9,7 @@ use crate::optics::numeric::{expm1, log1p};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// What is special about the lobe.
+/// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
     is_hemispherical: true,
     is_anisotropic: false,
@@ -42,7 +42,7 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
 #[inline(always)]
 pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let apart = wi - wo.mirrored_about(frame.normal);
-    // 1 − cosα from the difference of the two directions: exact where the lobe is narrow.
+    // 1 − cosα from the difference of the two directions: exact for narrow lobes.
     let versine = T::from_f64(0.5) * apart.dot(apart);
     let in_lobe = versine.less(T::one());
     let n = exponent(shape.roughness);

@@ -13,7 +13,7 @@ const FLOOR: f64 = 1.0 / 512.0;
 /// The channel of the last node.
 const CEILING: f64 = 128.0;
 
-/// What a screen shows at each node, sRGB-encoded in [0, 1]; red changes fastest.
+/// Display value at each node, sRGB-encoded in [0, 1]; red varies fastest.
 static TABLE: LazyLock<Vec<[f32; 3]>> = LazyLock::new(|| {
     let bytes = include_bytes!("../../../assets/tone/aces2.table");
     let numbers = bytes.as_chunks::<2>().0.iter();

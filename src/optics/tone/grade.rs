@@ -1,14 +1,14 @@
-//! Changes of a picture before its tone curve: white balance, contrast, saturation.
+//! Colour grading before the tone curve: white balance, contrast, saturation.
 
 use super::LUMINANCE;
 use crate::optics::blackbody::blackbody_color;
 use crate::optics::primaries::{Matrix, rec709_adapted};
 use crate::optics::vector::Vec3;
 
-/// What is neither brightened nor darkened by contrast.
+/// Luminance that contrast leaves unchanged.
 const MIDDLE_GREY: f32 = 0.18;
 
-/// White balance, contrast and saturation, ready to apply; each is left out where it changes nothing.
+/// White balance, contrast and saturation, ready to apply; neutral ones are skipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Grade {
     balance: Option<[Vec3<f32>; 3]>,
@@ -17,11 +17,11 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// The temperature of light that appears white, in K, at which nothing changes.
+    /// Neutral white point, in K.
     pub const NEUTRAL_K: f32 = 6500.0;
 
-    /// `white_k`: the black body whose light becomes white. `contrast`: the power around middle grey. `saturation`: the distance
-    /// from grey. [`Grade::NEUTRAL_K`], 1 and 1 change nothing.
+    /// `white_k`: temperature of the black body whose light becomes white. `contrast`: the power around middle grey.
+    /// `saturation`: the distance from grey. [`Grade::NEUTRAL_K`], 1 and 1 are neutral.
     pub fn new(white_k: f32, contrast: f32, saturation: f32) -> Self {
         let [from, to] = [white_k, Self::NEUTRAL_K].map(|kelvin| blackbody_color(f64::from(kelvin)));
         let balance = (white_k != Self::NEUTRAL_K).then(|| rec709_adapted(from, to));

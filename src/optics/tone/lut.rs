@@ -1,4 +1,4 @@
-//! Tables of colours, by which a picture is given a look.
+//! Look-up tables (LUTs) of colours.
 
 use crate::optics::vector::{Vec3, vec3};
 
@@ -7,23 +7,23 @@ use crate::optics::vector::{Vec3, vec3};
 pub struct Lut {
     /// Entries along each side, at least 2.
     pub size: usize,
-    /// True where each channel has a curve of its own, false where the table is a cube, red going fastest.
+    /// True for a curve per channel, false for a cube with red varying fastest.
     pub is_one_dimensional: bool,
-    /// What the first and the last entries stand for.
+    /// Inputs of the first and the last entries.
     pub domain: [[f32; 3]; 2],
     /// `size` entries, or `size`³.
     pub entries: Vec<[f32; 3]>,
 }
 
 impl Lut {
-    /// What codes become, linear between entries; codes beyond the domain count as its ends.
+    /// Applies the table to codes, linear between entries; codes are clamped to the domain.
     pub fn apply(&self, codes: Vec3<f32>) -> Vec3<f32> {
         let last = (self.size - 1) as f32;
         let [low, high] = self.domain;
         let codes = codes.to_f32();
         let place = |i: usize| {
             let share = (codes[i] - low[i]) / (high[i] - low[i]);
-            // What is no number counts as the least.
+            // NaN counts as the lowest input.
             let at = last * if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
             let entry = (at as usize).min(self.size - 2);
             (entry, at - entry as f32)

@@ -28,8 +28,8 @@ named! {
     }
 }
 
-/// Display-referred linear Rec. 709 in [0, 1] from exposed scene-referred linear Rec. 709. What is negative or not a
-/// number counts as 0, what is beyond [`SCENE_MAX`] as that.
+/// Tone maps exposed scene-referred linear Rec. 709 to display-referred linear Rec. 709 in [0, 1]. Negative values and NaN
+/// count as 0; values are clamped to [`SCENE_MAX`].
 #[inline(always)]
 pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
     let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
@@ -44,7 +44,7 @@ pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
     display.map(|x| x.clamp(T::zero(), T::one()))
 }
 
-/// The largest scene-referred value told from others: the largest half float.
+/// Largest scene-referred value: the largest half float.
 pub const SCENE_MAX: f64 = 65504.0;
 
 /// [`tone_agx`] with the look that its author calls punchy.
@@ -59,7 +59,7 @@ pub fn tone_agx_punchy<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 
 /// The power of AgX's punchy look, on encoded values.
 const PUNCHY_POWER: f64 = 1.35;
-/// Its saturation.
+/// Saturation of the punchy look.
 const PUNCHY_SATURATION: f64 = 1.4;
 /// Luminance of Rec. 709's primaries.
 pub(super) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
@@ -72,7 +72,7 @@ pub fn tone_agx<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     agx(scene, |encoded| encoded)
 }
 
-/// [`tone_agx`] with a look: a change of what its sigmoid gave, before the outset.
+/// [`tone_agx`] with a look: applied after the sigmoid, before the outset.
 #[inline(always)]
 fn agx<T: Scalar>(scene: Vec3<T>, look: impl Fn(Vec3<T>) -> Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
@@ -117,7 +117,7 @@ pub fn tone_aces<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let darkest = scene.x.min(scene.y).min(scene.z);
-    // Takes away the reflectance of 0.04 that every dielectric adds to its base colour.
+    // Subtracts the reflectance of 0.04 that every dielectric adds to its base colour.
     let offset = T::select(darkest.less(c(0.08)), darkest - c(6.25) * darkest * darkest, c(0.04));
     let color = scene - Vec3::splat(offset);
     let peak = color.max_component();
@@ -132,7 +132,7 @@ pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 /// Peak above which PBR Neutral compresses.
 pub const NEUTRAL_START: f64 = 0.8 - 0.04;
 
-/// As it is, cut off by [`tone_map`].
+/// Linear, clamped by [`tone_map`].
 #[inline(always)]
 pub fn tone_none<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     scene

@@ -1,4 +1,4 @@
-//! Open Image Denoise's filter as a safe value: pictures in, a picture out.
+//! A safe wrapper of Open Image Denoise's filter.
 
 use std::ffi::{CStr, c_int, c_void};
 use std::ptr;
@@ -13,21 +13,21 @@ const FLOAT3: c_int = 3;
 const QUALITY_FAST: c_int = 4;
 const QUALITY_HIGH: c_int = 6;
 /// `OIDN_ERROR_CANCELLED`.
-const STOPPED: c_int = 6;
-/// Memory that the library is asked not to exceed, MB: larger pictures it cuts into tiles.
+const CANCELLED: c_int = 6;
+/// Memory limit of the library in MB; it cuts larger images into tiles.
 const MEMORY_MB: c_int = 1500;
-/// Pixels that a picture is continued by beyond its border, as in a mirror: the library tints what lies at the border, in
-/// the corners of a picture of one colour by up to 80 %.
+/// Pixels of mirrored padding on each side. Without it, the library tints the border: in the corners of a uniform image by
+/// up to 80 %.
 const BORDER: usize = 16;
-/// Bytes of a pixel.
+/// Bytes per pixel.
 const PIXEL_BYTES: usize = size_of::<[f32; 3]>();
 
-/// How carefully a picture is filtered.
+/// Quality of filtering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
-    /// In about half the time.
+    /// About half the time of `High`.
     Fast,
-    /// As well as the library can.
+    /// The library's best quality.
     High,
 }
 
@@ -48,7 +48,7 @@ pub(super) struct Device<'a> {
 }
 
 impl<'a> Device<'a> {
-    /// The fastest there is.
+    /// The fastest device available.
     pub(super) fn of(library: &'a Library) -> Result<Self, LibraryError> {
         let functions = &library.functions;
         // SAFETY: 0 is `OIDN_DEVICE_TYPE_DEFAULT`; a null handle is an answer.
@@ -65,13 +65,13 @@ impl<'a> Device<'a> {
         Ok(device)
     }
 
-    /// A parameter of the device.
+    /// An integer parameter of the device.
     pub(super) fn int(&self, name: &CStr) -> i32 {
         // SAFETY: the handle is live.
         unsafe { (self.functions.get_device_int)(self.handle, name.as_ptr()) }
     }
 
-    /// The error of the calls since the last check. (With a null handle: why there is no device.)
+    /// The error of the calls since the last check; with a null handle, the reason why there is no device.
     fn check(&self) -> Result<(), LibraryError> {
         let mut text = ptr::null();
         // SAFETY: the message lives until the next error of this thread.
@@ -81,7 +81,7 @@ impl<'a> Device<'a> {
         };
         match (code, self.handle.is_null()) {
             (0, false) => Ok(()),
-            (STOPPED, _) => Err(LibraryError::Stopped),
+            (CANCELLED, _) => Err(LibraryError::Cancelled),
             (0, true) => Err(LibraryError::Device("there is no device for it".to_owned())),
             _ => Err(LibraryError::Device(text)),
         }
@@ -97,7 +97,7 @@ impl Drop for Device<'_> {
     }
 }
 
-/// A picture in the device's memory.
+/// An RGB image in the device's memory.
 struct Buffer<'a> {
     device: Arc<Device<'a>>,
     handle: BufferHandle,
@@ -145,16 +145,16 @@ impl Drop for Buffer<'_> {
     }
 }
 
-/// What is seen at each pixel beside its light: what the filter tells edges and textures by.
+/// Guide images, by which the filter preserves edges and textures.
 #[derive(Clone, Copy, Debug)]
 pub struct Guides<'a> {
-    /// Share of the light that is reflected or let through, [0, 1].
+    /// Albedo in [0, 1]: share of the light that is reflected or transmitted.
     pub albedo: &'a [[f32; 3]],
-    /// Shading normal in the world, of length at most 1.
+    /// Shading normal in world space, of length at most 1.
     pub normal: &'a [[f32; 3]],
 }
 
-/// A filter for pictures of one size, with guides.
+/// A filter with guides for images of one size.
 pub(super) struct Filter<'a> {
     device: Arc<Device<'a>>,
     handle: FilterHandle,
@@ -164,15 +164,15 @@ pub(super) struct Filter<'a> {
     albedo: Buffer<'a>,
     normal: Buffer<'a>,
     output: Buffer<'a>,
-    /// The scale that the filter was committed with.
+    /// The input scale with which the filter was committed.
     input_scale: f32,
 }
 
 impl<'a> Filter<'a> {
-    /// A filter on this device.
+    /// A filter for images of `size` (width, height) in pixels.
     pub(super) fn new(device: &Arc<Device<'a>>, size: [usize; 2], quality: Quality) -> Result<Self, LibraryError> {
         let functions = device.functions;
-        let pixels = bordered(size).iter().product();
+        let pixels = padded_size(size).iter().product();
         // SAFETY: the device is live, the name a C string.
         let handle = unsafe { (functions.new_filter)(device.handle, c"RT".as_ptr()) };
         let filter = Self {
@@ -206,7 +206,7 @@ impl<'a> Filter<'a> {
     }
 
     fn set_image(&self, name: &CStr, buffer: &Buffer<'_>) {
-        let [width, height] = bordered(self.size);
+        let [width, height] = padded_size(self.size);
         // SAFETY: the buffer has width × height pixels of this format and lives as long as the filter.
         unsafe {
             let set = self.device.functions.set_filter_image;
@@ -224,21 +224,19 @@ impl<'a> Filter<'a> {
         }
     }
 
-    /// Whether it is one for pictures of this size and quality.
+    /// Whether the filter has this size and quality.
     pub(super) fn fits(&self, size: [usize; 2], quality: Quality) -> bool {
         (self.size, self.quality) == (size, quality)
     }
 
-    /// Of its pictures.
+    /// Number of pixels of its images.
     pub(super) fn pixels(&self) -> usize {
         self.size.iter().product()
     }
 
-    /// By how many pixels parts of a picture must overlap that are filtered by themselves, and what their places must be
-    /// multiples of.
+    /// Overlap of separately filtered parts, and alignment of their positions, both in pixels.
     pub(super) fn overlap_and_alignment(&self) -> [usize; 2] {
-        // The library knows both only of filters that are committed.
-        // SAFETY: the filter is live.
+        // The library knows both only after a commit.
         unsafe { (self.device.functions.commit_filter)(self.handle) };
         let number = |name: &CStr| {
             // SAFETY: the filter is live.
@@ -248,22 +246,22 @@ impl<'a> Filter<'a> {
         [number(c"tileOverlap"), number(c"tileAlignment").max(1)]
     }
 
-    /// Sets the guides of the pictures that follow.
-    pub(super) fn guide(&self, guides: Guides<'_>) {
-        self.albedo.write(&continued(guides.albedo, self.size));
-        self.normal.write(&continued(guides.normal, self.size));
+    /// Sets the guides of the following runs.
+    pub(super) fn set_guides(&self, guides: Guides<'_>) {
+        self.albedo.write(&padded(guides.albedo, self.size));
+        self.normal.write(&padded(guides.normal, self.size));
     }
 
-    /// A picture without its noise. `input_scale` brings its values to where the filter works best: middle grey to 0.18.
-    /// Ends soon after `stops` has become true, with [`LibraryError::Stopped`].
+    /// Denoises an image. `input_scale` maps its middle grey to 0.18, where the filter works best. Ends with
+    /// [`LibraryError::Cancelled`] soon after `cancel` becomes true.
     pub(super) fn run(
         &mut self,
         color: &[[f32; 3]],
         input_scale: f32,
-        stops: &AtomicBool,
+        cancel: &AtomicBool,
     ) -> Result<Vec<[f32; 3]>, LibraryError> {
         let functions = self.device.functions;
-        self.color.write(&continued(color, self.size));
+        self.color.write(&padded(color, self.size));
         // SAFETY: the filter and what it refers to are live; the flag outlives the monitor, which is taken away again.
         unsafe {
             if self.input_scale != input_scale {
@@ -271,45 +269,46 @@ impl<'a> Filter<'a> {
                 (functions.commit_filter)(self.handle);
                 self.input_scale = input_scale;
             }
-            let flag = ptr::from_ref(stops).cast_mut().cast();
-            (functions.set_filter_progress_monitor)(self.handle, Some(goes_on), flag);
+            let flag = ptr::from_ref(cancel).cast_mut().cast();
+            (functions.set_filter_progress_monitor)(self.handle, Some(continues), flag);
             (functions.execute_filter)(self.handle);
             (functions.set_filter_progress_monitor)(self.handle, None, ptr::null_mut());
         }
         self.device.check()?;
-        Ok(inner(&self.output.read(), self.size))
+        Ok(cropped(&self.output.read(), self.size))
     }
 }
 
-/// Whether a filter goes on: a [`ProgressMonitor`](super::library::ProgressMonitor) over a flag.
-unsafe extern "C" fn goes_on(stops: *mut c_void, _share: f64) -> bool {
+/// Progress callback over a cancellation flag: a [`ProgressMonitor`](super::library::ProgressMonitor) that returns false to
+/// cancel.
+unsafe extern "C" fn continues(cancel: *mut c_void, _share: f64) -> bool {
     // SAFETY: the pointer is that of the flag which `Filter::run` was given.
-    !unsafe { &*stops.cast::<AtomicBool>() }.load(Relaxed)
+    !unsafe { &*cancel.cast::<AtomicBool>() }.load(Relaxed)
 }
 
-/// The size of a picture with its border.
-fn bordered(size: [usize; 2]) -> [usize; 2] {
+/// Size with padding.
+fn padded_size(size: [usize; 2]) -> [usize; 2] {
     size.map(|side| side + 2 * BORDER)
 }
 
-/// The place in a row of `side` pixels that is seen at `place` of the row with its border.
+/// Index in a row of `side` pixels that is mirrored to index `place` of the padded row.
 fn mirrored(place: usize, side: usize) -> usize {
     let period = 2 * side;
     let along = (place + period * BORDER - BORDER) % period;
     along.min(period - 1 - along)
 }
 
-/// A picture with its border.
-fn continued(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
-    let [columns, rows] = bordered([width, height]);
+/// An image with mirrored padding.
+fn padded(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
+    let [columns, rows] = padded_size([width, height]);
     let row = |y: usize| &pixels[mirrored(y, height) * width..][..width];
     (0..rows)
         .flat_map(|y| (0..columns).map(move |x| row(y)[mirrored(x, width)]))
         .collect()
 }
 
-/// A picture without its border.
-fn inner(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
+/// An image without its padding.
+fn cropped(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
     let columns = width + 2 * BORDER;
     let rows = pixels.chunks_exact(columns).skip(BORDER).take(height);
     rows.flat_map(|row| &row[BORDER..BORDER + width]).copied().collect()

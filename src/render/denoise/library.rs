@@ -1,18 +1,17 @@
-//! Open Image Denoise, loaded at run time: found, checked, and its C functions bound. The only place that calls them is
-//! [`super::filter`].
+//! Open Image Denoise, loaded at run time: found, checked, and its C functions bound. Only [`super::filter`] calls them.
 //!
-//! The library is looked for in the folder that [`FOLDER_VARIABLE`] names, and there alone where it is set; beside the
+//! The library is searched in the folder of [`FOLDER_VARIABLE`], and only there if it is set. Otherwise: beside the
 //! executable; in the data folder, where `scripts/setup` puts it; then by the system's loader.
 
 use std::ffi::{CStr, OsStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// The environment variable that names the folder of the library.
+/// Environment variable with the folder of the library.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_OIDN";
 
-/// The oldest version whose filters have all the qualities, major and minor number.
-const OLDEST: [i32; 2] = [2, 3];
+/// The oldest supported version (major, minor): earlier ones lack a quality.
+const MIN_VERSION: [i32; 2] = [2, 3];
 
 #[cfg(target_os = "windows")]
 const NAME: &str = "OpenImageDenoise.dll";
@@ -21,33 +20,33 @@ const NAME: &str = "libOpenImageDenoise.2.dylib";
 #[cfg(not(any(target_os = "windows", target_os = "macos")))]
 const NAME: &str = "libOpenImageDenoise.so.2";
 
-/// The beginnings of the names of what the library itself needs, in the order in which it is needed. Loaded first where
-/// they lie beside it: the loader does not look there by itself.
-const NEEDED: [&str; 2] = ["libtbb.so.12", "libOpenImageDenoise_core.so"];
+/// File name prefixes of the library's own dependencies, in load order. Loaded first if they lie beside it, because the
+/// loader does not search there.
+const DEPENDENCIES: [&str; 2] = ["libtbb.so.12", "libOpenImageDenoise_core.so"];
 
 /// Why there is no denoiser.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LibraryError {
-    /// It lies nowhere.
+    /// The library was not found.
     #[error(
         "the denoiser Open Image Denoise 2 was not found: run `scripts/setup denoiser`, or name the folder of {NAME} by \
          {FOLDER_VARIABLE}"
     )]
     Missing,
-    /// The folder that the user named does not have it.
+    /// The user's folder does not have the library.
     #[error("{}: there is no {NAME} in this folder, which {FOLDER_VARIABLE} names", .0.display())]
     NotInFolder(PathBuf),
-    /// The file can't be loaded.
+    /// The file cannot be loaded.
     #[error("{}: can't be loaded as the denoiser ({reason}); install it again by `scripts/setup denoiser`", path.display())]
     Broken {
         /// The file.
         path: PathBuf,
-        /// What the loader said.
+        /// The loader's message.
         reason: String,
     },
-    /// It can't be used.
-    #[error("{}: Open Image Denoise {found} is too old, {}.{} or newer is needed", path.display(), OLDEST[0], OLDEST[1])]
-    Old {
+    /// The version is too old.
+    #[error("{}: Open Image Denoise {found} is too old, {}.{} or newer is needed", path.display(), MIN_VERSION[0], MIN_VERSION[1])]
+    TooOld {
         /// The file.
         path: PathBuf,
         /// Its version.
@@ -56,9 +55,9 @@ pub enum LibraryError {
     /// The library refuses to work here.
     #[error("the denoiser can't be used here: {0}")]
     Device(String),
-    /// Whoever asked for the picture does not want it any more.
+    /// The request was cancelled.
     #[error("denoising was stopped")]
-    Stopped,
+    Cancelled,
 }
 
 /// The C library's handle of a device (`OIDNDevice`).
@@ -67,8 +66,8 @@ pub(super) type DeviceHandle = *mut c_void;
 pub(super) type FilterHandle = *mut c_void;
 /// The C library's handle of a buffer (`OIDNBuffer`).
 pub(super) type BufferHandle = *mut c_void;
-/// What the C library calls while it filters (`OIDNProgressMonitorFunction`), with a pointer of the caller's and the share
-/// done, in [0, 1]; it stops at `false`.
+/// Callback of the C library during filtering (`OIDNProgressMonitorFunction`): gets the caller's pointer and the progress in
+/// [0, 1]; returning `false` cancels.
 pub(super) type ProgressMonitor = unsafe extern "C" fn(*mut c_void, f64) -> bool;
 
 macro_rules! functions {
@@ -114,7 +113,7 @@ functions! {
     execute_filter = b"oidnExecuteFilter\0": fn(FilterHandle);
 }
 
-/// The loaded library. It stays loaded until the program ends: its threads do not like to be unloaded.
+/// The loaded library. It is never unloaded, because its threads do not survive that.
 #[derive(Debug)]
 pub struct Library {
     pub(super) functions: Functions,
@@ -124,10 +123,10 @@ pub struct Library {
 }
 
 impl Library {
-    /// The library, looked for at the first call.
+    /// The library, found and loaded on the first call.
     ///
     /// # Errors
-    /// [`LibraryError`], in one line that says what to do; the same one at each call.
+    /// [`LibraryError`] in one line with the remedy; the same on each call.
     pub fn get() -> Result<&'static Self, LibraryError> {
         static LIBRARY: OnceLock<Result<Library, LibraryError>> = OnceLock::new();
         LIBRARY.get_or_init(Self::find).as_ref().map_err(Clone::clone)
@@ -183,7 +182,7 @@ impl Library {
                 reason: one_line(&error.to_string()),
             })
         };
-        for needed in NEEDED.iter().filter_map(|name| file_beginning_with(folder, name)) {
+        for needed in DEPENDENCIES.iter().filter_map(|name| file_beginning_with(folder, name)) {
             std::mem::forget(open(&needed)?);
         }
         Self::bind(open(path)?, path)
@@ -214,8 +213,8 @@ impl Library {
             5 => "Metal",
             _ => "unknown device",
         };
-        if library.version[..2] < OLDEST[..] {
-            return Err(LibraryError::Old {
+        if library.version[..2] < MIN_VERSION[..] {
+            return Err(LibraryError::TooOld {
                 path: library.path.clone(),
                 found: library.version_text(),
             });
@@ -223,7 +222,7 @@ impl Library {
         Ok(library)
     }
 
-    /// As 2.5.1.
+    /// The version as text, such as 2.5.1.
     fn version_text(&self) -> String {
         self.version.map(|number| number.to_string()).join(".")
     }
@@ -241,7 +240,7 @@ pub fn data_folder() -> Option<PathBuf> {
     Some(folders.data_local_dir().join("denoiser"))
 }
 
-/// The file of this folder, if any, whose name begins so.
+/// The first file of a folder with a name prefix.
 fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?;
     let names = entries.filter_map(|entry| Some(entry.ok()?.path()));
@@ -257,10 +256,7 @@ fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// A message of the library; empty where there is none.
-///
-/// # Safety
-/// `text` is null or a C string that lives at least as long as the call.
+/// A message of the library; empty for null.
 pub(super) unsafe fn message(text: *const c_char) -> String {
     if text.is_null() {
         return String::new();

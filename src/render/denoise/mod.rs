@@ -1,8 +1,7 @@
-//! Pictures without their noise, by Open Image Denoise where it is installed, with the error that is left.
+//! Denoising by Open Image Denoise, if installed, with an estimate of the remaining error.
 //!
-//! Both halves of the samples are denoised by themselves, each led by what its own samples saw first: the picture is
-//! their mean, and what they have in common and what not tells how far it is from the truth
-//! ([`crate::analysis::denoised`]).
+//! Both halves of the samples are denoised separately, each guided by the first-hit guides of its own samples. The result is
+//! their mean. The halves' common part and their difference give the error estimate ([`crate::analysis::denoised`]).
 
 mod filter;
 mod library;
@@ -21,26 +20,26 @@ pub use picture::{Denoised, Noisy};
 use crate::analysis::denoised::{Colors, DenoisedHalves, Errors};
 use crate::document::Denoise;
 
-/// Pixels that are filtered at once: larger pictures in bands, so that the memory that it takes is bounded.
+/// Pixels per filter run at most. Larger images are filtered in bands, to bound memory.
 const PIXELS_MAX: usize = 1 << 22;
-/// Filters that are kept for the next picture besides the latest, and the most pixels of such: the window goes to and fro
-/// between a small picture and the full one, fast and high, and making a filter ready takes a tenth of the first look's time.
+/// Filters kept besides the latest, and the most pixels of such a filter. The window alternates between reduced and full
+/// size, fast and high, and preparing a filter takes a tenth of the first image's time.
 const FILTERS_KEPT: usize = 3;
 const PIXELS_KEPT: usize = 1 << 19;
 
-/// Makes denoised pictures, one at a time.
+/// A denoiser; it denoises one image at a time.
 pub struct Denoiser {
     device: Arc<Device<'static>>,
-    /// The latest first.
+    /// Most recently used first.
     filters: Vec<Filter<'static>>,
     pixels_max: usize,
 }
 
 impl Denoiser {
-    /// Opens the library's fastest device.
+    /// A denoiser on the library's fastest device.
     ///
     /// # Errors
-    /// [`LibraryError`] in one line that says what to do.
+    /// [`LibraryError`] in one line with the remedy.
     pub fn open() -> Result<Self, LibraryError> {
         let device = Arc::new(Device::of(Library::get()?)?);
         Ok(Self {
@@ -50,31 +49,31 @@ impl Denoiser {
         })
     }
 
-    /// The same, but pictures of more pixels than this are filtered in bands.
+    /// The same with bands of at most `pixels_max` pixels.
     pub fn in_bands_of(self, pixels_max: usize) -> Self {
         Self { pixels_max, ..self }
     }
 
-    /// The picture without its noise; the same where nothing was rendered.
+    /// Denoises a render. Returns the render itself if it has no samples.
     ///
     /// # Errors
-    /// Where the library fails.
-    pub fn denoise(&mut self, noisy: &Noisy, how: Denoise) -> Result<Denoised, LibraryError> {
-        self.denoise_unless(noisy, how, &AtomicBool::new(false))
+    /// If the library fails.
+    pub fn denoise(&mut self, noisy: &Noisy, mode: Denoise) -> Result<Denoised, LibraryError> {
+        self.denoise_cancellable(noisy, mode, &AtomicBool::new(false))
     }
 
-    /// The same, given up soon after `stops` has become true.
+    /// The same; cancelled soon after `cancel` becomes true.
     ///
     /// # Errors
-    /// [`LibraryError::Stopped`] then; where the library fails.
-    pub fn denoise_unless(
+    /// [`LibraryError::Cancelled`] if so; if the library fails.
+    pub fn denoise_cancellable(
         &mut self,
         noisy: &Noisy,
-        how: Denoise,
-        stops: &AtomicBool,
+        mode: Denoise,
+        cancel: &AtomicBool,
     ) -> Result<Denoised, LibraryError> {
-        let begun = Instant::now();
-        let quality = match how {
+        let start = Instant::now();
+        let quality = match mode {
             Denoise::Off => return Ok(Denoised::untouched(noisy)),
             Denoise::Fast => Quality::Fast,
             Denoise::High | Denoise::Auto => Quality::High,
@@ -84,50 +83,50 @@ impl Denoiser {
             return Ok(Denoised::untouched(noisy));
         }
         let size = noisy.size();
-        let mut clean = |color: &[[f32; 3]], guides: Guides<'_>, scale: f32| {
+        let mut denoise = |color: &[[f32; 3]], guides: Guides<'_>, scale: f32| {
             let mut pass = Pass {
                 denoiser: &mut *self,
                 size,
                 guides,
                 quality,
                 scale,
-                stops,
+                cancel,
             };
-            pass.clean(color)
+            pass.denoise(color)
         };
-        // The scale is a half's own, too.
-        let mut clean_half = |half: &NoisyHalf| {
+        // Each half has its own scale, so that the halves stay independent.
+        let mut denoise_half = |half: &NoisyHalf| {
             let NoisyHalf { color, albedo, normal } = half;
-            clean(color, Guides { albedo, normal }, picture::input_scale(color, size))
+            denoise(color, Guides { albedo, normal }, picture::input_scale(color, size))
         };
         let mut done = Denoised::untouched(noisy);
         let colors = match present[..] {
             [even, odd] => {
-                let denoised = [clean_half(even)?, clean_half(odd)?];
+                let denoised = [denoise_half(even)?, denoise_half(odd)?];
                 let errors = Errors::of(&DenoisedHalves {
                     noisy: [&even.color, &odd.color],
                     denoised: [&denoised[0], &denoised[1]],
                     width: size[0],
                 });
-                let shares = (how == Denoise::Auto).then(|| errors.shares());
+                let shares = (mode == Denoise::Auto).then(|| errors.shares());
                 done.error = Some(errors.error(shares.as_deref()));
                 done.bias = Some(errors.bias(shares.as_deref()));
                 done.error_map = noisy.spread(&errors.map(shares.as_deref()));
                 noisy.mixed(&denoised, shares.as_deref())
             }
-            _ => clean_half(present[0])?,
+            _ => denoise_half(present[0])?,
         };
         let alpha = noisy.alphas();
         let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
             let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
             let [albedo, normal] = &noisy.guides();
-            let clean = clean(&grey, Guides { albedo, normal }, 1.0)?;
-            clean.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
+            let alphas = denoise(&grey, Guides { albedo, normal }, 1.0)?;
+            alphas.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
         } else {
             alpha
         };
         done.image = Arc::new(noisy.with(&colors, &alpha));
-        done.seconds = begun.elapsed().as_secs_f64();
+        done.seconds = start.elapsed().as_secs_f64();
         Ok(done)
     }
 
@@ -146,52 +145,52 @@ impl Denoiser {
     }
 }
 
-/// One filtering of a picture.
+/// Parameters of filtering one image.
 struct Pass<'a> {
     denoiser: &'a mut Denoiser,
     size: [usize; 2],
     guides: Guides<'a>,
     quality: Quality,
     scale: f32,
-    stops: &'a AtomicBool,
+    cancel: &'a AtomicBool,
 }
 
 impl Pass<'_> {
-    /// A picture without its noise, in bands where it is large.
-    fn clean(&mut self, color: &[[f32; 3]]) -> Result<Colors, LibraryError> {
+    /// Denoises the image, in bands if it is large.
+    fn denoise(&mut self, color: &[[f32; 3]]) -> Result<Colors, LibraryError> {
         let [width, height] = self.size;
         let pixels_max = self.denoiser.pixels_max;
         if width * height <= pixels_max {
-            return self.clean_rows(color, 0..height);
+            return self.denoise_rows(color, 0..height);
         }
         let filter = self.denoiser.filter([width, 1], self.quality)?;
         let [overlap, alignment] = filter.overlap_and_alignment();
         let rows = ((pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
-        let mut clean = Colors::with_capacity(color.len());
+        let mut denoised = Colors::with_capacity(color.len());
         for first in (0..height).step_by(rows) {
             let last = (first + rows).min(height);
-            // From an aligned row on, whatever the overlap.
+            // Bands start at an aligned row.
             let from = first.saturating_sub(overlap) / alignment * alignment;
             let to = (last + overlap).min(height);
-            let band = self.clean_rows(color, from..to)?;
-            clean.extend_from_slice(&band[(first - from) * width..(last - from) * width]);
+            let band = self.denoise_rows(color, from..to)?;
+            denoised.extend_from_slice(&band[(first - from) * width..(last - from) * width]);
         }
-        Ok(clean)
+        Ok(denoised)
     }
 
-    fn clean_rows(&mut self, color: &[[f32; 3]], rows: std::ops::Range<usize>) -> Result<Colors, LibraryError> {
+    fn denoise_rows(&mut self, color: &[[f32; 3]], rows: std::ops::Range<usize>) -> Result<Colors, LibraryError> {
         let [width, _] = self.size;
         let pixels = rows.start * width..rows.end * width;
         let filter = self.denoiser.filter([width, rows.len()], self.quality)?;
-        filter.guide(Guides {
+        filter.set_guides(Guides {
             albedo: &self.guides.albedo[pixels.clone()],
             normal: &self.guides.normal[pixels.clone()],
         });
-        let mut clean = filter.run(&color[pixels], self.scale, self.stops)?;
-        // No picture of ours has such numbers; the filter promises nothing.
-        for value in clean.iter_mut().flatten() {
+        let mut denoised = filter.run(&color[pixels], self.scale, self.cancel)?;
+        // Radiance is finite and not negative; the filter does not guarantee it.
+        for value in denoised.iter_mut().flatten() {
             *value = if value.is_finite() { value.max(0.0) } else { 0.0 };
         }
-        Ok(clean)
+        Ok(denoised)
     }
 }

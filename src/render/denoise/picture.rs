@@ -1,4 +1,4 @@
-//! What a denoiser takes from a film, and the picture that it gives back.
+//! Input and output of the denoiser.
 
 use std::sync::Arc;
 
@@ -8,28 +8,27 @@ use crate::analysis::denoised::Colors;
 use crate::analysis::halves::Distance;
 use crate::job::film::{Film, Image, luminance};
 
-/// What middle grey is brought to before filtering, and the darkest luminance that counts.
+/// Luminance of middle grey in the filter's input, and the darkest luminance that counts.
 const KEY: f64 = 0.18;
 const LUMINANCE_MIN: f64 = 1e-8;
-/// Side of the squares whose mean luminances are averaged for it, pixels.
+/// Side in pixels of the squares whose mean luminances are averaged.
 const KEY_SIDE: usize = 16;
 
-/// Share of the pixels without a sample in a half up to which that half counts.
+/// Largest share of pixels without a sample in a half that is still used.
 const MISSING_SHARE: f64 = 0.01;
 
-/// What of a film is denoised: everything that the denoiser needs of it, to take to another thread.
+/// A render to denoise: a copy of what the denoiser needs of the film, to send to another thread.
 #[derive(Clone, Debug)]
 pub struct Noisy {
-    /// The mean picture.
+    /// The mean of all samples.
     pub image: Arc<Image>,
-    /// The part of it that was rendered: left, top, width, height in pixels.
+    /// The rendered part: left, top, width, height in pixels.
     rect: [usize; 4],
-    /// Both halves within it; without the second where there is none yet.
+    /// Both halves of the samples within `rect`; the second is missing after one sample.
     pub(super) halves: [Option<NoisyHalf>; 2],
 }
 
-/// Means over one half of the samples: nothing of it comes from the other half, as the error that is told rests on both
-/// being independent.
+/// Means over one half of the samples. Invariant: independent of the other half, because the error estimate rests on that.
 #[derive(Clone, Debug)]
 pub(super) struct NoisyHalf {
     pub(super) color: Colors,
@@ -38,12 +37,12 @@ pub(super) struct NoisyHalf {
 }
 
 impl Noisy {
-    /// Reads a film; `region` is the part that is rendered: left, top, right, bottom as shares of width and height.
+    /// Copies a film's data. `region` is the rendered part: left, top, right, bottom as shares of width and height.
     pub fn of(film: &Film, region: Option<[f64; 4]>) -> Self {
         Self::of_samples(film, |pixel| film.guide_samples(pixel), region)
     }
 
-    /// The same where it is said how many samples of each half of a pixel are in the sums of what is seen first.
+    /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, guide_samples: impl Fn(usize) -> [f64; 2] + Sync, region: Option<[f64; 4]>) -> Self {
         let rect = rendered_rect(film, region);
         let pixels = pixels_of(rect, film.width as usize);
@@ -55,12 +54,12 @@ impl Noisy {
         }
     }
 
-    /// Width and height of the part that was rendered.
+    /// Width and height of the rendered part, in pixels.
     pub(super) fn size(&self) -> [usize; 2] {
         [self.rect[2], self.rect[3]]
     }
 
-    /// The mean guides of the halves that there are, albedo and normal.
+    /// Albedo and normal guides, averaged over the halves present.
     pub(super) fn guides(&self) -> [Colors; 2] {
         let halves: Vec<&NoisyHalf> = self.halves.iter().flatten().collect();
         let mean = |of: &dyn Fn(&NoisyHalf) -> &Colors| -> Colors {
@@ -77,12 +76,12 @@ impl Noisy {
         pixels_of(self.rect, self.image.width as usize)
     }
 
-    /// The opacities of the part that was rendered.
+    /// Alpha values of the rendered part.
     pub(super) fn alphas(&self) -> Vec<f32> {
         self.pixels().iter().map(|pixel| self.image.pixels[*pixel][3]).collect()
     }
 
-    /// The mean of the denoised halves, mixed with these shares of the samples' mean.
+    /// The mean of the denoised halves, blended with the samples' mean by `shares` in [0, 1]; `None` for no blend.
     pub(super) fn mixed(&self, denoised: &[Colors; 2], shares: Option<&[f32]>) -> Colors {
         let [first, second] = denoised;
         let mix = |(i, pixel): (usize, usize)| {
@@ -96,7 +95,7 @@ impl Noisy {
         self.pixels().into_iter().enumerate().map(mix).collect()
     }
 
-    /// The mean picture with other colours and opacities in the part that was rendered.
+    /// The mean image with the rendered part's colours and alpha replaced.
     pub(super) fn with(&self, colors: &[[f32; 3]], alphas: &[f32]) -> Image {
         let mut image = Image::clone(&self.image);
         for ((pixel, [red, green, blue]), alpha) in self.pixels().into_iter().zip(colors).zip(alphas) {
@@ -105,7 +104,7 @@ impl Noisy {
         image
     }
 
-    /// Values of the part that was rendered in a picture that is 0 elsewhere.
+    /// Values of the rendered part as a full-size image, 0 elsewhere.
     pub(super) fn spread(&self, values: &[f32]) -> Vec<f32> {
         let mut all = vec![0.0; self.image.pixels.len()];
         for (pixel, value) in self.pixels().into_iter().zip(values) {
@@ -116,7 +115,7 @@ impl Noisy {
 }
 
 impl NoisyHalf {
-    /// Reads the pixels of one half of a film; `None` where too many lack samples.
+    /// Copies one half of a film; `None` if too many pixels lack samples.
     fn of(film: &Film, number: usize, guide_samples: &(dyn Fn(usize) -> f64 + Sync), pixels: &[usize]) -> Option<Self> {
         let has_samples = |pixel: usize| film.halves(pixel)[number].samples > 0.0;
         let present = pixels.iter().filter(|pixel| has_samples(**pixel)).count();
@@ -124,13 +123,13 @@ impl NoisyHalf {
         if missing as f64 > MISSING_SHARE * pixels.len() as f64 {
             return None;
         }
-        // For a pixel whose samples were all dropped the one before it stands in, of the same half.
-        let mut stand_in = *first?;
+        // A pixel whose samples were all dropped takes the values of the previous pixel in the same half.
+        let mut replacement = *first?;
         let sources = pixels.iter().map(|pixel| {
             if has_samples(*pixel) {
-                stand_in = *pixel;
+                replacement = *pixel;
             }
-            stand_in
+            replacement
         });
         let sources: Vec<usize> = sources.collect();
         let of_pixel = |pixel: &usize| {
@@ -147,23 +146,23 @@ impl NoisyHalf {
     }
 }
 
-/// A denoised picture.
+/// A denoised image.
 #[derive(Clone, Debug)]
 pub struct Denoised {
-    /// What is shown: the denoised picture, or where that is nearer to the truth (`auto`) a mixture with the samples.
+    /// The denoised image, with `auto` blended with the samples' mean where that lowers the estimated error.
     pub image: Arc<Image>,
-    /// How far it is from the truth; `None` before there are two halves of samples.
+    /// Estimated error, relative to the mean luminance; `None` without two halves.
     pub error: Option<Distance>,
-    /// Of that the filter's bias.
+    /// The filter's bias, as part of `error`.
     pub bias: Option<Distance>,
-    /// The error around each pixel, over the mean luminance; empty before there are two halves.
+    /// Estimated error per pixel, relative to the mean luminance; empty without two halves.
     pub error_map: Vec<f32>,
-    /// How long it took.
+    /// Time of denoising, in seconds.
     pub seconds: f64,
 }
 
 impl Denoised {
-    /// The samples' mean itself.
+    /// The samples' mean, not denoised.
     pub(super) fn untouched(noisy: &Noisy) -> Self {
         Self {
             image: noisy.image.clone(),
@@ -175,7 +174,7 @@ impl Denoised {
     }
 }
 
-/// The smallest rectangle of pixels around all tiles that are rendered: left, top, width, height.
+/// Bounding rectangle of the rendered tiles: left, top, width, height in pixels.
 fn rendered_rect(film: &Film, region: Option<[f64; 4]>) -> [usize; 4] {
     let grid = film.grid();
     let (mut low, mut high) = ([u32::MAX; 2], [0_u32; 2]);
@@ -190,14 +189,14 @@ fn rendered_rect(film: &Film, region: Option<[f64; 4]>) -> [usize; 4] {
     [low[0] as usize, low[1] as usize, side(0), side(1)]
 }
 
-/// The numbers of a rectangle's pixels in a picture of this width.
+/// Pixel indices of a rectangle (left, top, width, height) in an image of a given width.
 fn pixels_of([left, top, columns, rows]: [usize; 4], width: usize) -> Vec<usize> {
     let row = |y: usize| (0..columns).map(move |x| (top + y) * width + left + x);
     (0..rows).flat_map(row).collect()
 }
 
-/// The factor that brings the geometric mean of a picture's luminance to middle grey. One for the whole picture, so that
-/// parts of it that are filtered by themselves fit together.
+/// The factor that maps the geometric mean of the luminance to middle grey. One factor for the whole image, so that its
+/// bands match.
 pub(super) fn input_scale(colors: &[[f32; 3]], [width, height]: [usize; 2]) -> f32 {
     let of_square = |x: usize, y: usize| {
         let (right, bottom) = ((x + KEY_SIDE).min(width), (y + KEY_SIDE).min(height));

@@ -5,7 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use super::PathAccount;
 use crate::cpu::recorder::{End, Event, Purpose, Source};
 
-/// Width of the column that says what happened.
+/// Width of the column of events.
 const HEAD: usize = 11;
 
 impl PathAccount {
@@ -45,7 +45,7 @@ impl PathAccount {
         )
     }
 
-    /// What the engine adds, every digit of it.
+    /// The sample's radiance in full precision.
     fn outcome(&self) -> String {
         let [r, g, b] = self.radiance;
         let count = self.contributions().count();
@@ -91,7 +91,7 @@ impl PathAccount {
                 ),
             ],
             Event::Hit { .. } => self.hit(event),
-            Event::Caught {
+            Event::CatcherHit {
                 is_mirrored,
                 background,
                 light,
@@ -116,7 +116,7 @@ impl PathAccount {
                     vector(kept)
                 ),
             ],
-            Event::Found { .. } => found(event),
+            Event::LightHit { .. } => found(event),
             Event::Light { .. } => light(event),
             Event::Scattered { .. } => scattered(event),
             Event::Roulette { survival, number } => [
@@ -221,7 +221,7 @@ fn of(source: Source) -> &'static str {
 
 fn end(why: End) -> &'static str {
     match why {
-        End::Left => "met nothing more",
+        End::Escaped => "met nothing more",
         End::Bounces => "has all the bounces that it may have",
         End::Absorbed => "nothing is reflected into the direction drawn",
         End::Roulette => "Russian roulette",
@@ -229,7 +229,7 @@ fn end(why: End) -> &'static str {
 }
 
 fn found(event: &Event) -> [String; 2] {
-    let Event::Found {
+    let Event::LightHit {
         source,
         radiance,
         lobe_density,
@@ -342,7 +342,7 @@ fn added(event: &Event) -> [String; 2] {
     };
     let limited = match added {
         _ if found == added => String::new(),
-        // Limiting leaves something of what there is.
+        // The firefly clamp never removes everything.
         [0.0, 0.0, 0.0] => format!(": {} is not of the light that is shown", vector(found)),
         _ => format!(", limited from {}", vector(found)),
     };
@@ -362,7 +362,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{plural}")
 }
 
-/// Four digits, or as a power of ten where that would not tell.
+/// Four digits, or scientific notation for very small or large numbers.
 fn short(value: f32) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         format!("{value:.3e}")

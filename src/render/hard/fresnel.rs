@@ -1,4 +1,4 @@
-//! Fresnel's equations where they cancel, overflow or change form, against complex arithmetic in f64.
+//! Hard cases of the Fresnel equations: cancellation, overflow, changes of form; against complex arithmetic in f64.
 
 use super::{HardCase, HardError, Stage};
 use crate::job::probe::FresnelQuestion;
@@ -57,7 +57,7 @@ pub(super) const CASES: &[HardCase] = &[
             format!("{bad} of 81 are NaN")
         },
         measure: "error",
-        // The share rises with a vertical tangent there: what one rounding of the cosine does.
+        // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
         limit: 2e-3,
         find: |stage| {
             let question = |cosine| FresnelQuestion {
@@ -173,7 +173,7 @@ fn around_critical(ior: f32) -> impl Iterator<Item = f32> {
     (-40..=40).map(move |step: i32| f32::from_bits(critical.to_bits().wrapping_add_signed(step)))
 }
 
-/// The largest difference from f64; infinite where an answer is not a number.
+/// Largest difference from f64; infinite for NaN.
 fn worst(stage: &Stage, questions: &[FresnelQuestion]) -> Result<f64, HardError> {
     let answers = stage.prober.fresnel(questions)?;
     let error = |(q, &share): (&FresnelQuestion, &f32)| {
@@ -202,7 +202,8 @@ fn exact(cosine: f32, eta: f32, k: f32) -> f64 {
         if below > 0.0 { (above / below).powi(2) } else { 0.0 }
     };
     let perpendicular = share([c, 0.0], root);
-    // m² cos against the root. Head-on there is no plane of incidence, so that both are alike, whatever vanishes.
+    // m² cos against the root. At normal incidence there is no plane of incidence, so that both are equal, even if terms
+    // vanish.
     let parallel = if cosine < 1.0 {
         share([(eta * eta - k * k) * c, 2.0 * eta * k * c], root)
     } else {

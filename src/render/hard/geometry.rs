@@ -1,5 +1,5 @@
-//! Geometry at the ends of what f32 tells apart: scale and place, needles, duplicates, broken normals, and rays that meet
-//! edges, vertices and planes exactly.
+//! Hard cases of geometry in f32: scale and position, needles, duplicates, broken normals, and rays through edges, vertices
+//! and planes.
 
 use glam::{DVec3, Vec3, Vec4};
 use serde_json::json;
@@ -20,7 +20,7 @@ use crate::scene::environment::EnvironmentSource;
 use crate::scene::mesh::Mesh;
 use crate::scene::{Geometry, ModelSource, shapes, teapot};
 
-/// The most that the mean of a picture may differ where only scale or place do: silhouettes by a rounding.
+/// Largest difference of an image's mean under a change of scale or position: silhouettes by a rounding.
 const SAME_PICTURE: f64 = 1e-3;
 /// The most that a pixel of the white furnace may be off.
 const WHITE: f64 = 5e-3;
@@ -327,7 +327,7 @@ pub(super) const CASES: &[HardCase] = &[
     },
 ];
 
-/// The mean difference over the mean of pictures of the same model at other nodes.
+/// Relative mean difference of images of the same model at other nodes.
 fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<f64, HardError> {
     let mesh = teapot::mesh(4);
     let mut picture = |node: serde_json::Value, name: &str| {
@@ -346,7 +346,7 @@ fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<
     Ok(worst)
 }
 
-/// Σ|a − b| / Σ a over pixels; infinite where a picture has nothing or a sample was dropped.
+/// Σ|a − b| / Σ a over pixels; infinite for a black image or a dropped sample.
 fn difference(a: &Film, b: &Film) -> f64 {
     let (mut apart, mut size) = (0.0, 0.0);
     for (a, b) in a.luminance().iter().zip(b.luminance()) {
@@ -361,7 +361,7 @@ fn difference(a: &Film, b: &Film) -> f64 {
     }
 }
 
-/// How far the worst pixel of a picture in the white furnace is from white, plus the samples dropped.
+/// Largest deviation from white of a pixel in the white furnace, plus the number of dropped samples.
 fn furnace(stage: &mut Stage, model: ModelSource) -> Result<f64, HardError> {
     let mut document: Document = document(model, EnvironmentSource::Furnace, 40, 4);
     let material = &mut document.materials[0];

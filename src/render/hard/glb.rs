@@ -1,4 +1,4 @@
-//! Small glTF files of hard geometry: the whole way from a file to the picture is tried.
+//! Small glTF files of hard geometry, to test the whole way from file to image.
 
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
@@ -49,7 +49,7 @@ impl Glb {
         self.meshes.len() - 1
     }
 
-    /// Adds tangents to a mesh, whatever they are worth.
+    /// Adds tangents to a mesh, valid or not.
     pub(super) fn tangents(&mut self, mesh: usize, tangents: &[Vec4]) {
         let bytes: Vec<u8> = tangents
             .iter()

@@ -1,4 +1,4 @@
-//! Light at the ends of what files hold: a sun beside a dark sky, black, one pixel, poles and seam, what is no radiance.
+//! Hard cases of light: a sun beside a dark sky, black, a single pixel, poles and seam, invalid radiance.
 
 use std::f64::consts::{PI, TAU};
 
@@ -131,13 +131,13 @@ pub(super) const CASES: &[HardCase] = &[
             };
             let light = stage.environment("odd.exr", [16, 8], odd)?;
             let warnings = stage.load_environment(&light)?.warnings;
-            let told = ["3 not-a-number", "2 infinite", "4 negative"];
-            let untold = told
+            let expected = ["3 not-a-number", "2 infinite", "4 negative"];
+            let missing = expected
                 .iter()
                 .filter(|words| !warnings.iter().any(|line| line.contains(*words)));
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 8))?;
             let unsound = film.colors().flatten().filter(|x| !(x.is_finite() && *x >= 0.0));
-            Ok((untold.count() + unsound.count()) as f64 + film.dropped() as f64)
+            Ok((missing.count() + unsound.count()) as f64 + film.dropped() as f64)
         },
     },
     HardCase {
@@ -194,8 +194,8 @@ pub(super) const CASES: &[HardCase] = &[
     },
 ];
 
-/// The least cosine between a direction and the smooth normals of what a pixel shows, where it is above a tenth and the pixel
-/// shows the model alone.
+/// Smallest cosine between a direction and the smooth normals within a pixel, if above a tenth and the pixel shows only the
+/// model.
 fn least_cosine(geometry: &Geometry, settings: &Settings, pixel: u32, direction: DVec3) -> Option<f64> {
     let camera = settings.camera.cast::<f32>();
     let [width, height] = settings.image_size;
@@ -215,7 +215,7 @@ fn least_cosine(geometry: &Geometry, settings: &Settings, pixel: u32, direction:
     (least > 0.1).then_some(least)
 }
 
-/// A white Lambertian plane that fills the picture.
+/// A white Lambertian plane that fills the image.
 fn plane_from_above(light: EnvironmentSource, samples: u32) -> Document {
     let mut document = document(ModelSource::Plane, light, 16, samples);
     document.materials = vec![MaterialSettings::diffuse("white", [1.0; 3])];
@@ -240,7 +240,7 @@ fn irradiance(environment: &Environment) -> f64 {
     sum
 }
 
-/// The worst relative error of a picture of nothing but the environment, against the look-up in f64 along the very rays.
+/// Largest relative error of an image of the environment alone, against the f64 look-up along the same rays.
 fn background_error(stage: &mut Stage, document: &Document, environment: &Environment) -> Result<f64, HardError> {
     let document = Document {
         lighting: crate::document::Lighting {

@@ -1,5 +1,5 @@
-//! Lobes at the ends of what they take: roughness, random numbers, curves, stretch, horizon, and their density where one of
-//! its terms vanishes.
+//! Hard cases of lobes: extremes of roughness, random numbers, curves, anisotropy, horizon, and densities with vanishing
+//! terms.
 
 use super::{HardCase, HardError, Stage};
 use crate::document::CustomCurve;
@@ -12,7 +12,7 @@ use crate::optics::warp::uniform_sphere;
 use crate::render::check::shapes;
 use crate::scene::surface::bent_normal;
 
-/// The ends of what random numbers there may be: 24 bits, or 32.
+/// Extreme random numbers, of 24 or 32 bits.
 const XI_ENDS: [f32; 4] = [0.0, 1.0 / 16_777_216.0, 1.0 / 4_294_967_296.0, 1.0 - 1.0 / 16_777_216.0];
 /// Roughness at its ends and in between.
 const ROUGHNESS: [f32; 12] = [
@@ -275,7 +275,7 @@ fn shape(lobe: Lobe, curve: Curve, roughness: f32, anisotropy: f32, horizon: Hor
     }
 }
 
-/// Every shape × roughness × view × numbers × horizon, reflecting, and refracting where the horizon mirrors.
+/// Every shape × roughness × view × numbers × horizon policy, reflecting; and refracting with the mirror policy.
 fn grid(
     shapes: &[(Lobe, Curve, f32)],
     roughness: &[f32],
@@ -354,7 +354,7 @@ fn custom_curves() -> Vec<Vec<f32>> {
     points.into_iter().map(table).collect()
 }
 
-/// Asks, and counts what is not as it must be.
+/// Counts invalid answers.
 fn count_broken(stage: &Stage, questions: &[LobeQuestion]) -> Result<f64, HardError> {
     let tables = custom_curves().concat();
     let scene = ProbeScene {
@@ -383,14 +383,14 @@ fn is_broken(question: &LobeQuestion, answer: &LobeAnswer) -> bool {
         answer.given[1],
     ];
     let are_sound = numbers.into_iter().all(|x| x.is_finite() && x >= 0.0);
-    // A mirrored sample is above the surface; where the lobe refracts, it may be on either side.
+    // A mirrored sample is above the surface; a refracting lobe's may be on either side.
     let height = question.normal.dot(answer.wi);
     let is_above = question.horizon != Horizon::Mirror as u32 || question.eta != 0.0 || height >= -1e-6;
     let is_kept = answer.weight > 0.0;
     !is_unit || !are_sound || (is_kept && !is_above)
 }
 
-/// Where a density may fail: its middle and beside it, the silhouette and beside it, horizon, normal and view.
+/// Directions where a density may fail: its centre and silhouette with neighbours, horizon, normal and view.
 fn singular_directions(question: &LobeQuestion) -> Vec<Vec3<f32>> {
     let tables = custom_curves();
     let shape = LobeShape {
@@ -450,7 +450,7 @@ fn naive_density(roughness: f32, mirror: Vec3<f32>, light: Vec3<f32>) -> f32 {
     let t = a.dot(light);
     let root = (cosine * cosine + k).sqrt();
     let least = (a - light * t).length() / root;
-    // ∫ t²/(D² − least²)^½ over D from where the sphere is touched.
+    // ∫ t²/(D² − least²)^½ over D from the tangent sphere.
     let steps = 64;
     let sum: f32 = (0..steps)
         .map(|i| {

@@ -1,5 +1,5 @@
-//! Hard cases: places where naive code breaks, as data. Each says what goes wrong, how it is made and what must hold, and
-//! is run on the user's own machine by `glossmith check --hard`, in the editor and by the tests.
+//! Hard cases: situations where naive code fails, as data. Each states the failure, the set-up and the requirement.
+//! `glossmith check --hard`, the editor and the tests run them.
 
 mod fresnel;
 mod geometry;
@@ -20,26 +20,26 @@ use super::engine::{EngineChoice, EngineInfo};
 use crate::job::film::Image;
 pub use stage::{HardError, Stage};
 
-/// A place where naive code breaks.
+/// A situation where naive code fails.
 #[derive(Clone, Copy)]
 pub struct HardCase {
-    /// Its name on the command line and in tables.
+    /// Name on the command line and in tables.
     pub name: &'static str,
     /// `lobe`, `fresnel`, `geometry`, `light` or `sums`.
     pub group: &'static str,
-    /// What goes wrong in naive code.
+    /// Failure of naive code.
     pub danger: &'static str,
-    /// How the case is made.
+    /// Set-up of the case.
     pub made: &'static str,
-    /// What must hold.
+    /// Requirement.
     pub must: &'static str,
-    /// What the naive form gives, computed where that is cheap.
+    /// Result of the naive form, computed if cheap.
     pub naive: fn() -> String,
-    /// What is measured, as in [`Check::measure`].
+    /// Measure, as in [`Check::measure`].
     pub measure: &'static str,
-    /// What the measure is held against.
+    /// Limit of the measure.
     pub limit: f64,
-    /// Measures.
+    /// Runs the measurement.
     pub find: fn(&mut Stage) -> Result<f64, HardError>,
 }
 
@@ -61,10 +61,11 @@ impl HardCase {
     /// Runs the case on an engine.
     ///
     /// # Errors
-    /// Where the engine fails, a file of the case can't be written, or the stage is stopped.
+    ///
+    /// If the engine fails, a file of the case cannot be written, or the stage is stopped.
     pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
         let begun = Instant::now();
-        stage.go_on()?;
+        stage.check_stop()?;
         stage.take_picture();
         let value = (self.find)(stage)?;
         Ok(HardRow {
@@ -76,20 +77,20 @@ impl HardCase {
     }
 }
 
-/// What a case gave.
+/// Result of a case.
 #[derive(Clone)]
 pub struct HardRow {
-    /// The case.
+    /// The case that was run.
     pub case: &'static HardCase,
-    /// The verdict.
+    /// Outcome.
     pub check: Check,
-    /// How long it took.
+    /// Time in seconds.
     pub seconds: f64,
-    /// What it rendered, where it is about pictures.
+    /// Rendered image, if any.
     pub picture: Option<Image>,
 }
 
-/// Which cases to run, and where.
+/// Options of a run.
 #[derive(Clone, Debug)]
 pub struct HardOptions {
     /// The engine to check.
@@ -100,10 +101,11 @@ pub struct HardOptions {
     pub only: String,
 }
 
-/// Runs the catalogue; `progress` receives each case's name before it starts.
+/// Runs all cases; `progress` receives each case's name before it starts.
 ///
 /// # Errors
-/// Where the engine can't be opened or fails, or a file of a case can't be written.
+///
+/// If the engine cannot be opened or fails, or a file of a case cannot be written.
 pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), HardError> {
     let mut stage = Stage::open(options.engine, options.thorough)?;
     let mut rows = Vec::new();

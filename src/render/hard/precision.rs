@@ -152,7 +152,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
             false => error(&scene, question, answer),
         })
         .collect();
-    stage.go_on()?;
+    stage.check_stop()?;
     let singular = errors.iter().filter(|error| error.is_none()).count();
     log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());
     let regular = (0..pairs).filter_map(|pair| Some((pair, errors[pair]?)));
@@ -166,7 +166,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
     Ok(error)
 }
 
-/// The relative error of an answer; nothing at a singularity.
+/// Relative error of an answer; 0 at a singularity.
 fn error(scene: &ProbeScene<'_>, question: &MaterialQuestion, answer: &Vec3<f32>) -> Option<f64> {
     relative_error(*answer, |moved| probe_material::<f64>(scene, question, moved))
 }

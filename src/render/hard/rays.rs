@@ -1,4 +1,4 @@
-//! Rays at what they might miss or leak through, and how many do.
+//! Hard cases of rays: counts of rays that leak through a closed mesh or miss.
 
 use glam::{DVec3, Vec3};
 
@@ -12,7 +12,7 @@ use crate::scene::texture::Textures;
 use crate::scene::{Geometry, Hit, shapes};
 
 impl Stage {
-    /// Rays to aim at what might leak.
+    /// Number of rays to test for leaks.
     pub(super) fn rays(&self) -> u32 {
         if self.thorough { 1_000_000 } else { 100_000 }
     }
@@ -52,7 +52,7 @@ fn aim_at(corners: [Vec3; 3], i: u32) -> Vec3 {
     }
 }
 
-/// How many rays meet nothing, or nothing before `t_max`.
+/// Number of rays that miss, or miss before `t_max`.
 pub(super) fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, HardError> {
     let answers = trace(stage, geometry, rays)?;
     let is_lost = |answer: &&RayAnswer| answer.triangle == NO_HIT || answer.t.is_nan() || answer.t > t_max;
@@ -67,7 +67,7 @@ fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec
     Ok(stage.prober.rays(&scene, rays)?)
 }
 
-/// Rays from places of a cube's grid along axes and in planes: how many do not leave it where they must.
+/// Rays from grid points of a cube along axes and in planes: number of wrong exits.
 pub(super) fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
     let geometry = Geometry::build(&model(cube(DVec3::ONE, 8)), false);
     let wall = (1.0 / geometry.world_units_per_unit) as f32;
@@ -102,7 +102,7 @@ pub(super) fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
     Ok(rays.iter().zip(&answers).filter(is_wrong).count() as f64)
 }
 
-/// Rays that leave a convex mesh outwards and inwards: how many meet something, and nothing.
+/// Rays that leave a convex mesh outwards and inwards: number of wrong hits and misses.
 pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
     let mut wrong = 0.0;
     for radius in [1.0, 1e-3] {
@@ -111,7 +111,7 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
             *place = *place * radius + DVec3::new(0.6, 0.5, 0.3) * f64::from(u8::from(radius < 1.0));
         }
         if radius < 1.0 {
-            // Far off: what is met there does not count.
+            // Far away: hits there do not count.
             add_square(
                 &mut mesh,
                 [[-1.0, -1.0], [-0.9, -1.0], [-0.9, -0.9], [-1.0, -0.9]].map(|[x, z]| DVec3::new(x, -1.0, z)),
@@ -150,8 +150,8 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
             }
         }
         let answers = trace(stage, &geometry, &rays)?;
-        let is_met = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
-        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_met(answer) == **outward;
+        let is_hit = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
+        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_hit(answer) == **outward;
         wrong += answers.iter().zip(&is_outward).filter(bad).count() as f64;
     }
     Ok(wrong)
@@ -166,7 +166,7 @@ pub(super) fn edge_aims(mesh: &Mesh, count: u32) -> Vec<Vec3> {
     (0..count).map(aim).collect()
 }
 
-/// How many rays from a place in a closed mesh leak under the textbook test of Möller and Trumbore in f32.
+/// Number of rays from inside a closed mesh that leak with the textbook test of Möller and Trumbore in f32.
 pub(super) fn naive_leaks(mesh: &Mesh, origin: DVec3, count: u32) -> usize {
     let aims: Vec<Vec3> = (0..count).map(|i| origin.as_vec3() + direction(i)).collect();
     naive_misses(mesh, origin, &aims)
@@ -177,7 +177,7 @@ pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
     let triangles: Vec<_> = (0..mesh.triangles.len())
         .map(|triangle| mesh.corners(triangle).map(|corner| corner.as_vec3()))
         .collect();
-    let is_met = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
+    let is_hit = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
         let (to_b, to_c) = (b - a, c - a);
         let across = direction.cross(to_c);
         let determinant = to_b.dot(across);
@@ -191,6 +191,6 @@ pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
         let v = direction.dot(other) / determinant;
         u >= 0.0 && v >= 0.0 && u + v <= 1.0 && to_c.dot(other) / determinant > 0.0
     };
-    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_met(**aim - origin, *corners));
+    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_hit(**aim - origin, *corners));
     aims.iter().filter(misses).count()
 }

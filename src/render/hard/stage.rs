@@ -1,4 +1,4 @@
-//! What cases run on: an engine, asked for pictures and for single functions, and a folder for files.
+//! Test bench of the cases: an engine for renders and single functions, and a folder for files.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,16 +19,16 @@ use crate::render::session::Session;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{ModelSource, environment};
 
-/// How long a case goes on before it looks whether it is to stop.
+/// Time between two checks for a stop.
 pub(super) const SLICE: Duration = Duration::from_millis(100);
 
 /// Why a case can't be run.
 #[derive(Debug, thiserror::Error)]
 pub enum HardError {
-    /// The engine, or what it was given.
+    /// Error of the engine or its input.
     #[error(transparent)]
     Session(#[from] SessionError),
-    /// A picture for a case could not be written.
+    /// An image for a case could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
     /// A file or folder for a case could not be written.
@@ -36,10 +36,10 @@ pub enum HardError {
     Folder {
         /// Which.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
-    /// It was stopped.
+    /// The run was stopped.
     #[error("stopped")]
     Stopped,
 }
@@ -60,16 +60,17 @@ pub struct Stage {
     pub choice: EngineChoice,
     session: Session,
     folder: Folder,
-    /// The last picture that was rendered.
+    /// The last rendered image.
     picture: Option<Image>,
     stop: Arc<AtomicBool>,
 }
 
 impl Stage {
-    /// Opens an engine. Where that falls to the processor, single functions do, too.
+    /// Opens an engine. If that is the CPU engine, single functions run on the CPU, too.
     ///
     /// # Errors
-    /// Where a GPU was asked for and fails, or there is no temporary folder.
+    ///
+    /// If a GPU was requested and fails, or there is no temporary folder.
     pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
         let session = Session::open(choice)?;
         let choice = session.engine().kind.into();
@@ -90,33 +91,34 @@ impl Stage {
         Self { stop, ..self }
     }
 
-    /// Whether cases are to go on; to be asked within everything that takes long.
+    /// Checks for a stop; call it within long work.
     ///
     /// # Errors
-    /// [`HardError::Stopped`] where they are to end.
-    pub fn go_on(&self) -> Result<(), HardError> {
+    ///
+    /// [`HardError::Stopped`] if stopped.
+    pub fn check_stop(&self) -> Result<(), HardError> {
         match self.stop.load(Ordering::Relaxed) {
             true => Err(HardError::Stopped),
             false => Ok(()),
         }
     }
 
-    /// What says that cases are to end, for other threads.
+    /// The stop flag, for other threads.
     pub(super) fn stop(&self) -> &AtomicBool {
         &self.stop
     }
 
-    /// The last picture that was rendered since this was asked for.
+    /// Takes the last rendered image.
     pub fn take_picture(&mut self) -> Option<Image> {
         self.picture.take()
     }
 
-    /// What renders.
+    /// The engine that runs the cases.
     pub fn engine(&self) -> &EngineInfo {
         self.session.engine()
     }
 
-    /// The session, for what a film does not tell.
+    /// The session, for details beyond the film.
     pub fn session(&mut self) -> &mut Session {
         &mut self.session
     }
@@ -128,21 +130,21 @@ impl Stage {
     pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
         let mut document = document.clone();
         if self.choice == EngineChoice::Gpu {
-            // One kernel for all pictures: compiling one for each takes longer than they do.
+            // One kernel for all renders: compiling one each would take longer than rendering.
             document.render.effects = EffectSwitches::all_on();
         }
-        self.go_on()?;
-        self.session.forget();
+        self.check_stop()?;
+        self.session.reset();
         self.session.submit(&document)?;
         while !self.session.step(SLICE)?.is_done {
-            self.go_on()?;
+            self.check_stop()?;
         }
         let film = self.session.film()?.clone();
         self.picture = Some(film.image());
         Ok(film)
     }
 
-    /// Where a case's file of this name lies.
+    /// Path of a case's file.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.0.join(name)
     }
@@ -150,7 +152,8 @@ impl Stage {
     /// Writes a file for a case.
     ///
     /// # Errors
-    /// Where the folder can't be written to.
+    ///
+    /// If the folder cannot be written to.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, HardError> {
         let path = self.path(name);
         match fs::write(&path, bytes) {
@@ -186,7 +189,8 @@ impl Stage {
     /// The map of a source, loaded as the engines load it.
     ///
     /// # Errors
-    /// Where it can't be read.
+    ///
+    /// If it cannot be read.
     pub fn load_environment(&self, source: &EnvironmentSource) -> Result<environment::Environment, HardError> {
         Ok(environment::load(source).map_err(SessionError::from)?)
     }
@@ -223,7 +227,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What is left behind in the temporary folder does no harm.
+        // Leftovers in the temporary folder are harmless.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

@@ -119,7 +119,7 @@ pub(super) const CASES: &[HardCase] = &[
     },
 ];
 
-/// Mean and variance of a pixel against the engine of the processor in f64, which draws the same numbers.
+/// Mean and variance of a pixel against the CPU engine in f64 with the same random numbers.
 fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     let samples = if stage.thorough { 10_000_000 } else { 300_000 };
     let light = stage.environment("steps.exr", [64, 32], |x, y| {
@@ -134,7 +134,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     let mut oracle = CpuEngine::default();
     oracle.submit(job);
     while oracle.samples_per_pixel() < samples {
-        stage.go_on()?;
+        stage.check_stop()?;
         oracle.step_double(SLICE, samples);
     }
     let expected = oracle.film();
@@ -146,7 +146,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     Ok(errors.fold(0.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) }))
 }
 
-/// How far the mean is from 1 in a closed box that emits as much at each of 65 places of a path.
+/// Deviation of the mean from 1 in a closed box that emits equally at each of 65 path vertices.
 fn white_box(stage: &mut Stage, mut material: MaterialSettings) -> Result<f64, HardError> {
     material.emission_color = [1.0; 3];
     material.emission_strength = 1.0 / 65.0;
@@ -166,7 +166,7 @@ fn white_box(stage: &mut Stage, mut material: MaterialSettings) -> Result<f64, H
     Ok(worst)
 }
 
-/// How many of a pixel's numbers do not give back their sample when all that was done to it is undone.
+/// Number of random numbers from which the sample index cannot be recovered by inverting the hash.
 fn not_invertible(stage: &Stage) -> Result<f64, HardError> {
     let (pixel, seed, dimension) = ([123, 456], 7, 9);
     let count = 1 << 17;
@@ -270,7 +270,7 @@ fn largest_correlation(stage: &Stage) -> Result<f64, HardError> {
             draw(100, 200, 0, 0, 4096)?,
         ];
         if *sequence == Sequence::Independent {
-            // Points of Sobol's sequence are not independent of those after them: that is what they are for.
+            // Points of the Sobol sequence depend on each other by design.
             others.push(draw(100, 200, 0, 1, 3)?);
         }
         for other in &others {

@@ -1,4 +1,4 @@
-//! What has been rendered, read out of the engine.
+//! Access to the rendered film.
 
 use super::{Session, SessionError};
 use crate::document::ViewSettings;
@@ -10,25 +10,28 @@ use crate::render::shown::Source;
 use crate::render::sums::KeptFilm;
 
 impl Session {
-    /// The sums of what has been rendered.
+    /// The film so far.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn film(&mut self) -> Result<&Film, SessionError> {
         Ok(self.engine.film()?)
     }
 
-    /// The mean picture, linear.
+    /// The mean image, linear.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn image(&mut self) -> Result<Image, SessionError> {
         Ok(self.film()?.image())
     }
 
-    /// The mean picture with what is known beside it about each pixel.
+    /// The mean image with its per-pixel layers.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn layers(&mut self) -> Result<Layers, SessionError> {
         let units = self.world_units_per_unit();
@@ -36,9 +39,10 @@ impl Session {
         Ok(Layers::of(film, Features::of(film, units)))
     }
 
-    /// The sums of what has been rendered, with what is needed to join them with others.
+    /// The film with the data to join it with others.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn kept_film(&mut self) -> Result<KeptFilm, SessionError> {
         let samples = self.engine.schedule().samples_per_pixel();
@@ -47,9 +51,10 @@ impl Session {
         Ok(KeptFilm::of(self.engine.film()?.clone(), document, samples, units))
     }
 
-    /// What is known of each pixel, for a picture that is shown in this way.
+    /// Inputs of maps for an image with display settings.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn source<'a>(&'a mut self, image: &'a Image, view: &'a ViewSettings) -> Result<Source<'a>, SessionError> {
         let world_units_per_unit = self.world_units_per_unit();
@@ -61,9 +66,10 @@ impl Session {
         })
     }
 
-    /// What the denoiser needs of what has been rendered.
+    /// Input of the denoiser.
     ///
     /// # Errors
+    ///
     /// If the GPU fails.
     pub fn noisy(&mut self) -> Result<Noisy, SessionError> {
         let region = self.document.as_ref().and_then(|document| document.render.region);

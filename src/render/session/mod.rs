@@ -21,12 +21,12 @@ use crate::document::{Denoise, Document};
 use crate::gpu::{GpuDevice, GpuError, Moment};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
-use crate::scene::texture::OwnPicture;
+use crate::scene::texture::UserTextureFile;
 
-/// How long both must have rendered before their rates are compared, seconds.
+/// Render time of both engines, in seconds, before their rates are compared.
 const RATE_SECONDS: f64 = 0.5;
 
-/// A document, what it needs, and the engine that renders it.
+/// A session: a document, its assets, and the engine that renders it.
 pub struct Session {
     engine: Engine,
     info: EngineInfo,
@@ -36,26 +36,26 @@ pub struct Session {
     job: Option<Arc<Job>>,
     convergence: Convergence,
     render_time: Duration,
-    /// Of it the time in the engine's steps.
+    /// Part of it in the engine's steps.
     step_time: Duration,
-    /// Engine time of the stand-in, before the engine took over, seconds; and what it rendered, pixel samples.
-    stand_in_seconds: f64,
-    stand_in_samples: u64,
+    /// Engine time in seconds and pixel samples of the CPU fallback, before the GPU took over.
+    fallback_seconds: f64,
+    fallback_samples: u64,
     /// The engine was chosen automatically.
     is_automatic: bool,
-    /// Where kernels are compiled beside the picture; `None` where the session waits for them.
+    /// Background compilation of kernels; `None` if the session waits for them.
     workshop: Option<Workshop>,
-    /// The GPU can't take over what the processor draws.
-    keeps_stand_in: bool,
-    /// The engine failed at the picture, which stays as it is.
+    /// True if the GPU cannot take over from the CPU fallback.
+    keeps_fallback: bool,
+    /// True if the engine failed at this render, which stays as it is.
     is_stuck: bool,
     precision: Precision,
     denoised: Option<Distance>,
-    /// Why guides are kept whatever the document says.
+    /// Reason to keep guides for any document.
     guides_wanted: Option<&'static str>,
-    /// Bytes that a picture may take; `None` is what is free.
+    /// Memory limit of a render in bytes; `None` is the free memory.
     memory_limit: Option<u64>,
-    /// How often the GPU failed.
+    /// Number of GPU failures.
     losses: u32,
     /// When devices that replace a lost one are lost as well, and how many: for tests.
     losing: Option<(Moment, u32)>,
@@ -65,14 +65,16 @@ impl Session {
     /// Opens an engine.
     ///
     /// # Errors
-    /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
+    ///
+    /// [`GpuError`] if a GPU was requested and none works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
         Self::open_with(choice, Assets::default())
     }
 
-    /// The same with models and environments that it may share with other sessions.
+    /// The same with assets that may be shared with other sessions.
     ///
     /// # Errors
+    ///
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         Ok(Self::around(Engine::open(choice, true)?, assets))
@@ -89,11 +91,11 @@ impl Session {
             convergence: Convergence::default(),
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
-            stand_in_seconds: 0.0,
-            stand_in_samples: 0,
+            fallback_seconds: 0.0,
+            fallback_samples: 0,
             is_automatic: false,
             workshop: None,
-            keeps_stand_in: false,
+            keeps_fallback: false,
             is_stuck: false,
             precision: Precision::default(),
             denoised: None,
@@ -104,74 +106,75 @@ impl Session {
         }
     }
 
-    /// The same, but never waits for engines to be measured or for a kernel to be compiled: until it is ready the
-    /// processor draws, and what it has drawn then counts.
+    /// The same without waiting for measurements or kernel compilation: until the kernel is ready, the CPU engine renders,
+    /// and its samples count.
     ///
     /// # Errors
+    ///
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(Engine::open(choice, false)?, assets);
         session.is_automatic = choice == EngineChoice::Auto;
-        let stand_in = Engine::Cpu(Box::default());
-        match std::mem::replace(&mut session.engine, stand_in) {
+        let fallback = Engine::Cpu(Box::default());
+        match std::mem::replace(&mut session.engine, fallback) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
             cpu => session.engine = cpu,
         }
         Ok(session)
     }
 
-    /// True while the processor draws because the GPU's kernel is being compiled.
-    pub fn is_standing_in(&self) -> bool {
-        self.workshop.is_some() && !self.keeps_stand_in && matches!(self.engine, Engine::Cpu(_))
+    /// True while the CPU engine renders because the GPU's kernel is being compiled.
+    pub fn is_fallback(&self) -> bool {
+        self.workshop.is_some() && !self.keeps_fallback && matches!(self.engine, Engine::Cpu(_))
     }
 
-    /// Lets the GPU take over where its kernel is ready by now. After an error the processor goes on with the picture.
+    /// Switches to the GPU if its kernel is ready. After an error the CPU engine continues.
     fn change_over(&mut self) -> Result<(), SessionError> {
-        let (true, Some(job), Some(workshop)) = (self.is_standing_in(), &self.job, &mut self.workshop) else {
+        let (true, Some(job), Some(workshop)) = (self.is_fallback(), &self.job, &mut self.workshop) else {
             return Ok(());
         };
         let engine = match workshop.finished(job) {
             Ok(engine) => engine,
             Err(error) => {
-                self.keeps_stand_in = true;
+                self.keeps_fallback = true;
                 return Err(error.into());
             }
         };
         let Some(mut engine) = engine else { return Ok(()) };
-        self.stand_in_seconds += self.engine_seconds();
-        self.stand_in_samples = self.engine.schedule().pixel_samples();
+        self.fallback_seconds += self.engine_seconds();
+        self.fallback_samples = self.engine.schedule().pixel_samples();
         self.step_time = Duration::ZERO;
-        if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
-            let (film, schedule) = stand_in.hand_over();
+        if let Engine::Cpu(fallback) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+            let (film, schedule) = fallback.hand_over();
             engine.take_over(film, schedule);
         }
         self.engine = Engine::Gpu(Box::new(engine));
         Ok(())
     }
 
-    /// The GPU's device, where it renders at the moment.
+    /// The GPU's device, if it renders now.
     pub fn device(&self) -> Option<&GpuDevice> {
         self.engine.device()
     }
 
-    /// What renders.
+    /// The engine in use, and why it was chosen.
     pub fn engine(&self) -> &EngineInfo {
         &self.info
     }
 
-    /// What the processor shades with from the next submission on; the GPU goes on in f32.
+    /// Sets the CPU's shading precision from the next submission on; the GPU stays in f32.
     pub fn set_precision(&mut self, precision: Precision) {
         self.precision = precision;
-        self.forget();
+        self.reset();
     }
 
-    /// Keeps what is seen first from the next submission on, also where nothing is denoised: layers are going to be asked
-    /// for, or may be. `why` is the plan's reason.
+    /// Keeps guides from the next submission on, also without denoising, because layers may be requested. `why` is the
+    /// plan's reason.
     pub fn keep_guides(&mut self, why: &'static str) {
         self.guides_wanted = Some(why);
     }
 
-    /// Refuses pictures that take more memory, in place of those that take more than is free.
+    /// Sets the memory limit of renders in bytes, instead of the free memory.
     pub fn limit_memory(&mut self, bytes: u64) {
         self.memory_limit = Some(bytes);
     }
@@ -181,30 +184,32 @@ impl Session {
         &self.assets
     }
 
-    /// The pictures of the user's own that a document's materials look up, each with why it can't be had where that is so.
+    /// Users' texture maps of a document's materials, each with its error, if any.
     ///
     /// # Errors
-    /// A model that can't be loaded.
-    pub fn own_pictures(&self, document: &Document) -> Result<Vec<OwnPicture>, SessionError> {
-        compile::own_pictures(document, &self.assets)
+    ///
+    /// A model that cannot be loaded.
+    pub fn user_texture_files(&self, document: &Document) -> Result<Vec<UserTextureFile>, SessionError> {
+        compile::user_texture_files(document, &self.assets)
     }
 
-    /// Forgets what was rendered, so that the next submission starts over even with the same document.
-    pub fn forget(&mut self) {
+    /// Discards the render: the next submission starts over even with the same document.
+    pub fn reset(&mut self) {
         self.document = None;
     }
 
-    /// Reads the files of a document again; what they hold now. The next submission starts over.
+    /// Reloads the files of a document. The next submission starts over.
     ///
     /// # Errors
-    /// A model or environment that can't be loaded; what is rendered then goes on.
+    ///
+    /// A model or environment that cannot be loaded; the current render then continues.
     pub fn reload(&mut self, document: &Document) -> Result<Reloaded, SessionError> {
         let lighting = &document.lighting;
         let (environment, encoding) = (&lighting.environment, lighting.environment_encoding);
         let reloaded = self
             .assets
             .reload(&document.model, &document.import, environment, encoding)?;
-        self.forget();
+        self.reset();
         Ok(reloaded)
     }
 
@@ -213,11 +218,12 @@ impl Session {
         self.job.as_ref()
     }
 
-    /// Takes a document to render: loads what it names and starts over, unless nothing changed but how the picture is
-    /// shown. After an error the old document goes on.
+    /// Submits a document: loads its assets and starts over, unless only display settings changed. After an error the old
+    /// document continues.
     ///
     /// # Errors
-    /// A model or environment that can't be loaded, or what the GPU can't hold.
+    ///
+    /// A model or environment that cannot be loaded, or the GPU's objection.
     pub fn submit(&mut self, document: &Document) -> Result<Change, SessionError> {
         self.submit_shared(&Arc::new(document.clone()))
     }
@@ -225,6 +231,7 @@ impl Session {
     /// The same without a copy of the document.
     ///
     /// # Errors
+    ///
     /// As [`Session::submit`].
     pub fn submit_shared(&mut self, document: &Arc<Document>) -> Result<Change, SessionError> {
         let change = match &self.document {
@@ -237,8 +244,8 @@ impl Session {
                 job.plan = job.plan.with(EffectId::Guides, Decision::on(why));
             }
             let job = Arc::new(job);
-            // With another aim only, the engine goes on with what it has: its kernel is the same. But a film that was begun
-            // without guides can't have them any more.
+            // With only another goal, the engine continues with the same kernel. But a film without guides cannot get them
+            // later.
             let has_guides = |job: &Arc<Job>| job.plan.has(EffectId::Guides);
             if change.restarts() || (has_guides(&job) && !self.job.as_ref().is_some_and(has_guides)) {
                 self.check_memory(&job)?;
@@ -249,16 +256,16 @@ impl Session {
         self.document = Some(document.clone());
         self.is_stuck = false;
         if change.target {
-            // The goals in force were those of another aim.
+            // The current goals were those of another target.
             self.convergence.goals.clear();
         }
         Ok(change)
     }
 
-    /// Refuses what does not fit, so that the old picture goes on.
+    /// Refuses a job that does not fit into memory, so that the old one continues.
     fn check_memory(&self, job: &Job) -> Result<(), SessionError> {
         let is_software_gpu = self.info.kind == EngineKind::Gpu && self.info.is_software;
-        // A film takes memory from its first sample on, and goes when another is begun.
+        // A film uses memory from its first sample on, and is freed when another starts.
         let is_in_use = self.engine.schedule().pixel_samples() > 0;
         let old = self.job.as_deref().filter(|_| is_in_use);
         let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
@@ -266,13 +273,13 @@ impl Session {
         Ok(memory::check(job, is_software_gpu, allowed)?)
     }
 
-    /// Restarts the engine with a job; after an error it goes on with the one that it had.
+    /// Restarts the engine with a job; after an error it continues with the old one.
     fn start(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         match &mut self.workshop {
             Some(workshop) => workshop.begin(&job, &mut self.engine)?,
             None => self.engine.submit(job)?,
         }
-        self.keeps_stand_in = false;
+        self.keeps_fallback = false;
         self.start_clocks();
         Ok(())
     }
@@ -280,13 +287,14 @@ impl Session {
     fn start_clocks(&mut self) {
         (self.denoised, self.is_stuck) = (None, false);
         self.convergence = Convergence::default();
-        (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
+        (self.render_time, self.step_time, self.fallback_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
-    /// Renders for about `budget`. After an error of the engine the picture is done as it is, until something is submitted.
+    /// Renders for about `budget`. After an engine error the render is done as it is, until the next submission.
     ///
     /// # Errors
-    /// If the GPU fails; [`Session::recover`] goes on all the same.
+    ///
+    /// If the GPU fails; [`Session::recover`] continues.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
         self.change_over()?;
         let outcome = self.render(budget);
@@ -297,22 +305,22 @@ impl Session {
         outcome
     }
 
-    /// Samples a second of software Vulkan and, on the same picture, of the processor that stood in for it while a kernel
-    /// was compiled on its cores; where it was found to be the faster one, and both have rendered long enough to tell.
+    /// Rates in samples per second of software Vulkan and of the CPU fallback on the same image, which rendered while a
+    /// kernel was compiled on its cores. `None` unless the CPU engine is faster and both have rendered long enough.
     fn rates(&self) -> Option<[f64; 2]> {
         let is_of_interest = self.is_automatic && self.info.is_software && self.device().is_some();
-        let seconds = self.engine_seconds() - self.stand_in_seconds;
-        if !is_of_interest || self.stand_in_seconds.min(seconds) < RATE_SECONDS {
+        let seconds = self.engine_seconds() - self.fallback_seconds;
+        if !is_of_interest || self.fallback_seconds.min(seconds) < RATE_SECONDS {
             return None;
         }
         let samples = self
             .engine
             .schedule()
             .pixel_samples()
-            .saturating_sub(self.stand_in_samples);
+            .saturating_sub(self.fallback_samples);
         Some([
             samples as f64 / seconds,
-            self.stand_in_samples as f64 / self.stand_in_seconds,
+            self.fallback_samples as f64 / self.fallback_seconds,
         ])
     }
 
@@ -340,7 +348,7 @@ impl Session {
         Ok(self.progress())
     }
 
-    /// Sets goals where those in force have been reached or given up.
+    /// Sets new goals if the current ones have been reached or dropped.
     fn plan(&mut self) -> Result<(), SessionError> {
         let Some(document) = &self.document else { return Ok(()) };
         let goals = &self.convergence.goals;
@@ -363,7 +371,7 @@ impl Session {
         Ok(())
     }
 
-    /// Looks at the error where something was rendered since it was last looked at.
+    /// Measures the error if there are new samples since the last measurement.
     fn measure(&mut self) -> Result<(), SessionError> {
         if !self.convergence.is_stale(self.engine.schedule()) {
             return Ok(());
@@ -384,10 +392,10 @@ impl Session {
 
     /// The engine's own time.
     fn engine_seconds(&self) -> f64 {
-        self.stand_in_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
+        self.fallback_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
     }
 
-    /// How far the render has come.
+    /// Progress of the render.
     pub fn progress(&self) -> Progress {
         let schedule = self.engine.schedule();
         let settings = self.document.as_ref().map(|document| document.render);
@@ -400,15 +408,15 @@ impl Session {
             render_seconds: self.render_time.as_secs_f64(),
             engine_seconds,
             measure_seconds: self.convergence.total_seconds,
-            is_standing_in: self.is_standing_in(),
+            is_fallback: self.is_fallback(),
             kernel_seconds: self.workshop.as_ref().and_then(Workshop::compile_seconds),
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),
             denoised: self.denoised,
-            aims_at_denoised: self.shows_nearer(),
+            targets_denoised: self.shows_nearer(),
             ..Progress::default()
         };
-        // Where tiles rest, one may have all while others lack samples of the round.
+        // With pausing tiles, one may be complete while others lack samples of the round.
         let is_even = settings.is_none_or(|render| !render.is_adaptive());
         let has_all = progress.samples_per_pixel >= progress.samples_wanted && (is_even || self.is_between_rounds());
         let has_least = || settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.least_samples());
@@ -435,26 +443,26 @@ impl Session {
         Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
     }
 
-    /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
-    pub fn note_denoised(&mut self, error: Distance) {
+    /// Sets the denoised image's error: a noise target applies to the displayed image.
+    pub fn set_denoised_error(&mut self, error: Distance) {
         self.denoised = Some(error);
     }
 
-    /// True where every tile has the samples of its round: how many is no matter of time on the CPU.
+    /// True if every tile has the samples of its round; on the CPU their number does not depend on time.
     pub fn is_between_rounds(&self) -> bool {
         self.engine.schedule().is_at_goal()
     }
 
-    /// True where the error of the denoised picture is to be looked at before rendering goes on.
+    /// True if rendering waits for the denoised image's error.
     fn awaits_denoised(&self) -> bool {
-        let has_aim = self
+        let has_target = self
             .document
             .as_ref()
             .is_some_and(|document| document.render.noise.is_some());
-        has_aim && self.shows_nearer() && self.is_between_rounds()
+        has_target && self.shows_nearer() && self.is_between_rounds()
     }
 
-    /// Whether samples or the denoised picture are shown, whichever is nearer to the truth.
+    /// Whether the display blends samples and denoised image by error (`auto`).
     fn shows_nearer(&self) -> bool {
         let document = self.document.as_ref();
         document.is_some_and(|document| document.view.denoise == Denoise::Auto)

@@ -1,4 +1,4 @@
-//! What becomes of a picture when the GPU's device is lost.
+//! Recovery of a render when the GPU's device is lost.
 
 use super::Session;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Moment};
@@ -7,12 +7,12 @@ use crate::job::tiles::Schedule;
 use crate::render::engine::{Engine, cpu};
 use crate::render::workshop::Workshop;
 
-/// How often a lost device is reopened: one that is lost yet again is taken to be broken.
+/// Largest number of reopenings of a lost device; one that is lost again counts as broken.
 const REPLACEMENTS: u32 = 3;
 
 impl Session {
-    /// Goes on after a failure of the GPU, and says how: on a device opened anew where it was lost, thrice at most; else on
-    /// the processor. What the GPU had handed over of the picture counts.
+    /// Continues after a GPU failure and returns a message: on a reopened device after a loss, up to three times; else on
+    /// the CPU. Samples already read from the GPU count.
     pub fn recover(&mut self, error: &GpuError) -> String {
         let kept = match std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
             Engine::Gpu(engine) => engine.hand_over(),
@@ -25,7 +25,7 @@ impl Session {
         let mut cause = error.clone();
         loop {
             self.losses += 1;
-            let how = self.go_on_after(&cause);
+            let how = self.continue_after(&cause);
             let Some(job) = self.job.clone() else {
                 return format!("{why}; {how}");
             };
@@ -33,7 +33,7 @@ impl Session {
             match self.start(job) {
                 Ok(()) => {
                     self.render_time = render_time;
-                    self.take_back(kept);
+                    self.restore_samples(kept);
                     return format!("{why}; {how}");
                 }
                 Err(again) => cause = again,
@@ -41,9 +41,9 @@ impl Session {
         }
     }
 
-    /// Opens another engine; what it does next, in words.
-    fn go_on_after(&mut self, cause: &GpuError) -> String {
-        let may_go_on = cause.is_lost() && self.losses <= REPLACEMENTS;
+    /// Opens another engine. Returns a message.
+    fn continue_after(&mut self, cause: &GpuError) -> String {
+        let may_reopen = cause.is_lost() && self.losses <= REPLACEMENTS;
         let kind = if self.info.is_software {
             AdapterKind::Software
         } else {
@@ -51,7 +51,7 @@ impl Session {
         };
         let is_fluid = self.workshop.take().is_some();
         let traversal = self.info.traversal;
-        let opened = may_go_on.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
+        let opened = may_reopen.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
         match opened {
             Some(Ok(engine)) if is_fluid => self.workshop = Some(Workshop::new(engine)),
             Some(Ok(engine)) => self.engine = Engine::Gpu(Box::new(engine)),
@@ -69,10 +69,10 @@ impl Session {
         )
     }
 
-    /// Gives the engine what there was of the picture, where it is of the same one.
-    fn take_back(&mut self, kept: Option<(Film, Schedule)>) {
+    /// Passes the samples so far to the engine, if they are of the same image.
+    fn restore_samples(&mut self, kept: Option<(Film, Schedule)>) {
         let Some((film, schedule)) = kept else { return };
-        // None was rendered yet where the job is the first.
+        // The first job has no samples yet.
         if schedule.grid() != self.engine.schedule().grid() {
             return;
         }
@@ -82,7 +82,7 @@ impl Session {
         }
     }
 
-    /// Takes the GPU's device away at a moment to come, and so many times in all those that replace it: for tests.
+    /// Injects losses of the GPU's device at a moment, and `times` in all. For tests.
     pub fn lose_when(&mut self, moment: Moment, times: u32) {
         self.losing = Some((moment, times - 1));
         let device = self.device().or_else(|| self.workshop.as_ref()?.blank_device());

@@ -11,11 +11,11 @@ use crate::document::Document;
 use crate::render::Attendant;
 use crate::render::{EngineChoice, Precision, Session, StopReason};
 
-/// The reference is this many times as exact as the picture, where the time suffices.
+/// Precision of the reference relative to the render, if time permits.
 const REFERENCE_GAIN: f64 = 4.0;
-/// By how much samples grow from one denoised picture to the next.
+/// Factor by which samples grow between denoised images.
 const DENOISED_GROWTH: f64 = 1.5;
-/// How long to render before looking whether to go on.
+/// Render time between two checks for a stop.
 const STEP: Duration = Duration::from_millis(100);
 
 /// The error at some time.
@@ -25,45 +25,45 @@ pub struct ConvergencePoint {
     pub seconds: f64,
     /// Samples a pixel until then, in the mean.
     pub samples_per_pixel: f64,
-    /// Relative error as told.
+    /// Estimated relative error.
     pub noise: f64,
     /// The lower end of its 95 % band.
     pub noise_low: f64,
-    /// The upper end.
+    /// Upper end of its 95 % interval.
     pub noise_high: f64,
-    /// What the samples' own spread tells.
+    /// Relative error by the samples' spread, as if independent.
     pub noise_from_spread: f64,
 }
 
-/// The error of the denoised picture at some time.
+/// Error of the denoised image at some time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DenoisedPoint {
-    /// The engine's own time until then and that of denoising this picture, seconds.
+    /// Engine time so far plus the time of denoising this image, in seconds.
     pub seconds: f64,
     /// Samples a pixel until then, in the mean.
     pub samples_per_pixel: f64,
-    /// Relative error as told, bias included.
+    /// Estimated relative error, bias included.
     pub error: f64,
     /// The lower end of its 95 % band.
     pub error_low: f64,
-    /// The upper end.
+    /// Upper end of its 95 % interval.
     pub error_high: f64,
 }
 
-/// Error against time.
+/// Error over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConvergenceReport {
-    /// Where it was measured.
+    /// Machine of the measurement.
     pub machine: Machine,
-    /// Columns of pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Height in pixels.
     pub height: u32,
-    /// What ended it.
+    /// Stop reason.
     pub stopped_by: Option<StopReason>,
     /// The errors seen, oldest first.
     pub points: Vec<ConvergencePoint>,
-    /// Those of the denoised picture, where it is denoised.
+    /// Points of the denoised image, if denoised.
     pub denoised: Vec<DenoisedPoint>,
     /// Slope of the error over the time, both as logarithms: −0.5 for independent samples. `None` with fewer than two
     /// points.
@@ -72,10 +72,11 @@ pub struct ConvergenceReport {
     pub true_error: Distance,
 }
 
-/// Renders a document until its own aim is reached, and watches its error.
+/// Renders a document until its own target is reached, and records its error.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`].
+///
+/// Errors of rendering; [`StudyError::Stopped`].
 pub fn convergence(
     document: &Document,
     engine: EngineChoice,
@@ -96,7 +97,7 @@ pub fn convergence(
             denoised.extend(denoised_point(&mut attendant, &mut session)?);
         }
         let progress = session.progress();
-        steps.tell("Rendering", progress.share_done(document.render.time_s))?;
+        steps.report("Rendering", progress.share_done(document.render.time_s))?;
         if progress.is_done {
             break progress;
         }
@@ -118,8 +119,8 @@ pub fn convergence(
         seconds: reference_seconds,
     };
     let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
-    let mut go_on = |share: f64| steps.tell("Reference", share);
-    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut go_on)?;
+    let mut on_progress = |share: f64| steps.report("Reference", share);
+    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut on_progress)?;
     Ok(ConvergenceReport {
         machine: Machine::of(session.engine()),
         width: document.render.width,
@@ -137,12 +138,12 @@ fn denoised_point(attendant: &mut Attendant, session: &mut Session) -> Result<Op
     let Some(denoised) = attendant.finish(session)? else {
         return Ok(None);
     };
-    Ok(denoised.error.map(|told| DenoisedPoint {
+    Ok(denoised.error.map(|estimate| DenoisedPoint {
         seconds: progress.engine_seconds + denoised.seconds,
         samples_per_pixel: progress.mean_samples,
-        error: told.value,
-        error_low: told.low,
-        error_high: told.high,
+        error: estimate.value,
+        error_low: estimate.low,
+        error_high: estimate.high,
     }))
 }
 

@@ -1,13 +1,13 @@
-//! The ledger: what each effect and each setting in force costs in time, does to the noise and does to the picture, on
-//! this scene and this machine.
+//! The ledger: cost of each active effect and setting in time, noise and image change, on this scene and machine.
 //!
-//! The document is rendered with and without, in turns, with the same random numbers; times are medians over the turns.
+//! The document is rendered with and without each, in interleaved trials, with the same random numbers; times are medians
+//! over the trials.
 
 use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
 use crate::document::effect::{Effect, Switch};
@@ -21,28 +21,28 @@ use crate::optics::random::Sequence;
 use crate::render::Attendant;
 use crate::render::{EngineChoice, Session};
 
-/// Samples a pixel that each picture has at least, where no more are asked for: two in either half.
+/// Minimum samples per pixel of each render by default: two in either half.
 const SAMPLES_MIN: f64 = 4.0;
 /// Turns are added up to this many times as many until there are as many samples as asked for.
 const TURNS_FACTOR: usize = 50;
-/// Changes of the noise below this share are not told in words: the estimate itself is no more exact.
+/// Relative change of noise below which it is not reported in words: the estimate is no more precise.
 const NOISE_WORTH_TELLING: f64 = 0.05;
-/// Changes of the time below this share are not told as a number.
+/// Relative change of time below which no number is reported.
 const TIME_WORTH_TELLING: f64 = 0.005;
 
 /// Name of the line that holds the scene's kernel against the general one.
 const KERNEL: &str = "kernel";
 
-/// How a ledger is made.
+/// Options of a ledger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LedgerOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
     /// Turns of each pair.
     pub turns: usize,
-    /// How long a turn of either side lasts.
+    /// Length of a trial of either side.
     pub slice: Duration,
-    /// Samples a pixel that each picture has at least: what is told of noise and picture is as sure as they make it.
+    /// Minimum samples per pixel of each render; more give more precise noise and image differences.
     pub samples_min: f64,
 }
 
@@ -58,7 +58,7 @@ impl LedgerOptions {
     }
 }
 
-/// What an entry is about.
+/// Subject of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EntryKind {
@@ -73,34 +73,34 @@ pub enum EntryKind {
 pub struct Entry {
     /// Name of the effect or setting.
     pub name: &'static str,
-    /// What is in force.
+    /// The active setting.
     pub label: String,
-    /// What it is held against.
+    /// The alternative.
     pub instead: String,
-    /// What it is about.
+    /// Kind of subject.
     pub kind: EntryKind,
     /// Milliseconds of one sample of every pixel, as it is.
     pub ms_with: f64,
     /// The same with the other.
     pub ms_without: f64,
-    /// Milliseconds that it adds to a sample of every pixel; negative where it saves time.
+    /// Time in milliseconds that it adds to one sample of all pixels; negative if it saves time.
     pub ms: f64,
     /// The quartiles of that over the turns.
     pub ms_quartiles: [f64; 2],
-    /// Its share of the time of a frame, as it is.
+    /// Its share of the frame time.
     pub share_of_frame: f64,
-    /// What it adds to the noise at equal samples, as a share of the variance without it; negative where it removes.
+    /// Relative change of variance at equal samples; negative if it lowers noise.
     pub noise_share: f64,
-    /// How far it changes the picture, relative.
+    /// Relative change of the image.
     pub picture_change: Distance,
-    /// It changes nothing in the picture by its nature, and that is not measured.
+    /// True if it cannot change the image, which then is not measured.
     pub is_picture_kept: bool,
-    /// All of it in words.
+    /// Summary in words.
     pub words: String,
 }
 
 impl Entry {
-    /// What it costs in time, in words.
+    /// Cost in time, in words.
     pub fn time_words(&self) -> String {
         let share = self.ms / self.ms_without;
         if share.abs() < TIME_WORTH_TELLING || !self.is_time_resolved() {
@@ -117,18 +117,18 @@ impl Entry {
     }
 }
 
-/// The whole.
+/// Cost of all active effects and settings of a document.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ledger {
-    /// Where it was measured.
+    /// Machine of the measurement.
     pub machine: Machine,
-    /// Columns of pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Height in pixels.
     pub height: u32,
     /// Milliseconds of one sample of every pixel of the document.
     pub ms_per_sample: f64,
-    /// Its lines: effects in the order of the plan, then settings.
+    /// Entries: effects in the order of the plan, then settings.
     pub entries: Vec<Entry>,
 }
 
@@ -139,7 +139,7 @@ impl Ledger {
         self.entries.iter().find(is_it)
     }
 
-    /// How many times as fast the kernel made for the scene is as the general one; `None` where that could not be told.
+    /// Speed of the specialised kernel relative to the über-shader; `None` if not resolved.
     pub fn kernel_gain(&self) -> Option<f64> {
         let kernel = self.entries.iter().find(|entry| entry.name == KERNEL)?;
         kernel.is_time_resolved().then(|| kernel.ms_without / kernel.ms_with)
@@ -158,18 +158,19 @@ struct Rival {
 /// Measures a ledger. `watch` receives the progress and may stop it.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`].
+///
+/// Errors of rendering; [`StudyError::Stopped`].
 pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
     let mut with = Session::open(options.engine)?;
     let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
-    let document = without_aim(document);
+    let document = without_target(document);
     warmed(&mut with, &document)?;
     let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());
     let rivals = rivals(&document, &plan);
     let mut steps = Steps::new(watch, rivals.len() as f64);
     let mut entries = Vec::new();
     for rival in rivals {
-        steps.tell(rival.label.clone(), 0.0)?;
+        steps.report(rival.label.clone(), 0.0)?;
         entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
         steps.finish(1.0);
     }
@@ -288,7 +289,7 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
     });
     let label = "Kernel made for the scene".to_owned();
     rivals.push(rival(KERNEL, label, "the general one".to_owned(), general));
-    // What makes no difference to this scene has no line.
+    // Settings without effect on this scene have no entry.
     rivals.retain(|rival| rival.document != *document);
     rivals
 }
@@ -316,7 +317,7 @@ fn entry(
             let session = if side == 0 { &mut *with } else { &mut *without };
             times[side].push(1e3 * seconds_per_sample(session, options.slice)?);
         }
-        steps.tell(rival.label.clone(), turn as f64 / options.turns as f64)?;
+        steps.report(rival.label.clone(), turn as f64 / options.turns as f64)?;
     }
     let differences: Vec<f64> = std::iter::zip(&times[0], &times[1]).map(|(a, b)| a - b).collect();
     let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
@@ -348,8 +349,8 @@ fn entry(
     Ok(entry)
 }
 
-/// The line of the denoiser, which adds to a picture, not to a sample: the time of one picture; what it leaves of the
-/// squared error of the samples so far; its bias.
+/// The denoiser's entry, per image rather than per sample: time of one image, remaining share of the squared error, and
+/// bias.
 fn denoising(
     document: &Document,
     rival: Rival,
@@ -368,8 +369,8 @@ fn denoising(
         times.extend(last.as_ref().map(|denoised| 1e3 * denoised.seconds));
         noise = crate::analysis::noise::noise(session.film()?).map_or(0.0, |noise| noise.relative);
     }
-    let told = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
-    let share = (told.value / noise).powi(2) - 1.0;
+    let estimate = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
+    let share = (estimate.value / noise).powi(2) - 1.0;
     let mut entry = Entry {
         name: rival.name,
         label: rival.label,
@@ -410,12 +411,12 @@ fn variance_of_a_sample(session: &mut Session) -> Result<f64, StudyError> {
     Ok(found.map_or(0.0, |noise| samples * (noise.relative * noise.mean_luminance).powi(2)))
 }
 
-/// What the first adds to the second, as a share of it; 0 where there is nothing to share.
+/// Relative increase of the first over the second; 0 if the second is 0.
 fn share_of_noise([with, without]: [f64; 2]) -> f64 {
     if without > 0.0 { with / without - 1.0 } else { 0.0 }
 }
 
-/// An entry in words: "Exact Fresnel: +2 % time, changes the picture by 0.3 %".
+/// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
 fn words(entry: &Entry) -> String {
     let mut parts = vec![entry.time_words()];
     if entry.noise_share.abs() >= NOISE_WORTH_TELLING {

@@ -1,5 +1,5 @@
-//! What accuracy costs: techniques raced against each other, a ledger of effects and settings, and how time grows with
-//! the size of things. Everything is measured on the engine that renders, by its own clock, in turns.
+//! Studies of cost and accuracy: a race of techniques, a ledger of effects and settings, and scaling with size. All are
+//! measured on the rendering engine, by its own clock, in interleaved trials.
 
 mod convergence;
 pub mod ledger;
@@ -20,10 +20,10 @@ use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
 
-/// Samples a pixel where time or noise ends a render.
+/// Samples per pixel of a render that ends by time or noise.
 const UNLIMITED: u32 = u32::MAX;
 
-/// Why a study came to nothing.
+/// Errors of a study.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// Something can't be rendered.
@@ -32,10 +32,10 @@ pub enum StudyError {
     /// A file can't be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The picture is black, or nearly: there is nothing to be relative to.
+    /// The image is (nearly) black, so that relative errors are undefined.
     #[error("the picture is black: errors relative to its brightness mean nothing. Give the scene some light")]
     Black,
-    /// It was stopped by the one who asked for it.
+    /// The study was stopped.
     #[error("the study was stopped")]
     Stopped,
 }
@@ -46,19 +46,19 @@ impl From<crate::gpu::GpuError> for StudyError {
     }
 }
 
-/// How far a study has come.
+/// Progress of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyProgress {
     /// In [0, 1].
     pub share: f64,
-    /// What is being done.
+    /// Current step.
     pub what: String,
 }
 
-/// Is told how far a study has come, and says whether it is to go on.
+/// Progress callback of a study; returning false stops it.
 pub type Watch<'a> = dyn FnMut(StudyProgress) -> bool + 'a;
 
-/// The share that has been done, told after each piece of work.
+/// Progress reporter over pieces of work.
 struct Steps<'a, 'b> {
     watch: &'a mut Watch<'b>,
     done: f64,
@@ -74,8 +74,8 @@ impl<'a, 'b> Steps<'a, 'b> {
         }
     }
 
-    /// Says what is being done, `within` of a piece of work having been done of it.
-    fn tell(&mut self, what: impl Into<String>, within: f64) -> Result<(), StudyError> {
+    /// Reports the current step; `within` in [0, 1] is the finished share of the current piece of work.
+    fn report(&mut self, what: impl Into<String>, within: f64) -> Result<(), StudyError> {
         let share = ((self.done + within) / self.total.max(1e-9)).clamp(0.0, 1.0);
         let progress = StudyProgress {
             share,
@@ -93,16 +93,16 @@ impl<'a, 'b> Steps<'a, 'b> {
     }
 }
 
-/// Where numbers were measured.
+/// Machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Machine {
     /// The program's version.
     pub version: &'static str,
     /// `gpu` or `cpu`.
     pub engine: &'static str,
-    /// The adapter's or processor's name.
+    /// Name of the adapter or CPU.
     pub adapter: String,
-    /// The adapter's driver; empty for the processor.
+    /// Driver of the adapter; empty for the CPU.
     pub driver: String,
 }
 
@@ -117,32 +117,32 @@ impl Machine {
     }
 }
 
-/// The same document without an aim: it is rendered until something else ends it, and whole.
-fn without_aim(document: &Document) -> Document {
+/// The same document without a target and without a region.
+fn without_target(document: &Document) -> Document {
     let mut document = document.clone();
     let render = &mut document.render;
-    // What is adaptive because of a noise to reach stays so.
+    // A document that is adaptive because of its noise target stays adaptive.
     render.adaptive = Some(render.is_adaptive());
     (render.samples, render.time_s, render.noise) = (UNLIMITED, None, None);
     render.region = None;
     document
 }
 
-/// An open session that has compiled what a document needs and starts over with it.
+/// Warms a session up for a document and starts over with it.
 fn warmed(session: &mut Session, document: &Document) -> Result<(), StudyError> {
     session.submit(document)?;
     session.step(Duration::from_millis(1))?;
-    session.forget();
+    session.reset();
     session.submit(document)?;
     Ok(())
 }
 
-/// The middle value; NaN where there is none.
+/// Median; NaN without values.
 fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value below which a share of the values lies.
+/// Quantile of values.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

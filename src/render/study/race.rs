@@ -1,9 +1,8 @@
-//! The race: techniques on the same view, in turn, fair in time.
+//! The race: techniques on the same view, interleaved in time.
 //!
-//! Each has a session of its own, of the same engine, and renders in slices by turns, so that whatever else the machine
-//! does meets all of them; the engine's own clock counts. Two errors are told apart. The *noise* is how far a picture
-//! is from the one that the technique itself converges to; it falls with time. The *bias* is how far that one is from
-//! the picture of the most accurate setting; it stays.
+//! Each has its own session of the same engine and renders in time slices by turns, so that disturbances affect all; the
+//! engine's own clock counts. Two errors are distinguished. *Noise* is the distance of an image from the technique's own
+//! limit; it falls with time. *Bias* is the distance of that limit from the most accurate setting's; it stays.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -11,7 +10,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, Reference, ReferenceCache};
-use super::{Machine, Steps, StudyError, Watch, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
@@ -21,27 +20,27 @@ use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
-/// References are this many times as exact as the noise to reach, where the time suffices.
+/// Precision of references relative to the target noise, if time permits.
 const REFERENCE_GAIN: f64 = 8.0;
-/// Samples of the shortest picture of equal error: one in either half.
+/// Minimum samples of the render of equal error: one in either half.
 const SAMPLES_MIN: f64 = 2.0;
 
-/// How a race is run.
+/// Options of a race.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaceOptions {
     /// The engine, the same for all.
     pub engine: EngineChoice,
-    /// Who takes part. The document as it is always does.
+    /// Techniques that take part; the current document always does.
     pub techniques: Vec<Technique>,
     /// Engine time that each has, seconds.
     pub seconds: f64,
     /// The noise at which times are compared: 0.02 is 2 %.
     pub noise: f64,
-    /// How long one renders before it is the next one's turn.
+    /// Length of a time slice.
     pub slice: Duration,
     /// Longest time for one reference, seconds.
     pub reference_seconds: f64,
-    /// Where references are kept.
+    /// Cache of references.
     pub cache: ReferenceCache,
 }
 
@@ -60,22 +59,22 @@ impl RaceOptions {
     }
 }
 
-/// How a race ended.
+/// Result of a race.
 #[derive(Clone, Debug, Serialize)]
 pub struct Race {
-    /// Where it was run.
+    /// Machine of the race.
     pub machine: Machine,
-    /// Columns of pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Height in pixels.
     pub height: u32,
     /// Engine time that each had, seconds.
     pub seconds: f64,
     /// The noise at which times are compared.
     pub noise: f64,
-    /// The noise of the pictures of equal error: the largest after equal time.
+    /// Noise of the renders of equal error: the largest after equal time.
     pub equal_error: f64,
-    /// Those who took part, in the order in which they were given, the document as it is first.
+    /// Techniques in the given order, the current document first.
     pub runners: Vec<Runner>,
 }
 
@@ -84,34 +83,35 @@ pub struct Race {
 pub struct Runner {
     /// The technique, as it is written.
     pub technique: Technique,
-    /// What it is called.
+    /// Label in tables and charts.
     pub label: String,
     /// Engine time that it had in fact, seconds.
     pub seconds: f64,
     /// Samples a pixel after it, in the mean.
     pub samples_per_pixel: f64,
-    /// Its own estimate of the relative error, made without a reference.
-    pub told_noise: f64,
-    /// Its relative error against its own reference.
+    /// Estimated relative error, without a reference.
+    #[serde(rename = "told_noise")]
+    pub estimated_noise: f64,
+    /// Relative error against its own reference.
     pub error: Distance,
-    /// Engine time to the race's noise, seconds: the error falls with the root of the time. (That of a denoised picture
-    /// falls more slowly: where it was reached in the race the time is told too long, else too short.)
+    /// Engine time in seconds to the race's noise: the error falls with the root of time. (A denoised image's error falls
+    /// more slowly: its time is overestimated if the noise was reached in the race, else underestimated.)
     pub time_to_noise: f64,
     /// The noise was not reached in the race: the time is extrapolated.
     pub is_extrapolated: bool,
-    /// Relative distance of what it converges to from the most accurate setting's picture; of a denoised picture the
-    /// denoiser's bias at the race's end.
+    /// Relative distance of its limit from the most accurate setting's; for a denoised render, the denoiser's bias at the
+    /// race's end.
     pub bias: Distance,
-    /// It converges to the most accurate setting's picture by its nature: the bias is 0 and not measured.
+    /// True if its limit is the most accurate setting's by construction: the bias is 0 and not measured.
     pub is_unbiased: bool,
-    /// The relative error of its own reference, as told.
+    /// Estimated relative error of its own reference.
     pub reference_noise: f64,
     /// No other one is both less biased and faster.
     pub is_on_front: bool,
-    /// The picture after equal time.
+    /// The image after equal time.
     #[serde(skip)]
     pub equal_time: Image,
-    /// The picture when its error was that of the slowest after equal time.
+    /// The image at the time of equal error.
     #[serde(skip)]
     pub equal_error: Image,
     /// The time that this took, seconds.
@@ -119,7 +119,7 @@ pub struct Runner {
 }
 
 impl Runner {
-    /// The bias as far as it is known: 0 where it cannot be told from nothing.
+    /// The bias, or 0 if not significant.
     pub fn resolved_bias(&self) -> f64 {
         if self.is_unbiased || !self.bias.is_resolved() {
             0.0
@@ -128,7 +128,7 @@ impl Runner {
         }
     }
 
-    /// Where it stands in a chart whose axis has no 0: at least what could have been told from nothing.
+    /// Bias in a logarithmic chart: at least the smallest resolvable one.
     pub fn charted_bias(&self, least: f64) -> f64 {
         let value = if self.bias.is_resolved() || self.is_unbiased {
             self.bias.value
@@ -140,7 +140,7 @@ impl Runner {
 }
 
 impl Race {
-    /// The least bias of the chart's axis: half of what could just be told from nothing.
+    /// Lower end of the chart's bias axis: half the smallest resolvable bias.
     pub fn least_bias(&self) -> f64 {
         let resolved = self.runners.iter().filter(|runner| !runner.is_unbiased);
         let least = resolved
@@ -150,7 +150,7 @@ impl Race {
     }
 }
 
-/// Someone on the way.
+/// A technique during a race.
 struct Lane {
     technique: Technique,
     document: Document,
@@ -159,7 +159,7 @@ struct Lane {
 }
 
 impl Lane {
-    /// Its picture as it is shown, and the denoised one where it is denoised.
+    /// Its displayed image, and the denoised one, if any.
     fn picture(&mut self) -> Result<(Arc<Image>, Option<Denoised>), StudyError> {
         let denoised = self.attendant.finish(&mut self.session)?;
         let image = match &denoised {
@@ -173,7 +173,8 @@ impl Lane {
 /// Runs a race. `watch` receives the progress and may stop it.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`]; [`StudyError::Black`].
+///
+/// Errors of rendering; [`StudyError::Stopped`]; [`StudyError::Black`].
 pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
     let assets = Assets::default();
     let mut lanes = lanes(document, options, &assets)?;
@@ -190,7 +191,7 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
         let what = format!("Equal error: {}", runner.label);
         let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
         let samples = (runner.samples_per_pixel * share).max(SAMPLES_MIN);
-        rerun(lane, samples, &mut |done| steps.tell(what.clone(), done))?;
+        rerun(lane, samples, &mut |done| steps.report(what.clone(), done))?;
         let (image, denoised) = lane.picture()?;
         let denoise_seconds = denoised.map_or(0.0, |denoised| denoised.seconds);
         runner.equal_error = Image::clone(&image);
@@ -215,13 +216,13 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     let mut engine = options.engine;
     let mut lanes: Vec<Lane> = Vec::new();
     for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
-        let changed = without_aim(&technique.apply(document));
+        let changed = without_target(&technique.apply(document));
         let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
         if lanes.iter().any(is_there) {
             continue;
         }
         let mut session = Session::open_with(engine, assets.clone())?;
-        // Not one on the GPU and another on the processor.
+        // All on the same engine.
         engine = session.engine().kind.into();
         if technique.is_double() && session.engine().kind == EngineKind::Gpu {
             log::warn!("{technique}: the GPU shades in f32 only; left out");
@@ -246,14 +247,14 @@ fn precision(technique: &Technique) -> Precision {
     }
 }
 
-/// What some documents converge to.
+/// Limits of several documents.
 struct Converged {
     reference: Reference,
     document: Document,
     precision: Precision,
 }
 
-/// What everyone converges to, and what the most accurate setting does.
+/// Limits of all techniques, and of the most accurate setting.
 struct Exact {
     best: Arc<Converged>,
     own: Vec<Arc<Converged>>,
@@ -280,11 +281,11 @@ fn references_of(
             return Ok::<_, StudyError>(known.clone());
         }
         let what = format!("Reference: {what}");
-        let mut go_on = |share: f64| steps.tell(what.clone(), 2.0 * share);
-        go_on(0.0)?;
+        let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
+        on_progress(0.0)?;
         let reference = options
             .cache
-            .reference(session, document, precision, effort, &mut go_on)?;
+            .reference(session, document, precision, effort, &mut on_progress)?;
         steps.finish(2.0);
         let converged = Arc::new(Converged {
             reference,
@@ -294,7 +295,7 @@ fn references_of(
         made.push(converged.clone());
         Ok(converged)
     };
-    // As exact as anyone of them calculates.
+    // In f64 if any technique uses it.
     let is_double = lanes.iter().any(|lane| lane.technique.is_double());
     let best_precision = if is_double {
         Precision::Double
@@ -321,7 +322,7 @@ fn references_of(
 /// Lets all of them take turns rendering until each has used its time.
 fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
     for lane in lanes.iter_mut() {
-        steps.tell(format!("Preparing: {}", lane.technique.label()), 0.0)?;
+        steps.report(format!("Preparing: {}", lane.technique.label()), 0.0)?;
         lane.session.set_precision(precision(&lane.technique));
         warmed(&mut lane.session, &lane.document)?;
     }
@@ -339,7 +340,7 @@ fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> 
             let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
             lane.session.step(slice)?;
             // After each turn, not after each round: who stops it does not wait for the others' turns.
-            steps.tell(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
+            steps.report(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
         }
         if is_done {
             break;
@@ -364,7 +365,7 @@ fn runner(
     options: &RaceOptions,
 ) -> Result<Runner, StudyError> {
     let progress = lane.session.progress();
-    let told = crate::analysis::noise::noise(lane.session.film()?);
+    let estimate = crate::analysis::noise::noise(lane.session.film()?);
     let (equal_time, denoised) = lane.picture()?;
     let error = own.reference.halves.error_of(&equal_time.luminance());
     let denoised_bias = denoised.as_ref().and_then(|denoised| denoised.bias);
@@ -381,7 +382,7 @@ fn runner(
         technique: lane.technique.clone(),
         seconds,
         samples_per_pixel: progress.mean_samples,
-        told_noise: denoised_error.map_or(told.map_or(0.0, |noise| noise.relative), |error| error.value),
+        estimated_noise: denoised_error.map_or(estimate.map_or(0.0, |noise| noise.relative), |error| error.value),
         error,
         time_to_noise: seconds * (error.value / options.noise).powi(2),
         is_extrapolated: error.value > options.noise,
@@ -395,22 +396,26 @@ fn runner(
     })
 }
 
-/// Renders anew up to so many samples a pixel in the mean; `tell` is told the share that has been done.
-fn rerun(lane: &mut Lane, samples: f64, tell: &mut dyn FnMut(f64) -> Result<(), StudyError>) -> Result<(), StudyError> {
+/// Renders again up to `samples` per pixel on average; `report` receives the finished share.
+fn rerun(
+    lane: &mut Lane,
+    samples: f64,
+    report: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
     let mut document = lane.document.clone();
     if !document.render.is_adaptive() {
         document.render.samples = samples.round() as u32;
     }
-    lane.session.forget();
+    lane.session.reset();
     lane.session.submit(&document)?;
     let mut step = Duration::from_millis(1);
     loop {
         let progress = lane.session.step(step)?;
-        tell((progress.mean_samples / samples).min(1.0))?;
+        report((progress.mean_samples / samples).min(1.0))?;
         if progress.is_done || progress.mean_samples >= samples {
             return Ok(());
         }
-        // So short that the last step goes little too far.
+        // Short steps, so that the last one overshoots little.
         let left = progress.engine_seconds * (samples / progress.mean_samples.max(1e-9) - 1.0);
         step = Duration::from_secs_f64(left.clamp(1e-3, 0.2));
     }
@@ -426,7 +431,7 @@ fn mark_front(runners: &mut [Runner]) {
     }
 }
 
-/// Which places have no other one that is nowhere larger and somewhere smaller.
+/// The Pareto front: points that no other point dominates.
 fn front(places: &[[f64; 2]]) -> Vec<bool> {
     let is_better = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
     places

@@ -1,4 +1,4 @@
-//! Pictures that have converged, kept on disk by what they are of.
+//! Disk cache of converged reference renders, by scene.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
@@ -16,10 +16,10 @@ use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::replace::save_atomically;
 
-/// To be raised where the format or the pictures change within a version of the program.
+/// Cache format: increase if the format or the renders change within a version of the program.
 const FORMAT: u32 = 1;
 const ENDING: &str = "reference";
-/// Disk space of the kept pictures where nothing else is said.
+/// Default disk space of the cache, in bytes.
 const LIMIT_BYTES: u64 = 512 << 20;
 /// Names the folder instead of the user's own.
 const FOLDER_VARIABLE: &str = "GLOSSMITH_CACHE";
@@ -27,34 +27,34 @@ const FOLDER_VARIABLE: &str = "GLOSSMITH_CACHE";
 const PIXEL_NUMBERS: usize = 6;
 /// Changes the random numbers of a reference: no technique's own are these.
 const SEED: u32 = 0x5eed_0f0f;
-/// How long a reference is rendered before looking whether it is still wanted.
+/// Render time between two checks for a stop.
 const STEP: Duration = Duration::from_millis(100);
 
-/// A picture that has converged as far as was asked for.
+/// A reference render of the requested precision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// The picture.
+    /// The mean image, linear.
     pub image: Image,
-    /// Its halves.
+    /// Halves of its samples.
     pub halves: Halves,
-    /// Its relative error as it was told.
+    /// Estimated relative error.
     pub noise: f64,
-    /// How long it was rendered, seconds.
+    /// Render time in seconds.
     pub seconds: f64,
     /// Whether it came from the disk.
     pub is_kept: bool,
 }
 
-/// How exact references are to be.
+/// Requested precision of references.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Effort {
     /// Relative error to reach.
     pub noise: f64,
-    /// Seconds after which what has been reached must do.
+    /// Time limit in seconds.
     pub seconds: f64,
 }
 
-/// The folder of references; none where nothing is kept.
+/// Folder of references; `None` for no cache.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceCache {
     folder: Option<PathBuf>,
@@ -70,7 +70,7 @@ impl ReferenceCache {
         }
     }
 
-    /// Keeps references in a folder, which is made where it is not there.
+    /// A cache in a folder, created if needed.
     pub fn at(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
@@ -78,7 +78,7 @@ impl ReferenceCache {
         }
     }
 
-    /// In the folder that `GLOSSMITH_CACHE` names, else in the user's folder for what can be made again.
+    /// A cache in the folder of `GLOSSMITH_CACHE`, else in the user's cache folder.
     pub fn of_user() -> Self {
         let named = std::env::var_os(FOLDER_VARIABLE).filter(|name| !name.is_empty());
         let of_system = || {
@@ -99,7 +99,7 @@ impl ReferenceCache {
         Self { limit_bytes, ..self }
     }
 
-    /// What a document converges to: kept, if it is exact enough or had the time that this one would have, else rendered by the session and kept. `go_on` is
+    /// What a document converges to: kept, if it is exact enough or had the time that this one would have, else rendered by the session and kept. `on_progress` is
     /// asked now and then, with the share of the time that has gone by.
     ///
     /// # Errors
@@ -110,7 +110,7 @@ impl ReferenceCache {
         document: &Document,
         precision: Precision,
         effort: Effort,
-        go_on: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+        on_progress: &mut dyn FnMut(f64) -> Result<(), StudyError>,
     ) -> Result<Reference, StudyError> {
         let key = Key::of(document, &Machine::of(session.engine()), precision);
         let path = self.folder.as_ref().map(|folder| folder.join(key.file_name()));
@@ -119,7 +119,7 @@ impl ReferenceCache {
         {
             return Ok(kept);
         }
-        let reference = render(session, document, precision, effort, go_on)?;
+        let reference = render(session, document, precision, effort, on_progress)?;
         if let (Some(path), Some(folder)) = (&path, &self.folder) {
             match write(path, &key, &reference) {
                 Ok(()) => shrink(folder, self.limit_bytes),
@@ -130,7 +130,7 @@ impl ReferenceCache {
     }
 }
 
-/// All that a converged picture depends on.
+/// Cache key: everything that a reference depends on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Key {
     format: u32,
@@ -180,7 +180,7 @@ impl Key {
     }
 }
 
-/// What a file begins with, in a line of JSON; the pixels follow as little-endian f32.
+/// Header of a file, one line of JSON; the pixels follow as little-endian f32.
 #[derive(Serialize, Deserialize)]
 struct Header {
     key: Key,
@@ -211,7 +211,7 @@ fn write(path: &Path, key: &Key, reference: &Reference) -> Result<(), Box<dyn st
     Ok(save_atomically(path, &bytes)?)
 }
 
-/// `None` where there is none, or none of this key.
+/// Reads a reference; `None` if there is none with this key.
 fn read(path: &Path, key: &Key) -> Option<Reference> {
     let bytes = std::fs::read(path).ok()?;
     let end = bytes.iter().position(|byte| *byte == b'\n')?;
@@ -272,7 +272,7 @@ fn render(
     document: &Document,
     precision: Precision,
     effort: Effort,
-    go_on: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+    on_progress: &mut dyn FnMut(f64) -> Result<(), StudyError>,
 ) -> Result<Reference, StudyError> {
     let mut document = converged(document);
     document.render.seed = SEED;
@@ -284,7 +284,7 @@ fn render(
     session.submit(&document)?;
     loop {
         let progress = session.step(STEP)?;
-        go_on((progress.render_seconds / effort.seconds).min(1.0))?;
+        on_progress((progress.render_seconds / effort.seconds).min(1.0))?;
         // Both halves of every pixel need some samples.
         if progress.is_done && progress.mean_samples >= 4.0 {
             break;

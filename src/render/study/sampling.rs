@@ -1,9 +1,8 @@
-//! What drawing directions costs: the paper's Fig. 8 on this machine, for all lobes.
+//! Cost of sampling directions: the paper's Fig. 8 on this machine, for all lobes.
 //!
-//! A picture of a glossy quad, with 1 and with 100 directions a pixel. Drawn are the random numbers alone, the directions
-//! too, and rays against a triangle too; what one adds to the other is its cost. The whole frame is the path tracer's, of
-//! a quad under an area light. Lobes and stages take turns; times are medians, and ratios are medians of those within a
-//! turn.
+//! An image of a glossy quad, with 1 and with 100 directions per pixel. Measured are random numbers alone, with directions,
+//! and with rays against a triangle; the differences are the costs. The whole frame is the path tracer's, of a quad under an
+//! area light. Lobes and stages are interleaved; times are medians, and ratios are medians of those within a trial.
 
 use std::time::Duration;
 
@@ -22,12 +21,12 @@ use crate::scene::environment::EnvironmentSource;
 
 /// Directions a pixel, as in the paper.
 pub const SAMPLES: [u32; 2] = [1, 100];
-/// The paper's picture.
+/// Image size of the paper, in pixels.
 pub const SIZE: [u32; 2] = [1880, 1812];
-/// The fewest rows that are measured of a picture that takes too long.
+/// Minimum rows to measure of an image that takes too long.
 const ROWS_MIN: u32 = 8;
 
-/// What the paper's Fig. 8 says, milliseconds: sampling with 1 and with 100 samples, and the frame.
+/// The paper's Fig. 8 in milliseconds: sampling with 1 and with 100 samples, and the frame.
 pub const PAPER: [(&str, Lobe, [f64; 3]); 4] = [
     ("phong", Lobe::Phong, [0.256, 27.3, 42.7]),
     ("blinn-phong", Lobe::BlinnPhong, [0.289, 30.6, 46.0]),
@@ -35,23 +34,23 @@ pub const PAPER: [(&str, Lobe, [f64; 3]); 4] = [
     ("ours", Lobe::Geometric, [0.067, 8.36, 23.2]),
 ];
 
-/// How it is measured.
+/// Options of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplingOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
-    /// Columns and rows of the picture.
+    /// Width and height of the image, in pixels.
     pub size: [u32; 2],
     /// Roughness of all lobes, in (0, 1]: it changes no lobe's time.
     pub roughness: f32,
-    /// Turns.
+    /// Number of interleaved trials.
     pub turns: usize,
-    /// How long one measurement may take: of a picture that takes longer some rows are measured, and the time is scaled.
+    /// Time limit of one measurement; slower images are measured in part and scaled.
     pub budget: Duration,
 }
 
 impl SamplingOptions {
-    /// The paper's picture.
+    /// Options for the paper's image.
     pub fn new(engine: EngineChoice) -> Self {
         Self {
             engine,
@@ -68,9 +67,9 @@ impl SamplingOptions {
 pub struct SamplingRow {
     /// The lobe, with the curve of the geometric one.
     pub name: String,
-    /// The lobe.
+    /// Lobe that was sampled.
     pub lobe: Lobe,
-    /// Directions a pixel.
+    /// Directions per pixel.
     pub samples: u32,
     /// Drawing the directions alone, random numbers and rays left out, milliseconds.
     pub sampling_ms: f64,
@@ -82,14 +81,14 @@ pub struct SamplingRow {
     pub against_geometric: f64,
 }
 
-/// All times.
+/// Report of all times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SamplingReport {
-    /// Where it was measured.
+    /// Machine of the measurement.
     pub machine: Machine,
-    /// Columns of pixels.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows of pixels.
+    /// Height in pixels.
     pub height: u32,
     /// Random numbers alone, milliseconds, with 1 and with 100 samples a pixel.
     pub numbers_ms: [f64; 2],
@@ -97,11 +96,11 @@ pub struct SamplingReport {
     pub measured_share: [f64; 2],
     /// The lobes, with 1 and with 100 samples.
     pub rows: Vec<SamplingRow>,
-    /// By how much the geometric lobe is faster, or not, in words.
+    /// Speed of the geometric lobe against others, in words.
     pub verdict: Vec<String>,
 }
 
-/// The processor's function, or the shader.
+/// The CPU function, or the shader.
 enum Meter {
     Cpu,
     Gpu(Box<SamplingMeter>),
@@ -179,7 +178,7 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
     Ok(report)
 }
 
-/// Times of the kernels, scaled to the whole picture, milliseconds.
+/// Times of the kernels scaled to the whole image, in milliseconds.
 struct Kernels {
     numbers_ms: f64,
     measured_share: f64,
@@ -188,7 +187,7 @@ struct Kernels {
 
 /// Times of one lobe and curve.
 struct KernelTimes {
-    /// What directions add to the random numbers, and directions with rays, milliseconds.
+    /// Time beyond the random numbers of directions, and of directions with rays, in milliseconds.
     stages_ms: [f64; 2],
     /// Directions against those of the geometric lobe with the smooth curve.
     against_geometric: f64,
@@ -213,7 +212,7 @@ fn kernels(
         samples,
         seed,
     };
-    // As many rows as fit the budget of the slowest stage, by a small part; the first run warms.
+    // Rows that fit the budget by the slowest stage, from a small part; the first run warms up.
     let few = ROWS_MIN.min(height);
     let mut seconds = 0.0;
     for _ in 0..2 {
@@ -228,7 +227,7 @@ fn kernels(
     for turn in 0..=options.turns {
         for (place, (lobe, curve, name)) in shapes.iter().enumerate() {
             let within = (turn as f64 + place as f64 / shapes.len() as f64) / (options.turns + 1) as f64;
-            steps.tell(format!("{name}, {samples} a pixel"), within)?;
+            steps.report(format!("{name}, {samples} a pixel"), within)?;
             for stage in SamplingStage::ALL {
                 let run = meter.run(&request(*lobe, *curve, stage, rows, turn as u32))?;
                 // Turn 0 warms: caches, clocks, kernels.
@@ -259,7 +258,7 @@ fn kernels(
     })
 }
 
-/// What a stage adds to the random numbers, seconds, turn by turn: what slows a whole turn down cancels.
+/// Time of a stage beyond the random numbers in seconds, per trial: a slow trial cancels.
 fn beyond_numbers(stages: &[Vec<f64>; 3], stage: usize) -> Vec<f64> {
     std::iter::zip(&stages[stage], &stages[0]).map(|(a, b)| a - b).collect()
 }
@@ -275,7 +274,7 @@ fn quad(lobe: Lobe, curve: Curve, samples: u32, options: &SamplingOptions) -> Do
     document.lighting.environment = EnvironmentSource::Furnace;
     document.lighting.strength = 0.0;
     document.lighting.area_lights = vec![AreaLight::default()];
-    // Near enough to fill the picture.
+    // Close enough to fill the image.
     (document.camera.pitch_deg, document.camera.distance) = (70.0, Some(2.0));
     let render = &mut document.render;
     [render.width, render.height] = options.size;
@@ -295,7 +294,7 @@ fn frames(
     for turn in 0..=options.turns {
         for (place, (lobe, curve, name)) in shapes.iter().enumerate() {
             let within = (turn as f64 + place as f64 / shapes.len() as f64) / (options.turns + 1) as f64;
-            steps.tell(format!("{name}, frame of {samples} a pixel"), within)?;
+            steps.report(format!("{name}, frame of {samples} a pixel"), within)?;
             let mut document = quad(*lobe, *curve, samples, options);
             document.render.seed = turn as u32;
             session.submit(&document)?;
@@ -309,7 +308,7 @@ fn frames(
     Ok(times.iter().map(|times| median(times)).collect())
 }
 
-/// For each lobe of today how much slower or faster it is drawn than the geometric one, beside what the paper says.
+/// Sampling speed of each current lobe against the geometric one, beside the paper's.
 fn verdict(rows: &[SamplingRow]) -> Vec<String> {
     let samples = SAMPLES[SAMPLES.len() - 1];
     let others = rows
@@ -328,8 +327,8 @@ fn verdict(rows: &[SamplingRow]) -> Vec<String> {
         } else {
             "takes the geometric lobe's time".to_owned()
         };
-        let told = paper(row.lobe).map_or(String::new(), |ms| format!(" (the paper: {:.2} ×)", ms / ours));
-        format!("{} {found}{told}", row.lobe.label())
+        let paper_ratio = paper(row.lobe).map_or(String::new(), |ms| format!(" (the paper: {:.2} ×)", ms / ours));
+        format!("{} {found}{paper_ratio}", row.lobe.label())
     };
     others.map(sentence).collect()
 }

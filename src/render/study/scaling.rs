@@ -1,10 +1,10 @@
-//! How time grows with the size of things: triangles, pixels, bounces, the environment.
+//! Scaling of time with size: triangles, pixels, bounces, the environment.
 
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::document::Document;
 use crate::named::named;
 use crate::optics::vector::Vec3;
@@ -14,7 +14,7 @@ use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 
 named! {
-    /// What grows.
+    /// The scaled quantity.
     Growing {
         Triangles, "triangles", "Triangles", "The triangles of the model.";
         Pixels, "pixels", "Pixels", "The pixels of the picture.";
@@ -36,14 +36,14 @@ impl Growing {
     }
 }
 
-/// How it is measured.
+/// Options of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScalingOptions {
-    /// The engine.
+    /// Engine to measure.
     pub engine: EngineChoice,
     /// Turns of each size.
     pub turns: usize,
-    /// How long each turn lasts.
+    /// Length of a trial.
     pub slice: Duration,
     /// The two smallest sizes alone, to see that it works.
     pub is_quick: bool,
@@ -64,43 +64,44 @@ impl ScalingOptions {
 /// The time at a size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ScalingPoint {
-    /// What grows.
+    /// The scaled quantity.
     pub growing: Growing,
-    /// How large it is.
+    /// Value of the scaled quantity.
     pub size: u64,
     /// Engine time of a pixel sample, nanoseconds.
     pub ns_per_sample: f64,
     /// The quartiles of that over the turns.
     pub ns_quartiles: [f64; 2],
-    /// From the document to the first sample: loading, hierarchy, tables, upload, kernel; seconds.
+    /// Set-up time in seconds from the document to the first sample: loading, hierarchy, tables, upload, kernel.
     pub setup_seconds: f64,
 }
 
-/// All times.
+/// Report of all times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ScalingReport {
-    /// Where it was measured.
+    /// Machine of the measurement.
     pub machine: Machine,
-    /// Columns of pixels, where they do not grow.
+    /// Width in pixels, if not scaled.
     pub width: u32,
-    /// Rows of pixels, where they do not grow.
+    /// Height in pixels, if not scaled.
     pub height: u32,
-    /// The times, by what grows.
+    /// Times by quantity.
     pub points: Vec<ScalingPoint>,
 }
 
-/// Measures a document with one thing of another size at a time. The model that grows is a bumpy sphere in the
-/// document's material. `watch` receives the progress and may stop it.
+/// Measures a document with one quantity scaled at a time. The scaled model is a bumpy sphere in the document's material.
+/// `watch` receives the progress and may stop it.
 ///
 /// # Errors
-/// What can't be rendered; [`StudyError::Stopped`].
+///
+/// Errors of rendering; [`StudyError::Stopped`].
 pub fn scaling(
     document: &Document,
     options: &ScalingOptions,
     watch: &mut Watch<'_>,
 ) -> Result<ScalingReport, StudyError> {
     let mut session = Session::open(options.engine)?;
-    let document = without_aim(document);
+    let document = without_target(document);
     let cases: Vec<_> = Growing::ALL
         .iter()
         .copied()
@@ -114,7 +115,7 @@ pub fn scaling(
     let mut steps = Steps::new(watch, cases.len() as f64);
     let mut points = Vec::new();
     for (growing, size) in cases {
-        steps.tell(format!("{}: {size}", growing.label()), 0.0)?;
+        steps.report(format!("{}: {size}", growing.label()), 0.0)?;
         let (grown, size) = grow(&document, growing, size, &session)?;
         points.push(measure(&mut session, &grown, growing, size, options)?);
         steps.finish(1.0);
@@ -168,7 +169,7 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
     Ok((grown, size))
 }
 
-/// The same light with other texels.
+/// The same environment at another resolution.
 fn resampled(
     environment: &Environment,
     height: u32,

@@ -1,7 +1,7 @@
 //! A session on a thread of its own, so that the window never waits.
 //!
-//! The window submits documents, the latest wins; the worker publishes snapshots, the latest wins. What the two say to
-//! each other goes through two short locks. Work is cut into steps of [`STEP`], after each of which orders are read.
+//! The window submits documents and the worker publishes snapshots; the latest of each wins. They communicate through two
+//! short locks. Work is cut into steps of [`STEP`], and commands are read after each.
 
 mod denoising;
 mod stage;
@@ -30,49 +30,49 @@ use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Loading, Model, ModelOptions, ModelSource};
 
-/// Longest that the worker does not look at its orders while rendering; and before the first picture, which is not to
-/// wait for the samples that come after it.
+/// Longest rendering step between two reads of the commands; and the step before the first image, which must not wait for
+/// later samples.
 const STEP: Duration = Duration::from_millis(20);
 const FIRST_STEP: Duration = Duration::from_millis(6);
-/// How long dropping a worker waits for its thread to end.
-const FAREWELL: Duration = Duration::from_secs(2);
+/// Time for which dropping a worker waits for its thread.
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Renders on a thread of its own.
 pub struct Worker {
     shared: Arc<Shared>,
     assets: Assets,
-    /// Models and environments that were asked for and whose events have not been taken.
+    /// Requested models and environments whose events have not been taken.
     opening: AtomicUsize,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Whether more edits are about to follow.
+/// Whether more edits are expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// More changes follow at once, as while something is dragged: rendered at a resolution that keeps up, and at the
-    /// full one once nothing has come for 150 ms.
+    /// More changes follow at once, as during a drag. Rendered at a reduced resolution, and in full after 150 ms without a
+    /// change.
     Moving,
     /// No further change is expected for now.
     Still,
 }
 
-/// What the worker is doing.
+/// Activity of the worker.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Activity {
-    /// Opening the adapter and compiling what every picture needs.
+    /// Opening the adapter and compiling the common kernels.
     #[default]
     Starting,
     /// Reading a file or computing a built-in.
     Loading(String),
-    /// Building the hierarchy over the triangles, and what the engine wants to have made ready.
+    /// Building the hierarchy and the engine's resources.
     Preparing,
-    /// Rendering.
+    /// Samples are being rendered.
     Rendering,
-    /// Everything asked for has been rendered.
+    /// Rendering has reached its goal.
     Done,
-    /// Told to wait.
+    /// Paused by the user.
     Paused,
-    /// There is nothing to render, as the document could not be.
+    /// Nothing to render, because the document failed.
     Idle,
 }
 
@@ -90,42 +90,42 @@ impl std::fmt::Display for Activity {
     }
 }
 
-/// A picture to show.
+/// An image to show.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Columns.
+    /// In pixels.
     pub width: u32,
-    /// Rows.
+    /// In pixels.
     pub height: u32,
-    /// Red, green, blue and alpha as the screen takes them, premultiplied in gamma space; row by row from the top.
+    /// Display-referred RGBA, 8 bits each, premultiplied in gamma space; rows from the top.
     pub rgba: Vec<u8>,
-    /// The linear picture that it shows.
+    /// The linear image that `rgba` shows.
     pub image: Arc<Image>,
-    /// The mean of the samples: another one where the picture was denoised.
+    /// The mean of the samples; differs from `image` if that is denoised.
     pub samples: Arc<Image>,
-    /// Differs from one picture to the next.
+    /// Unique number of the image.
     pub serial: u64,
-    /// The submission that it belongs to, see [`Worker::submit`].
+    /// Revision of its submission, see [`Worker::submit`].
     pub revision: u64,
-    /// By how much width and height are smaller than asked for; 1 is the full resolution.
+    /// Divisor of width and height; 1 is the full resolution.
     pub reduction: u32,
-    /// Samples a pixel in it.
+    /// Samples per pixel.
     pub samples_per_pixel: u32,
-    /// What `rgba` is a map of, with its colours' meaning where they stand for numbers; `None` for the picture itself.
+    /// The map that `rgba` shows, with its colour scale if it has one; `None` for the image itself.
     pub map: Option<(Shown, Option<Scale>)>,
-    /// Per-pixel quantities, while the inspector is open.
+    /// Per-pixel quantities while the inspector is open.
     pub facts: Option<Arc<Facts>>,
-    /// What it shows, with the size at the full resolution.
+    /// The document, with the size at full resolution.
     pub document: Arc<Document>,
 }
 
 impl Picture {
-    /// Whether its noise was taken out.
+    /// Whether it is denoised.
     pub fn is_denoised(&self) -> bool {
         !Arc::ptr_eq(&self.image, &self.samples)
     }
 
-    /// As it is written to files.
+    /// The image as it is written to files.
     pub fn rendered(&self) -> Rendered<'_> {
         Rendered {
             denoised: self.is_denoised().then_some(&*self.image),
@@ -134,86 +134,85 @@ impl Picture {
     }
 }
 
-/// What is being rendered.
+/// The scene being rendered.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The document as submitted.
     pub document: Arc<Document>,
-    /// What it compiled to.
+    /// The compiled job.
     pub job: Arc<Job>,
-    /// Its model.
+    /// The source model.
     pub model: Arc<Model>,
 }
 
 /// The state of the worker at some moment.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
-    /// The latest picture.
+    /// The latest image.
     pub picture: Option<Arc<Picture>>,
-    /// What it shows.
+    /// The scene being rendered.
     pub scene: Option<Arc<Scene>>,
-    /// How far it has come.
+    /// Progress of the render.
     pub progress: Progress,
-    /// The errors seen so far in it, oldest first.
+    /// Error measurements of the render, oldest first.
     pub history: Arc<Vec<Measurement>>,
-    /// Pixel samples a second.
+    /// Speed in pixel samples per second.
     pub samples_per_second: f64,
-    /// By how much the picture in progress is smaller than asked for.
+    /// Divisor of width and height of the render in progress.
     pub reduction: u32,
-    /// What the worker is doing.
+    /// Activity of the worker.
     pub activity: Activity,
-    /// What renders; `None` while it is being opened.
+    /// The engine; `None` while it is being opened.
     pub engine: Option<EngineInfo>,
-    /// The error of the denoised picture.
+    /// Estimated error of the denoised image.
     pub denoised: Option<Distance>,
-    /// From the latest submission to its first picture.
+    /// Time from the latest submission to its first image.
     pub first_picture: Option<Duration>,
-    /// What is being done while something is loaded or made ready.
+    /// Progress of loading.
     pub loading: Loading,
 }
 
-/// How bad a message is.
+/// Severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// For the record.
     Info,
-    /// Something was mended or left out.
+    /// Something was fixed or left out.
     Warning,
     /// Something was not done.
     Error,
 }
 
-/// What the worker has to tell.
+/// A report of the worker to the window.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// Words for the user.
+    /// A message for the user.
     Message(Level, String),
-    /// A model that was asked for by [`Worker::open_model`]; the document has not been touched.
+    /// A model requested by [`Worker::open_model`]; the document is unchanged.
     ModelOpened(ModelSource, ModelOptions, Arc<Model>),
-    /// An environment that was asked for by [`Worker::open_environment`].
+    /// An environment requested by [`Worker::open_environment`].
     EnvironmentOpened(EnvironmentSource, Arc<Environment>),
-    /// What was asked for by [`Worker::reload`]: the model as it was, where it is known, and as it is; nothing where
-    /// nothing is rendered.
+    /// The result of [`Worker::reload`]: the model before, if known, and after; both `None` if nothing is rendered.
     Reloaded(Option<Arc<Model>>, Option<Arc<Model>>),
-    /// A file that could not be opened, and why.
+    /// A file that failed to open, with the reason.
     OpenFailed(PathBuf, Level, String),
-    /// What was asked for is not wanted any more.
+    /// A request was cancelled.
     Cancelled,
-    /// What was asked for by [`Worker::make_layers`], for this file.
+    /// The result of [`Worker::make_layers`] for a file.
     LayersMade(PathBuf, Box<Layers>),
 }
 
-/// Faults of the GPU's device that tests inject.
+/// A fault of the GPU's device, injected by tests.
 #[derive(Clone, Copy, Debug)]
-enum Mishap {
-    /// It is lost at this moment, this many times in all.
+enum InjectedFault {
+    /// The device is lost at a moment, a number of times in all.
     Lost(Moment, u32),
     /// Buffers larger than this many bytes are refused.
     Limited(u64),
 }
 
-impl Mishap {
-    fn befall(self, session: &mut Session) {
+impl InjectedFault {
+    fn inject(self, session: &mut Session) {
         match self {
             Self::Lost(moment, times) => session.lose_when(moment, times),
             Self::Limited(bytes) => session
@@ -224,33 +223,33 @@ impl Mishap {
     }
 }
 
-/// What the window wants.
+/// Pending commands of the window.
 #[derive(Debug, Default)]
-struct Orders {
+struct Commands {
     submission: Option<Submission>,
     models: Vec<(ModelSource, ModelOptions)>,
     environments: Vec<EnvironmentSource>,
     layers: Vec<PathBuf>,
     engine: Option<EngineChoice>,
     shown: Option<Shown>,
-    looks_closer: Option<bool>,
+    is_inspected: Option<bool>,
     reloads: u32,
     restart: bool,
-    mishaps: Vec<Mishap>,
+    faults: Vec<InjectedFault>,
     quit: bool,
 }
 
-impl Orders {
+impl Commands {
     fn is_empty_beside_submission(&self) -> bool {
         self.models.is_empty()
             && self.environments.is_empty()
             && self.layers.is_empty()
             && self.engine.is_none()
             && self.shown.is_none()
-            && self.looks_closer.is_none()
+            && self.is_inspected.is_none()
             && self.reloads == 0
             && !self.restart
-            && self.mishaps.is_empty()
+            && self.faults.is_empty()
             && !self.quit
     }
 }
@@ -265,34 +264,35 @@ struct Submission {
 
 #[derive(Default)]
 struct Shared {
-    orders: Mutex<OrderBook>,
-    ordered: Condvar,
+    commands: Mutex<CommandQueue>,
+    command_arrived: Condvar,
     snapshot: Mutex<Arc<Snapshot>>,
     events: Mutex<Vec<Event>>,
 }
 
 #[derive(Default)]
-struct OrderBook {
-    orders: Orders,
+struct CommandQueue {
+    commands: Commands,
     is_paused: bool,
     last_revision: u64,
 }
 
 impl Shared {
-    /// Wakes the thread. It holds the lock while it decides to wait, so that no wake-up is lost.
+    /// Wakes the thread. Takes the lock, because the thread holds it while it decides to wait: so no wake-up is lost.
     fn wake(&self) {
-        let _orders = lock(&self.orders);
-        self.ordered.notify_one();
+        let _commands = lock(&self.commands);
+        self.command_arrived.notify_one();
     }
 }
 
-/// What a panicking thread leaves behind a lock here is still whole: every write is a single assignment or push.
+/// Locks a mutex, poisoned or not. Data behind these locks stays consistent in a panic: every write is a single assignment
+/// or push.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Worker {
-    /// Starts the thread, which opens the engine; `repaint` is called when there is something new to show.
+    /// Starts the thread, which opens the engine and calls `repaint` when there is something new to show.
     ///
     /// # Errors
     /// If no thread can be started.
@@ -300,7 +300,7 @@ impl Worker {
         Self::spawn_with(choice, Assets::default(), repaint)
     }
 
-    /// Starts another one that shares models and environments with this one.
+    /// Starts another worker that shares models and environments with this one.
     ///
     /// # Errors
     /// If no thread can be started.
@@ -308,7 +308,7 @@ impl Worker {
         Self::spawn_with(choice, self.assets.clone(), repaint)
     }
 
-    /// The models and environments that it keeps, to be shared.
+    /// The loaded models and environments, to be shared.
     pub fn assets(&self) -> &Assets {
         &self.assets
     }
@@ -328,104 +328,102 @@ impl Worker {
         })
     }
 
-    /// Submits a document to render instead of the last one; returns its revision, which its pictures carry.
+    /// Submits a document to render instead of the last one. Returns its revision, which its images carry.
     pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
-        let mut book = lock(&self.shared.orders);
-        book.last_revision += 1;
-        let revision = book.last_revision;
-        book.orders.submission = Some(Submission {
+        let mut queue = lock(&self.shared.commands);
+        queue.last_revision += 1;
+        let revision = queue.last_revision;
+        queue.commands.submission = Some(Submission {
             document: Arc::new(document.clone()),
             pace,
             revision,
             at: Instant::now(),
         });
-        self.shared.ordered.notify_one();
+        self.shared.command_arrived.notify_one();
         revision
     }
 
-    /// Stops rendering until told otherwise; submissions are still taken and shown at their first sample.
+    /// Pauses or resumes rendering. Submissions are still shown with their first sample while paused.
     pub fn pause(&self, is_paused: bool) {
-        lock(&self.shared.orders).is_paused = is_paused;
-        self.shared.ordered.notify_one();
+        lock(&self.shared.commands).is_paused = is_paused;
+        self.shared.command_arrived.notify_one();
     }
 
-    /// Loads a model beside everything else; an [`Event`] tells how it went.
+    /// Loads a model in the background; an [`Event`] reports the result.
     pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.models.push((source, options)));
+        self.send(|commands| commands.models.push((source, options)));
     }
 
-    /// Loads an environment beside everything else; an [`Event`] tells how it went.
+    /// Loads an environment in the background; an [`Event`] reports the result.
     pub fn open_environment(&self, source: EnvironmentSource) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.environments.push(source));
+        self.send(|commands| commands.environments.push(source));
     }
 
-    /// Makes the picture's layers as soon as it has samples at its full resolution; an [`Event`] brings them, with the
-    /// file that they are for.
+    /// Makes the image's layers as soon as it has samples at full resolution; an [`Event`] returns them with the file name.
     pub fn make_layers(&self, path: PathBuf) {
-        self.order(|orders| orders.layers.push(path));
+        self.send(|commands| commands.layers.push(path));
     }
 
-    /// Reads the files of what is rendered again; an [`Event`] tells how it went. Where they cannot be read, what is
-    /// rendered goes on.
+    /// Reads the scene's files again; an [`Event`] reports the result. If they cannot be read, the current render continues.
     pub fn reload(&self) {
         self.opening.fetch_add(1, Relaxed);
-        self.order(|orders| orders.reloads += 1);
+        self.send(|commands| commands.reloads += 1);
     }
 
-    /// Renders the picture from the start.
+    /// Restarts the render.
     pub fn restart(&self) {
-        self.order(|orders| orders.restart = true);
+        self.send(|commands| commands.restart = true);
     }
 
-    /// Takes the GPU's device away at a moment to come, and so many times in all those that replace it, as a driver's reset
-    /// does: for tests of what follows. Nothing on the processor.
+    /// Injects losses of the GPU's device, as by a driver's reset: at `moment`, and `times` in all. No effect on the CPU
+    /// engine. For tests.
     pub fn lose_device(&self, moment: Moment, times: u32) {
-        self.order(|orders| orders.mishaps.push(Mishap::Lost(moment, times)));
+        self.send(|commands| commands.faults.push(InjectedFault::Lost(moment, times)));
     }
 
-    /// Has the GPU refuse buffers above a size, as a small adapter does: for tests of what follows.
+    /// Makes the GPU refuse buffers above a size in bytes, as a small adapter does. For tests.
     pub fn limit_buffers(&self, bytes: u64) {
-        self.order(|orders| orders.mishaps.push(Mishap::Limited(bytes)));
+        self.send(|commands| commands.faults.push(InjectedFault::Limited(bytes)));
     }
 
-    /// Goes on with another engine.
+    /// Switches to another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
-        self.order(|orders| orders.engine = Some(choice));
+        self.send(|commands| commands.engine = Some(choice));
     }
 
-    /// Shows the picture or a map of its error or samples; what has been rendered stays.
+    /// Shows the image, or a map of its error or samples; the render continues.
     pub fn show(&self, shown: Shown) {
-        self.order(|orders| orders.shown = Some(shown));
+        self.send(|commands| commands.shown = Some(shown));
     }
 
-    /// Has pictures tell what is known of each pixel, or no more.
-    pub fn look_closer(&self, looks_closer: bool) {
-        self.order(|orders| orders.looks_closer = Some(looks_closer));
+    /// Turns per-pixel quantities ([`Picture::facts`]) on or off.
+    pub fn set_inspected(&self, is_inspected: bool) {
+        self.send(|commands| commands.is_inspected = Some(is_inspected));
     }
 
-    /// Calls off what is being loaded or made ready; what is rendered goes on.
+    /// Cancels loading; the current render continues.
     pub fn cancel_loading(&self) {
         self.loading().cancel();
     }
 
-    /// What is being loaded for the window.
+    /// Progress of loading for the window.
     pub fn loading(&self) -> &Loading {
         self.assets.loading()
     }
 
-    fn order(&self, change: impl FnOnce(&mut Orders)) {
-        change(&mut lock(&self.shared.orders).orders);
-        self.shared.ordered.notify_one();
+    fn send(&self, change: impl FnOnce(&mut Commands)) {
+        change(&mut lock(&self.shared.commands).commands);
+        self.shared.command_arrived.notify_one();
     }
 
-    /// The latest state.
+    /// The latest snapshot.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         lock(&self.shared.snapshot).clone()
     }
 
-    /// What happened since this was last called.
+    /// The events since the last call.
     pub fn take_events(&self) -> Vec<Event> {
         let events = std::mem::take(&mut *lock(&self.shared.events));
         let ends_opening = |event: &&Event| {
@@ -446,13 +444,14 @@ impl Worker {
 }
 
 impl Drop for Worker {
-    /// Asks the thread to end, and leaves it behind where that takes long, as when it is reading a large file.
+    /// Asks the thread to end. Leaves it behind if that takes longer than [`SHUTDOWN_TIMEOUT`], as while it reads a large
+    /// file.
     fn drop(&mut self) {
-        self.order(|orders| orders.quit = true);
+        self.send(|commands| commands.quit = true);
         let begun = Instant::now();
         while let Some(thread) = &self.thread
             && !thread.is_finished()
-            && begun.elapsed() < FAREWELL
+            && begun.elapsed() < SHUTDOWN_TIMEOUT
         {
             std::thread::sleep(Duration::from_millis(1));
         }

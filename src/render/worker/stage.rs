@@ -1,4 +1,4 @@
-//! At which resolution a submission is rendered, and until when.
+//! Resolutions of a submission: first a reduced one that is fast, then the full one.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -6,37 +6,36 @@ use std::time::{Duration, Instant};
 use super::{Pace, Submission};
 use crate::document::Document;
 
-/// From the last change to the full resolution.
+/// Time from the last change to the full resolution.
 const SETTLE: Duration = Duration::from_millis(150);
-/// A full picture that is there within this needs no smaller one before it. What comes around a first sample, and that it is
-/// alone, makes the picture two to three times as late as the speed tells.
-const QUICK: Duration = Duration::from_millis(20);
-/// A moving picture that has not been completed within this makes way for the next.
+/// Estimated time of a first sample below which no reduced image is needed. Set-up and the single sample delay the image to
+/// two to three times the estimate.
+const FIRST_IMAGE_TARGET: Duration = Duration::from_millis(20);
+/// Time after which an unfinished image of a moving view gives way to the next.
 const STALE: Duration = Duration::from_millis(250);
-/// The factors by which width and height are reduced.
+/// Divisors of width and height.
 const REDUCTIONS: [u32; 6] = [1, 2, 3, 4, 6, 8];
-/// What an engine is assumed to do before it was measured, pixel samples a second.
+/// Assumed speed of an unmeasured engine, in pixel samples per second.
 const FIRST_GUESS: f64 = 5e5;
-/// The share of its speed that an engine is taken to keep in a kernel that it has not been measured with. Compiling it
-/// takes its part of the processor, and light may have more ways to go.
+/// Assumed share of the measured speed in another kernel, because compiling takes part of the CPU and paths may be longer.
 const UNKNOWN_KERNEL: f64 = 0.3;
-/// Pictures smaller than this are not reduced further: nothing could be recognised.
+/// Images with a smaller side are not reduced further: nothing could be recognised.
 const SIDE_MIN_PX: u32 = 96;
 
-/// A submission in the course of being shown: first small and soon, then full.
+/// A submission being shown: first at a reduced resolution, then in full.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) submission: Submission,
-    /// By how much smaller it is being rendered.
+    /// Divisor of width and height.
     pub(super) reduction: u32,
-    /// Whether a picture of it has been published.
+    /// True once an image has been published.
     pub(super) is_shown: bool,
-    /// The full resolution failed.
+    /// True if the full resolution failed: the reduced one stays.
     pub(super) is_final: bool,
 }
 
 impl Stage {
-    /// The first stage of a submission, for an engine that is this fast (pixel samples a second; 0 is unknown).
+    /// The first stage of a submission for an engine of a given speed in pixel samples per second; 0 is unknown.
     pub(super) fn first(submission: Submission, samples_per_second: f64) -> Self {
         let speed = if samples_per_second > 0.0 {
             samples_per_second
@@ -48,7 +47,7 @@ impl Stage {
         let most = REDUCTIONS
             .into_iter()
             .take_while(|n| *n == 1 || render.width.min(render.height) / n >= SIDE_MIN_PX);
-        let is_quick = |n: u32| pixels / f64::from(n * n) / speed <= QUICK.as_secs_f64();
+        let is_quick = |n: u32| pixels / f64::from(n * n) / speed <= FIRST_IMAGE_TARGET.as_secs_f64();
         let mut reduction = 1;
         for candidate in most {
             reduction = candidate;
@@ -64,7 +63,7 @@ impl Stage {
         }
     }
 
-    /// The same for a kernel that the speed was not measured with.
+    /// The same for a kernel without a measured speed.
     pub(super) fn cautious(submission: Submission, samples_per_second: f64) -> Self {
         Self::first(submission, UNKNOWN_KERNEL * samples_per_second)
     }
@@ -80,8 +79,7 @@ impl Stage {
         Arc::new(document)
     }
 
-    /// Whether the full resolution is due: at once after the first picture, or after a rest where more changes are to
-    /// be expected.
+    /// Whether the full resolution is due: at once after the first image, or after a pause if more changes are expected.
     pub(super) fn is_settled(&self) -> bool {
         let has_rested = match self.submission.pace {
             Pace::Moving => self.submission.at.elapsed() >= SETTLE,
@@ -90,20 +88,20 @@ impl Stage {
         self.reduction > 1 && self.is_shown && !self.is_final && has_rested
     }
 
-    /// When to look at [`Stage::is_settled`] again if nothing else happens.
+    /// Time until [`Stage::is_settled`] may become true, if it can.
     pub(super) fn rest_left(&self) -> Option<Duration> {
         (self.reduction > 1 && self.is_shown && !self.is_final)
             .then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
     }
 
-    /// Whether another submission may take its place. One that moves is shown first: otherwise a steady stream of
-    /// changes would never show anything.
+    /// Whether another submission may replace this one. A moving one is shown first: otherwise a steady stream of changes
+    /// would never show anything.
     pub(super) fn may_be_replaced(&self, taken_at: Instant) -> bool {
-        self.is_shown || self.submission.pace == Pace::Still || self.patience_left(taken_at).is_zero()
+        self.is_shown || self.submission.pace == Pace::Still || self.wait_left(taken_at).is_zero()
     }
 
-    /// How long a submission that moves is waited for at most.
-    pub(super) fn patience_left(&self, taken_at: Instant) -> Duration {
+    /// Time for which a moving submission still blocks its replacement.
+    pub(super) fn wait_left(&self, taken_at: Instant) -> Duration {
         STALE.saturating_sub(taken_at.elapsed())
     }
 }

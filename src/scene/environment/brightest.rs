@@ -6,11 +6,10 @@ use super::distribution::Luminances;
 use super::{environment_direction, environment_uv};
 use crate::optics::vector::Vec3;
 
-/// What belongs to the brightest place: cells that touch it, of at least this share of its brightness.
+/// Share of the peak brightness from which connected cells belong to the brightest region.
 const SHARE: f64 = 0.5;
 
-/// The middle, in the map's (u, v), of the cells around the brightest one that are at least half as bright; `None` where
-/// nothing shines.
+/// Centre (u, v) of the cells around the brightest one that are at least half as bright; `None` for a black map.
 pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
     let cells = &luminances.cells;
     let first = (0..cells.len()).max_by(|a, b| cells[*a].total_cmp(&cells[*b]))?;
@@ -40,7 +39,7 @@ pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
             }
         }
     }
-    // A ring around the whole sky has no middle: its brightest cell stands for it.
+    // A ring around the sky has no centre: its brightest cell is used.
     if sum.length() < 1e-6 {
         sum = environment_direction([
             ((first % columns) as f32 + 0.5) / columns as f32,

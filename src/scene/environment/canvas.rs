@@ -1,4 +1,4 @@
-//! A picture that is filled pixel by pixel and made smaller meanwhile, where it is larger than what is kept.
+//! A canvas that is filled pixel by pixel and reduced on the fly if too large.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::EnvironmentError;
 use super::decoded::Picture;
 use super::{MAX_HEIGHT, MAX_WIDTH, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
 
-/// A picture in the making: each kept texel is the mean of `factor` × `factor` of the file's.
+/// A canvas: each texel is the mean of `factor` × `factor` pixels of the file.
 pub(super) struct Canvas {
     source: [u32; 2],
     factor: u32,
@@ -16,11 +16,11 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty picture for a file of this size. Its memory is not touched before pixels are put into it: a header's
-    /// promise alone costs nothing.
+    /// An empty canvas for a file of this size. Memory is only touched as pixels arrive: a header alone costs nothing.
     ///
     /// # Errors
-    /// Sizes of nothing, and sizes beyond [`SOURCE_MAX_WIDTH`] × [`SOURCE_MAX_HEIGHT`].
+    ///
+    /// Empty sizes, and sizes beyond [`SOURCE_MAX_WIDTH`] × [`SOURCE_MAX_HEIGHT`].
     pub(super) fn new(path: &Path, width: u64, height: u64) -> Result<Self, EnvironmentError> {
         if width == 0 || height == 0 {
             return Err(EnvironmentError::Empty {
@@ -49,12 +49,12 @@ impl Canvas {
         })
     }
 
-    /// Columns and rows of the file's picture.
+    /// Width and height of the file's image, in pixels.
     pub(super) fn source_size(&self) -> [u32; 2] {
         self.source
     }
 
-    /// Puts a colour at a place of the file's picture, which must lie in it.
+    /// Adds a colour at a pixel of the file's image, which must contain it.
     #[inline]
     pub(super) fn add_color(&mut self, column: u32, row: u32, color: [f32; 3]) {
         for (channel, value) in color.into_iter().enumerate() {
@@ -62,7 +62,7 @@ impl Canvas {
         }
     }
 
-    /// Puts one channel of a colour at a place of the file's picture, which must lie in it.
+    /// Adds one channel at a pixel of the file's image, which must contain it.
     #[inline]
     pub(super) fn add(&mut self, column: u32, row: u32, channel: usize, value: f32) {
         if self.factor == 1 {
@@ -75,7 +75,7 @@ impl Canvas {
         self.texels[(y * self.width + x) as usize][channel] += value / count;
     }
 
-    /// The picture, and a word where it was made smaller.
+    /// The image, with a warning if reduced.
     pub(super) fn finish(self) -> Picture {
         let [width, height] = self.source;
         let warnings = if self.factor == 1 {

@@ -10,7 +10,7 @@ use crate::scene::resource;
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
 const FACE_MAX: u32 = super::MAX_WIDTH / 4;
 
-/// Reads a cube as a strip of its six faces, a flat picture as it is.
+/// Reads a cube as a strip of its six faces, a flat image unchanged.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;

@@ -1,7 +1,7 @@
-//! Cube maps as lat-long pictures: crosses, strips of six faces, six files in a folder.
+//! Conversion of cube maps to latitude-longitude maps: crosses, strips of six faces, six files in a folder.
 //!
-//! Faces are numbered as in OpenGL, +X, −X, +Y, −Y, +Z, −Z. OpenGL's cube is left-handed: like other programs that show
-//! such pictures in a right-handed world we turn x round, so that +Z lies ahead and the face of +X to its right.
+//! Faces are numbered as in OpenGL, +X, −X, +Y, −Y, +Z, −Z. OpenGL's cube is left-handed. Like other programs with a
+//! right-handed world we mirror x, so that +Z is ahead and the face of +X to its right.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,9 @@ use super::decoded::{Picture, Source, io};
 use super::{EnvironmentError, environment_direction};
 use crate::scene::endings::is_picture;
 
-/// Where the faces of a horizontal cross are, in faces from its top left.
+/// Positions of the faces in a horizontal cross, in faces from the top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
-/// The same for a vertical cross, whose last face stands on its head.
+/// The same for a vertical cross, whose last face is upside down.
 const VERTICAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [1, 3]];
 /// Ends of the names of six files in the order of the faces.
 const NAMES: [[&str; 6]; 3] = [
@@ -20,10 +20,10 @@ const NAMES: [[&str; 6]; 3] = [
     ["posx", "negx", "posy", "negy", "posz", "negz"],
     ["right", "left", "top", "bottom", "front", "back"],
 ];
-/// How far the corners of a cross may differ from each other.
+/// Tolerance for differences among the corners of a cross.
 const CORNER_TOLERANCE: f32 = 0.01;
 
-/// How the faces of a cube lie in a picture, or how they look at the world.
+/// Layout or orientation of a cube's faces.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Axes {
     /// OpenGL's, turned to our world.
@@ -32,19 +32,19 @@ enum Axes {
     OpenExr,
 }
 
-/// Faces in a picture, or in a picture each.
+/// A cube: faces in one image, or in one each.
 struct Cube<'a> {
     pictures: Vec<&'a Picture>,
-    /// Top left of each face in its picture.
+    /// Top left of each face in its image.
     corners: [[u32; 2]; 6],
     side: u32,
     axes: Axes,
-    /// The last face stands on its head.
+    /// True if the last face is upside down.
     is_last_turned: bool,
 }
 
-/// The lat-long picture of a cube map, where a picture has the shape of one: a cross (with nothing in its corners) or a
-/// strip of six faces. Any other picture as it is.
+/// Converts an image with the layout of a cube map: a cross (with empty corners) or a strip of six faces. Returns any other
+/// image unchanged.
 pub(super) fn unfolded(picture: Picture) -> Picture {
     let (width, height) = (picture.width, picture.height);
     let axes = if picture.is_cube { Axes::OpenExr } else { Axes::OpenGl };
@@ -81,11 +81,12 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
     unfolded
 }
 
-/// The lat-long picture of six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names;
-/// `decode` reads one.
+/// Converts six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, to a
+/// latitude-longitude map; `decode` reads one.
 ///
 /// # Errors
-/// What is wrong with a file; [`EnvironmentError::NoFaces`] where they are not there.
+///
+/// The fault of a file; [`EnvironmentError::NoFaces`] if they are missing.
 pub(super) fn read_folder(
     source: Source<'_>,
     decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,
@@ -130,7 +131,7 @@ pub fn are_faces(files: &[PathBuf]) -> bool {
     faces(files).is_some()
 }
 
-/// Those of the files that are the faces of a cube, by the ends of their names.
+/// The files that are the faces of a cube, by the ends of their names.
 fn faces(files: &[PathBuf]) -> Option<Vec<&PathBuf>> {
     let ends_in = |file: &Path, name: &str| {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -146,7 +147,7 @@ fn faces(files: &[PathBuf]) -> Option<Vec<&PathBuf>> {
     })
 }
 
-/// Whether the part of a picture that no face covers has one colour.
+/// Whether the part of an image outside the faces has one colour.
 fn has_empty_corners(picture: &Picture, side: u32, corners: &[[u32; 2]; 6]) -> bool {
     let is_covered = |column: u32, row: u32| corners.contains(&[column / side * side, row / side * side]);
     let mut empty = (0..picture.height)
@@ -180,7 +181,7 @@ impl Cube<'_> {
         }
     }
 
-    /// The colour from a direction, bilinear within the face that it meets.
+    /// Radiance from a direction, bilinear within the face that it hits.
     fn radiance(&self, direction: [f64; 3]) -> [f32; 4] {
         let (face, place) = match self.axes {
             Axes::OpenGl => opengl_place([-direction[0], direction[1], direction[2]]),
@@ -224,7 +225,7 @@ fn major_axis(d: [f64; 3]) -> (usize, bool) {
     (axis, d[axis] > 0.0)
 }
 
-/// The face that a direction meets and the place on it, in [0, 1]² from the top left (OpenGL specification, table of
+/// The face that a direction hits and the position on it, in [0, 1]² from the top left (OpenGL specification, table of
 /// cube-map faces).
 fn opengl_place(d: [f64; 3]) -> (usize, [f64; 2]) {
     let [x, y, z] = d;

@@ -1,4 +1,4 @@
-//! What decoders are handed, and the picture that they hand back.
+//! Input and output of decoders.
 
 use std::path::Path;
 
@@ -10,13 +10,13 @@ use crate::scene::loading::Loading;
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub path: &'a Path,
-    /// What the numbers of pictures for screens stand for.
+    /// Encoding of display-referred images.
     pub encoding: EnvironmentEncoding,
-    /// Who waits.
+    /// Progress and cancellation.
     pub loading: &'a Loading,
 }
 
-/// A decoded picture: `width` × `height` texels, rows from the top, numbers as they were in the file.
+/// A decoded image: `width` × `height` texels, rows from the top, values as in the file.
 pub(super) struct Picture {
     pub width: u32,
     pub height: u32,
@@ -27,7 +27,7 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// Brings its colours to Rec. 709 from another space. Where that is none they stay as they are, which is told.
+    /// Converts its colours to Rec. 709 from another space. If that is invalid, they stay, with a warning.
     pub(super) fn bring_to_rec709(&mut self, path: &Path, space: &Chromaticities) {
         match space.rec709_from() {
             Ok(Some(matrix)) => self.transform(path, &matrix),
@@ -39,8 +39,7 @@ impl Picture {
         }
     }
 
-    /// Brings its colours to Rec. 709. What that space can't hold is nearest without the channel that would be negative; how
-    /// much of it there is is told.
+    /// Converts its colours to Rec. 709. Out-of-gamut colours lose their negative channels; their number is reported.
     fn transform(&mut self, path: &Path, matrix: &Matrix) {
         let mut outside = 0;
         for texel in &mut self.texels {

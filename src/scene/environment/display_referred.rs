@@ -1,4 +1,4 @@
-//! Panoramas in the picture formats of screens: PNG, JPEG, TIFF, WebP.
+//! Panoramas in display-referred formats: PNG, JPEG, TIFF, WebP.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use crate::scene::float_tiff;
 use crate::scene::picture::decode_image;
 use crate::scene::resource;
 
-/// What whole numbers stand for.
+/// Decoding of integer values.
 pub(super) struct Codes {
     encoding: EnvironmentEncoding,
-    /// The linear values of codes of 16 bits, among which are those of 8.
+    /// Linear values of 16-bit codes, which include those of 8 bits.
     linear: Vec<f32>,
 }
 
@@ -41,7 +41,7 @@ impl Codes {
         self.linear[usize::from(code)]
     }
 
-    /// What is to be said of a picture of such numbers.
+    /// Warning for images with this encoding.
     pub fn warning(&self) -> Option<String> {
         let text = "A picture for screens: nothing in it is brighter than 1, so that lamps and the sun are too dark.";
         (self.encoding == EnvironmentEncoding::Display).then(|| text.to_owned())

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares};
 use crate::scene::memory::in_large_pages;
 
-/// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
+/// Largest number of cells: 24 MiB of table. Finer cells gain nothing that a sample could show.
 const MAX_CELLS: u64 = 2048 * 1024;
 
 /// The least share of the light that is above its mean for that to be drawn alone.
@@ -16,20 +16,20 @@ const EXCESS_MIN: f64 = 0.05;
 /// One cell of the distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
-    /// Its share of its row.
+    /// Its range of numbers within its row.
     pub share: Share,
     /// The density inside the cell, per steradian, in the map's own frame.
     pub density: f32,
 }
 
-/// A borrowed lat-long picture.
+/// A borrowed latitude-longitude map.
 pub(super) struct Map<'a> {
     pub width: u32,
     pub height: u32,
     pub texels: &'a [[f32; 4]],
 }
 
-/// What is told about a map as a whole.
+/// Statistics of a map.
 pub(super) struct Summary {
     pub mean_radiance: [f32; 3],
     pub max_luminance: f32,
@@ -40,8 +40,8 @@ fn luminance(texel: &[f32; 4]) -> f64 {
     0.2126 * f64::from(texel[0]) + 0.7152 * f64::from(texel[1]) + 0.0722 * f64::from(texel[2])
 }
 
-/// The solid angle between rows `top` and `bottom` (possibly fractional) of `height`, all the way round: 2π times the
-/// difference of the cosines, written so that nothing cancels.
+/// Solid angle of the full ring between rows `top` and `bottom` (possibly fractional) of `height`: 2π times the difference
+/// of the cosines, written without cancellation.
 fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
     let half_turn = PI / height;
     let middle_rad = 0.5 * (top + bottom) * half_turn;
@@ -49,8 +49,7 @@ fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
     2.0 * TAU * middle_rad.sin() * half_width_rad.sin()
 }
 
-/// The luminance of the bilinear picture averaged over each texel's cell of a row: neighbours along an axis weigh 1/8,
-/// 3/4, 1/8.
+/// Mean luminance of the bilinear map over each texel's cell of a row: neighbours along an axis weigh 1/8, 3/4, 1/8.
 fn cell_luminances(map: &Map, row: u32) -> Vec<f64> {
     let width = map.width as usize;
     let line = |row: u32| &map.texels[row as usize * width..][..width];
@@ -69,8 +68,8 @@ fn cell_luminances(map: &Map, row: u32) -> Vec<f64> {
         .collect()
 }
 
-/// What a texel of a row adds to the integral of the bilinear picture over the sphere: the integral of its hat function,
-/// which stays 1 from the first and last row's centres to the poles.
+/// A texel's weight in the integral of the bilinear map over the sphere: the integral of its hat function, which stays 1
+/// from the first and last row's centres to the poles.
 pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
     let step_rad = PI / f64::from(height);
     let polar_rad = (f64::from(row) + 0.5) * step_rad;
@@ -89,7 +88,7 @@ pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
     (above + below) * TAU / f64::from(width)
 }
 
-/// Mean radiance of the bilinear picture over the sphere, and the largest luminance.
+/// Mean radiance of the bilinear map over the sphere, and its largest luminance.
 pub(super) fn summarise(map: &Map) -> Summary {
     let (sum, max) = map
         .texels
@@ -120,24 +119,24 @@ fn cells_size(width: u32, height: u32) -> (u32, u32) {
     size
 }
 
-/// What directions are drawn with: the density is constant over cells of the map.
+/// Sampling distribution over directions: piecewise constant over cells of the map.
 #[derive(Clone, Debug)]
 pub struct Distribution {
     /// `width` × `height` cells, in the order of the texels.
     pub cells: Vec<Cell>,
     /// The shares of the rows.
     pub rows: Vec<Share>,
-    /// Columns of cells.
+    /// Width of the grid, in cells.
     pub width: u32,
-    /// Rows of cells.
+    /// Height of the grid, in cells.
     pub height: u32,
-    /// The mean luminance over the sphere of what is drawn.
+    /// Mean over the sphere of the sampled luminance.
     pub mean_luminance: f64,
 }
 
 impl Distribution {
-    /// In proportion to what the luminances of cells are above `floor`, to the nearest of the numbers that draw a cell of
-    /// its row; all densities are 0 where none is above it.
+    /// A distribution proportional to the cells' luminances above `floor`, rounded to whole numbers of 2⁻²⁴ within a row.
+    /// All densities are 0 if none is above.
     pub(super) fn new(luminances: &Luminances, floor: f64) -> Self {
         let Luminances { width, height, .. } = *luminances;
         let of_rows = luminances
@@ -172,7 +171,7 @@ impl Distribution {
         }
     }
 
-    /// In proportion to what is above the mean; to all where that is next to nothing, as the environment is even.
+    /// A distribution proportional to the luminance above the mean, or to all of it for a nearly uniform map.
     pub(super) fn of_excess(luminances: &Luminances) -> Self {
         let mean = luminances.mean_of(|luminance| luminance);
         let excess = luminances.mean_of(|luminance| (luminance - mean).max(0.0));
@@ -210,13 +209,13 @@ fn cell_solid_angle(row: usize, width: u32, height: u32) -> f64 {
     band_solid_angle(row as f64, (row + 1) as f64, f64::from(height)) / f64::from(width)
 }
 
-/// The mean luminance of the bilinear picture in each cell.
+/// Mean luminance of the bilinear map in each cell.
 pub(super) struct Luminances {
     /// In the order of the texels.
     pub cells: Vec<f64>,
     /// Columns of cells: the map's, or halved until there are at most [`MAX_CELLS`].
     pub width: u32,
-    /// Rows of cells.
+    /// Height of the grid, in cells.
     pub height: u32,
 }
 
@@ -231,7 +230,7 @@ impl Luminances {
         }
     }
 
-    /// The mean over the sphere of what a function makes of the luminance.
+    /// Mean over the sphere of a function of the luminance.
     fn mean_of(&self, f: impl Fn(f64) -> f64) -> f64 {
         let rows = self.cells.chunks(self.width as usize).enumerate();
         let sum = |(row, cells): (usize, &[f64])| {
@@ -251,7 +250,7 @@ fn probabilities(shares: &[Share]) -> Vec<f64> {
     shares.iter().map(probability).collect()
 }
 
-/// The mean luminances of one row of cells. Of a texel's cell that a cell covers in part it takes that part.
+/// Mean luminances of one row of cells, by area overlap with the texels' cells.
 fn cell_row_luminances(map: &Map, cell_row: u32, cells_width: u32, cells_height: u32) -> Vec<f64> {
     let mut weights = vec![0.0; cells_width as usize];
     for (row, row_share) in overlaps(cell_row, cells_height, map.height) {
@@ -268,10 +267,10 @@ fn cell_row_luminances(map: &Map, cell_row: u32, cells_width: u32, cells_height:
     weights.into_iter().map(|weight| weight / solid_angle).collect()
 }
 
-/// Which of `fine` equal intervals of [0, 1] overlap interval `index` of `coarse` ones, each with the share of it that
-/// is covered.
+/// The intervals out of `fine` equal ones of [0, 1] that overlap interval `index` out of `coarse`, each with its covered
+/// share.
 fn overlaps(index: u32, coarse: u32, fine: u32) -> impl Iterator<Item = (u32, f64)> {
-    // In units of 1 / (coarse × fine), where every border is a whole number.
+    // In units of 1 / (coarse × fine), in which all borders are integers.
     let (coarse, fine) = (u64::from(coarse), u64::from(fine));
     let (begin, end) = (u64::from(index) * fine, (u64::from(index) + 1) * fine);
     (begin / coarse..end.div_ceil(coarse)).map(move |i| {

@@ -1,10 +1,10 @@
-//! What can be wrong with an environment, told in one line each.
+//! Errors of environments, in one line each.
 
 use std::path::PathBuf;
 
 use crate::scene::loading::Cancelled;
 
-/// Why an environment cannot be shown. The message names the file, what is wrong with it and what to do.
+/// Errors of an environment. The message names the file, the fault and the remedy.
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentError {
     /// An empty name.
@@ -15,7 +15,7 @@ pub enum EnvironmentError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// An ending that is not known.
@@ -38,7 +38,7 @@ pub enum EnvironmentError {
         /// The folder.
         path: PathBuf,
     },
-    /// The content is not what the extension says.
+    /// The content does not match the extension.
     #[error(
         "{} is not {expected} file although its name says so: its first bytes are different; check where it came from",
         path.display()
@@ -54,7 +54,7 @@ pub enum EnvironmentError {
     Truncated {
         /// The file.
         path: PathBuf,
-        /// Where it ends.
+        /// Position of the end.
         detail: String,
     },
     /// The decoder found a contradiction.
@@ -62,17 +62,17 @@ pub enum EnvironmentError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What the decoder said.
+        /// Message of the decoder.
         detail: String,
     },
-    /// A valid file that makes use of what is not supported.
+    /// A valid file with an unsupported feature.
     #[error("{} uses {feature}, which is not supported: {remedy}", path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What it uses.
+        /// The unsupported feature, in words.
         feature: String,
-        /// What to do instead.
+        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
     /// Larger than the largest size.
@@ -83,12 +83,12 @@ pub enum EnvironmentError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// Its columns.
+        /// Width in pixels.
         width: u64,
-        /// Its rows.
+        /// Height in pixels.
         height: u64,
     },
-    /// It is not wanted any more.
+    /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// No pixels.

@@ -1,4 +1,4 @@
-//! What the header of an OpenEXR file says of its picture, and what is wrong with a file.
+//! Headers and errors of OpenEXR files.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use super::EnvironmentError;
 use super::canvas::Canvas;
 use crate::optics::primaries::{Chromaticities, REC709};
 
-/// The space of a file's colours: Rec. 709 where it names none.
+/// Colour space of a file: Rec. 709 by default.
 pub(in crate::scene) fn space(header: &Header) -> Chromaticities {
     let place = |Vec2(x, y): Vec2<f32>| [f64::from(x), f64::from(y)];
     let named = header.shared_attributes.chromaticities;
@@ -20,8 +20,8 @@ pub(in crate::scene) fn space(header: &Header) -> Chromaticities {
     })
 }
 
-/// An empty picture of the display window, and the place of the first stored pixel in it: negative where pixels are stored
-/// outside of the window.
+/// An empty image of the display window, and the position of the first stored pixel in it: negative for pixels outside the
+/// window.
 pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
     let display = header.shared_attributes.display_window;
     let canvas = Canvas::new(path, display.size.width() as u64, display.size.height() as u64)?;
@@ -39,7 +39,7 @@ pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]),
     Ok((canvas, offset))
 }
 
-/// What the crate says, in our words.
+/// Converts the crate's error.
 pub(super) fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
     let path = path.to_owned();
     match error {

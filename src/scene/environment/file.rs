@@ -1,4 +1,4 @@
-//! Environments from files: which decoder, and what is mended afterwards.
+//! Environments from files: choice of the decoder, and repairs.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::{container, cube, display_referred, open_exr, radiance_hdr};
 use crate::scene::endings::{ending, is_picture};
 use crate::scene::loading::Loading;
 
-/// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.
+/// Loads an image of the whole sphere: a latitude-longitude or cube map in a file, or six faces in a folder.
 pub(super) fn load(
     path: &Path,
     encoding: EnvironmentEncoding,
@@ -27,13 +27,13 @@ pub(super) fn load(
         cube::unfolded(decode(source)?)
     };
     loading.step("the environment's distribution")?;
-    mend(&mut picture);
+    repair(&mut picture);
     let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
     environment.warnings = picture.warnings;
     Ok(environment)
 }
 
-/// The picture in a file.
+/// Decodes a file.
 fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
@@ -46,8 +46,8 @@ fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
 }
 
-/// Replaces what is no radiance, makes the texels opaque, and says what was odd.
-fn mend(picture: &mut Picture) {
+/// Replaces invalid radiances, makes the texels opaque, and records warnings.
+fn repair(picture: &mut Picture) {
     let (mut not_a_number, mut negative, mut infinite) = (0_u64, 0_u64, 0_u64);
     let mut largest = 0.0_f32;
     for texel in &mut picture.texels {
@@ -72,14 +72,14 @@ fn mend(picture: &mut Picture) {
         }
     }
     let warnings = &mut picture.warnings;
-    let mut tell = |count: u64, what: &str, instead: &str| {
+    let mut report = |count: u64, what: &str, instead: &str| {
         if count > 0 {
             warnings.push(format!("{count} {what} values were replaced by {instead}."));
         }
     };
-    tell(not_a_number, "not-a-number", "0");
-    tell(negative, "negative", "0");
-    tell(infinite, "infinite", &format!("the largest finite one, {largest}"));
+    report(not_a_number, "not-a-number", "0");
+    report(negative, "negative", "0");
+    report(infinite, "infinite", &format!("the largest finite one, {largest}"));
     if picture.width != 2 * picture.height {
         warnings.push(format!(
             "The picture is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",

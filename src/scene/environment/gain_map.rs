@@ -1,5 +1,5 @@
-//! Ultra HDR: a JPEG for screens with a second JPEG behind it, which tells by how much each place is brighter than screens show
-//! it (Google, Ultra HDR Image Format 1.1, whose metadata are those of Adobe's gain maps).
+//! Ultra HDR: a display-referred JPEG followed by a second one with the gain per pixel (Google, Ultra HDR Image Format 1.1,
+//! with the metadata of Adobe's gain maps).
 
 use image::{DynamicImage, RgbImage};
 
@@ -7,25 +7,25 @@ use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::scene::picture::decode_image;
 
-/// Where metadata begin in a segment of a JPEG.
+/// Prefix of metadata in a JPEG segment.
 const XMP: &[u8] = b"http://ns.adobe.com/xap/1.0/\0";
-/// The names of those of a gain map.
+/// Namespace of a gain map's metadata.
 const NAMES: &str = "http://ns.adobe.com/hdr-gain-map/1.0/";
-/// Markers of segments: metadata, the list of a file's pictures, pixels.
+/// Segment markers: metadata, image list, pixels.
 const APP1: u8 = 0xe1;
 const APP2: u8 = 0xe2;
 const SCAN: u8 = 0xda;
 const END: [u8; 2] = [0xff, 0xd9];
-/// The entry of a list of pictures that says where they are.
+/// Tag with the images' positions in an image list.
 const PICTURES: usize = 0xb002;
 
-/// Linear light.
+/// Look-up tables to linear light.
 pub(super) struct Light {
     shown: RgbImage,
     map: RgbImage,
-    /// Of the shown picture's codes.
+    /// Linear values of the base image's codes.
     linear: [f32; 256],
-    /// Of the map's codes, by channel.
+    /// Gains of the map's codes, by channel.
     gains: [[f32; 256]; 3],
     metadata: Metadata,
 }
@@ -56,7 +56,7 @@ impl Light {
 /// What is wrong with the map.
 pub(super) fn light(bytes: &[u8], shown: &DynamicImage) -> Option<Result<Light, String>> {
     let map = listed_picture(bytes).or_else(|| appended_picture(bytes));
-    // They stand with the map, or in older files with the first picture. Other files have a second picture too.
+    // The metadata are in the map, or in older files in the first image. Other files have a second image too.
     let metadata = Metadata::of(bytes).or_else(|| Metadata::of(map?))?;
     Some(apply(map, metadata, shown))
 }
@@ -82,21 +82,21 @@ fn apply(map: Option<&[u8]>, metadata: Metadata, shown: &DynamicImage) -> Result
     })
 }
 
-/// What is said of a gain map, by channel.
+/// Metadata of a gain map, by channel.
 struct Metadata {
-    /// Powers of 2 that its least and its greatest code stand for.
+    /// Exponents of 2 for its lowest and highest code.
     least: [f32; 3],
     most: [f32; 3],
     gamma: [f32; 3],
-    /// Added to what is shown before it is brightened, and taken from the light afterwards.
+    /// Offset added to the base value before the gain, and subtracted afterwards.
     shown_offset: [f32; 3],
     light_offset: [f32; 3],
-    /// The first picture is the bright one.
+    /// True if the base image is the bright one.
     leads_to_screens: bool,
 }
 
 impl Metadata {
-    /// What a JPEG's own metadata say.
+    /// Metadata of a JPEG.
     fn of(jpeg: &[u8]) -> Option<Self> {
         let mut segments = segments(jpeg).filter(|segment| segment.marker == APP1);
         let packet = segments.find_map(|segment| segment.data.strip_prefix(XMP))?;
@@ -143,7 +143,7 @@ impl Metadata {
 /// A part of a JPEG before its pixels.
 struct Segment<'a> {
     marker: u8,
-    /// Where its data begin in the file.
+    /// Start of its data in the file.
     at: usize,
     data: &'a [u8],
 }
@@ -166,7 +166,7 @@ fn segments(jpeg: &[u8]) -> impl Iterator<Item = Segment<'_>> {
     })
 }
 
-/// The second picture of a file that lists them (CIPA DC-007, multi-picture format).
+/// The second image of a file with an image list (CIPA DC-007, multi-picture format).
 fn listed_picture(bytes: &[u8]) -> Option<&[u8]> {
     let mut segments = segments(bytes).filter(|segment| segment.marker == APP2);
     let (start, list) = segments.find_map(|segment| Some((segment.at + 4, segment.data.strip_prefix(b"MPF\0")?)))?;
@@ -188,7 +188,7 @@ fn listed_picture(bytes: &[u8]) -> Option<&[u8]> {
     bytes.get(start + offset..)?.get(..size)
 }
 
-/// A whole picture behind the first one's end.
+/// An image appended after the first one.
 fn appended_picture(bytes: &[u8]) -> Option<&[u8]> {
     let scan = segments(bytes).find(|segment| segment.marker == SCAN)?.at;
     let behind = scan + bytes[scan..].windows(2).position(|pair| pair == END)?;

@@ -31,7 +31,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     let (mut canvas, offset) = window(path, header)?;
     let planes = Planes::read(&mut file, &meta_data).map_err(|error| exr_error(path, error))?;
     let space = space(header);
-    // Where the file's primaries are no space, its numbers are taken as Rec. 709, and `bring_to_rec709` says so.
+    // Invalid primaries count as Rec. 709, and `bring_to_rec709` warns.
     let luminances = space.luminances().or_else(|_| REC709.luminances());
     let weights = luminances.unwrap_or([0.0, 1.0, 0.0]).map(|weight| weight as f32);
     let [width, height] = canvas.source_size().map(i64::from);
@@ -113,7 +113,7 @@ impl Planes {
         Ok(planes)
     }
 
-    /// Takes the lines of a block: for each line, channel by channel, those that have the line.
+    /// Stores the lines of a block, channel by channel, of the channels that have each line.
     fn take(&mut self, header: &Header, bytes: &[u8], first: usize, lines: usize, names: [usize; 3]) -> ExrResult<()> {
         let mut rest = bytes;
         for row in first..first + lines {
@@ -168,7 +168,7 @@ impl Planes {
     }
 }
 
-/// How many samples a channel has in a line of the picture; none where it leaves the line out.
+/// Number of a channel's samples in a line; 0 if it skips the line.
 fn samples_in_line(channel: &ChannelDescription, width: usize, row: usize) -> Option<usize> {
     row.is_multiple_of(channel.sampling.y().max(1))
         .then(|| width / channel.sampling.x().max(1))
@@ -185,7 +185,7 @@ fn number(sample_type: SampleType, bytes: &[u8]) -> f32 {
 
 /// Decompresses lines. The crate takes a block's size from the bytes of a pixel, which here are a mean over the block.
 fn decompress(header: &Header, compressed: Vec<u8>, first: usize, lines: usize) -> ExrResult<Vec<u8>> {
-    // The crate's B44 takes all channels for as large as the picture.
+    // The crate's B44 assumes full-size channels.
     if matches!(header.compression, Compression::B44 | Compression::B44A) {
         return Err(ExrError::NotSupported("B44 compression of coarse chroma".into()));
     }

@@ -36,7 +36,7 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::loading::Loading;
-use crate::scene::memory::{fetch, in_large_pages};
+use crate::scene::memory::{in_large_pages, prefetch};
 
 pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
@@ -47,17 +47,17 @@ pub use procedural::{
 };
 pub use thumbnail::{brightened, thumbnail};
 
-/// The most columns that are kept of a file's picture; larger ones are made smaller.
+/// Width in pixels to which larger maps are reduced.
 pub const MAX_WIDTH: u32 = 8192;
-/// The most rows that are kept of a file's picture.
+/// Height in pixels to which larger maps are reduced.
 pub const MAX_HEIGHT: u32 = 4096;
-/// The most columns of a file's picture.
+/// Largest width of a file's image, in pixels.
 pub const SOURCE_MAX_WIDTH: u32 = 32768;
-/// The most rows of a file's picture: a strip of six faces stands upright.
+/// Largest height of a file's image, in pixels: a strip of six faces may be upright.
 pub const SOURCE_MAX_HEIGHT: u32 = 32768;
 
-/// Where an environment comes from. Written as one of the names in [`BUILT_IN`] or the name of a file; a file of such a name
-/// is reached as `./studio`.
+/// Source of an environment. Written as one of the names in [`BUILT_IN`] or as a file name; a file of such a name is written
+/// `./studio`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentSource {
@@ -78,35 +78,35 @@ pub enum EnvironmentSource {
     Sky,
     /// Radiance 1 from everywhere.
     Furnace,
-    /// A picture of the whole sphere: a lat-long map or a cube map in a file with one of [`ENDINGS`], or a folder with the
-    /// six faces of a cube.
+    /// An image of the whole sphere: a latitude-longitude or cube map in a file with one of [`ENDINGS`], or a folder with
+    /// the six faces of a cube.
     File(PathBuf),
 }
 
-/// What the whole numbers of a panorama stand for.
+/// Encoding of a panorama's integer values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentEncoding {
-    /// sRGB codes: the picture is meant for a screen.
+    /// sRGB codes: the image is display-referred.
     #[default]
     Display,
-    /// Radiance in proportion.
+    /// Proportional to radiance.
     Linear,
 }
 
 /// An environment that needs no file.
 pub struct BuiltIn {
-    /// What it is.
+    /// Source that [`load`] takes.
     pub source: EnvironmentSource,
-    /// Its name on the command line and in files.
+    /// Name on the command line and in files.
     pub name: &'static str,
-    /// Its name in the window.
+    /// Name in the window.
     pub label: &'static str,
-    /// What it is like.
+    /// Description.
     pub help: &'static str,
 }
 
-/// All environments that need no file, in the order in which they are offered.
+/// The built-in environments, in the order of the window.
 pub static BUILT_IN: [BuiltIn; 8] = [
     built_in(
         EnvironmentSource::Product,
@@ -201,11 +201,11 @@ pub struct Environment {
     /// See [`Environment::distribution`].
     excess: Distribution,
     whole: OnceLock<Distribution>,
-    /// What to call it: `studio`, …, or the file's name without folders.
+    /// Name: `studio`, …, or the file's name without folders.
     pub name: String,
-    /// What was odd about the file but could be mended, one sentence each.
+    /// Faults of the file that were fixed, one sentence each.
     pub warnings: Vec<String>,
-    /// Whether all texels are equal, so that there is nothing to gain by sampling it.
+    /// Whether all texels are equal: then sampling gains nothing.
     pub is_constant: bool,
     /// Whether all texels are black: the density is 0 everywhere.
     pub is_black: bool,
@@ -213,12 +213,12 @@ pub struct Environment {
     pub mean_radiance: [f32; 3],
     /// The largest luminance of any texel.
     pub max_luminance: f32,
-    /// The middle of its brightest place, in (u, v); `None` where it is equally bright everywhere.
+    /// Centre of the brightest region, in (u, v); `None` for a uniform map.
     pub brightest: Option<[f32; 2]>,
 }
 
 impl Environment {
-    /// Bytes in memory.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.texels[..]) + self.excess.bytes() + self.whole.get().map_or(0, Distribution::bytes)
     }
@@ -265,9 +265,9 @@ impl Environment {
 }
 
 impl Environment {
-    /// What directions are drawn with: in proportion to the luminance where nothing else finds the light; to what is above
-    /// the mean where directions drawn from lobes find it, too. Those find what is spread widely, and each sample spent on
-    /// that would miss the sun (Karlík et al., "MIS Compensation", ACM TOG 38(6), 2019).
+    /// Distribution of light sampling. If it `is_alone`, proportional to luminance; otherwise to the luminance above the
+    /// mean. BSDF sampling finds diffuse light, and each sample spent on that would miss the sun (Karlík et al., "MIS
+    /// Compensation", ACM TOG 38(6), 2019).
     pub fn distribution(&self, is_alone: bool) -> &Distribution {
         if !is_alone {
             return &self.excess;
@@ -283,17 +283,19 @@ impl Environment {
     }
 }
 
-/// Loads or computes an environment. Takes seconds for an 8k file: call it beside the window.
+/// Loads or computes an environment. Takes seconds for an 8k file: do not call it on the window's thread.
 ///
 /// # Errors
-/// One line with the file's name, what is wrong and what to do, for files that cannot be read or shown.
+///
+/// One line with the file's name, the fault and the remedy, for files that cannot be read or shown.
 pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError> {
     load_encoded(source, EnvironmentEncoding::default())
 }
 
-/// The same where pictures for screens are taken as `encoding` says.
+/// The same with an `encoding` for integer images.
 ///
 /// # Errors
+///
 /// As [`load`].
 pub fn load_encoded(
     source: &EnvironmentSource,
@@ -302,10 +304,11 @@ pub fn load_encoded(
     load_watched(source, encoding, &Loading::default())
 }
 
-/// The same for those who wait.
+/// The same with progress and cancellation.
 ///
 /// # Errors
-/// As [`load`], and where it was cancelled.
+///
+/// As [`load`], and if cancelled.
 pub fn load_watched(
     source: &EnvironmentSource,
     encoding: EnvironmentEncoding,
@@ -324,8 +327,8 @@ pub fn load_watched(
     }
 }
 
-/// The direction in the map's frame that a direction in the world meets when the map is turned by an angle about +Y,
-/// anticlockwise seen from above (+Z towards +X). `rotation` is the cosine and the sine of the angle.
+/// Converts a world direction to the frame of the map, which is rotated about +Y, anticlockwise from above (+Z towards +X).
+/// `rotation` is the cosine and sine of the angle.
 #[inline(always)]
 pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
     let [cos, sin] = rotation;
@@ -341,10 +344,10 @@ pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation:
     vec3(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
 }
 
-/// Where a unit direction lies in the map: u in [0, 1), v in [0, 1]. At the poles u is 0.
+/// Map coordinates of a unit direction: u in [0, 1), v in [0, 1]. At the poles u is 0.
 #[inline(always)]
 pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
-    // atan2 instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
+    // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
     let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
     let v = horizontal.atan2(direction.y) * T::from_f64(std::f64::consts::FRAC_1_PI);
     // atan2(0, 0) is undefined in WGSL.
@@ -366,7 +369,7 @@ pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
 /// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
 #[inline(always)]
 fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
-    // Half a turn back, so that the argument stays in [−π, π], where GPUs promise accuracy.
+    // Shifted by half a turn, so that the argument is in [−π, π], where GPUs guarantee accuracy.
     let azimuth_rad = (u - T::from_f64(0.5)) * T::from_f64(std::f64::consts::TAU);
     vec3(
         -(azimuth_rad.sin() * sin_polar),
@@ -381,7 +384,7 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
     environment_radiance_at(environment, environment_uv(direction_local))
 }
 
-/// The same from a place in the map ([`environment_uv`]).
+/// The same at map coordinates ([`environment_uv`]).
 #[inline(always)]
 pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
     let Bilinear { texels, shares } = bilinear(environment, uv);
@@ -405,9 +408,9 @@ fn radiances<T: Real>(environment: &Environment, texels: &T::Each<u32>) -> Vec3<
 
 /// The texels around a place in the map.
 struct Bilinear<T: Real> {
-    /// Which they are: two above, two below.
+    /// Texel indices: two above, two below.
     texels: [T::Each<u32>; 4],
-    /// The shares of the right ones and of those below.
+    /// Weights in [0, 1] of the right texels and of the lower ones.
     shares: [T; 2],
 }
 
@@ -450,30 +453,30 @@ fn whole<T: Real>(numbers: T) -> T::Each<i32> {
     T::each(|lane| numbers[lane].to_f64() as f32 as i32)
 }
 
-/// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
+/// Prefetches the texels at map coordinates.
 #[inline(always)]
-pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2]) {
+pub fn prefetch_texels<T: Real>(environment: &Environment, uv: [T; 2]) {
     for texels in &bilinear(environment, uv).texels {
         for &texel in texels.as_ref() {
-            fetch(&environment.texels, texel as usize);
+            prefetch(&environment.texels, texel as usize);
         }
     }
 }
 
-/// The same for the cell at a place.
+/// Prefetches the cell at map coordinates.
 #[inline(always)]
-pub fn fetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
+pub fn prefetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
     let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
     for &cell in cells.as_ref() {
-        fetch(&distribution.cells, cell as usize);
+        prefetch(&distribution.cells, cell as usize);
     }
 }
 
-/// A direction in the map's frame drawn with the density that is returned with it, per steradian, from three uniform
-/// numbers in [0, 1). The density is 0, the direction arbitrary, if the map is black.
+/// Samples a direction in the map's frame from three uniform numbers in [0, 1). Returns it with its density per steradian;
+/// for a black map the density is 0 and the direction arbitrary.
 ///
-/// `xi.y` draws the row of a cell, `xi.x` the column, and with what is left of them the place inside the cell: numbers that
-/// are spread evenly over the square are so over the map. `xi.z` is what they have too few bits for.
+/// `xi.y` selects the row of a cell, `xi.x` the column, and their remainders the position inside the cell: well distributed
+/// numbers give well distributed samples. `xi.z` supplies the bits that they lack.
 #[inline(always)]
 pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
     sample_in_rows(distribution, &drawn_rows(distribution, xi.y), xi)
@@ -486,7 +489,7 @@ pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32>
     T::each(|lane| distribution.row(draw_number(numbers.as_ref()[lane])))
 }
 
-/// What [`environment_sample`] draws where the rows are known.
+/// [`environment_sample`] for known rows.
 #[inline(always)]
 pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (distribution.width, distribution.height);
@@ -538,7 +541,7 @@ fn densities<T: Real>(distribution: &Distribution, cells: &T::Each<u32>) -> T {
     })
 }
 
-/// Of each lane the first cell of its row, and the cell that has the guide to those that `xi_x` draws.
+/// Per lane the first cell of its row, and the cell with the guide of `xi_x`.
 #[inline(always)]
 fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
     let (width, numbers) = (distribution.width, xi_x.to_each());
@@ -548,20 +551,20 @@ fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) ->
     })
 }
 
-/// Has the processor fetch what [`sample_in_rows`] looks up first, the guide to a row's cells.
+/// Prefetches the guide to a row's cells, which [`sample_in_rows`] reads first.
 #[inline(always)]
-pub fn fetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+pub fn prefetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
-        fetch(&distribution.cells, guide as usize);
+        prefetch(&distribution.cells, guide as usize);
     }
 }
 
-/// Has the processor fetch the cell that [`sample_in_rows`] draws, once the guide is there.
+/// Prefetches the cell that [`sample_in_rows`] selects; reads the guide.
 #[inline(always)]
-pub fn fetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+pub fn prefetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
         let cell = first + distribution.cells[guide as usize].share.guide;
-        fetch(&distribution.cells, cell as usize);
+        prefetch(&distribution.cells, cell as usize);
     }
 }
 
@@ -600,7 +603,7 @@ pub fn environment_density<T: Real>(distribution: &Distribution, direction_local
     environment_density_at(distribution, environment_uv(direction_local))
 }
 
-/// The same at a place in the map ([`environment_uv`]).
+/// The same at map coordinates ([`environment_uv`]).
 #[inline(always)]
 pub fn environment_density_at<T: Real>(distribution: &Distribution, uv: [T; 2]) -> T {
     let size = [distribution.width, distribution.height];

@@ -53,7 +53,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     })
 }
 
-/// [`read`], where the crate may panic.
+/// [`read`] without protection: the crate may panic.
 fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let file_bytes = check_preamble(path)?;
@@ -91,7 +91,7 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     Ok(picture)
 }
 
-/// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
+/// Checks the first eight bytes, which the crate's errors do not distinguish; returns the length of the file.
 fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
     let mut file = io(path, resource::open(path))?;
     let length = io(path, file.metadata())?.len();
@@ -189,7 +189,7 @@ fn choose_layer(path: &Path, headers: &[Header]) -> Result<Layer, EnvironmentErr
     })
 }
 
-/// Refuses what is not to be decoded, and headers that promise more than the file can hold.
+/// Refuses unsupported files, and headers that claim more than the file can contain.
 fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), EnvironmentError> {
     if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
         return Err(EnvironmentError::Unsupported {
@@ -213,8 +213,8 @@ fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), 
     Ok(())
 }
 
-/// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
-/// as detached tasks, where a panic would end the program.)
+/// Decompresses all chunks on all cores and passes the blocks on in order. (The crate's own parallel reader runs detached
+/// tasks, in which a panic would end the program.)
 fn for_each_block(
     source: Source<'_>,
     mut chunks: impl ChunksReader,
@@ -240,7 +240,7 @@ fn for_each_block(
     }
 }
 
-/// Writes what the window shows of one line of one channel to the picture.
+/// Writes the visible part of one line of one channel.
 fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], offset: [i64; 2], canvas: &mut Canvas) {
     let [width, height] = canvas.source_size().map(i64::from);
     let row = line.location.position.y() as i64 + offset[1];

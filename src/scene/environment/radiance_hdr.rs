@@ -12,7 +12,7 @@ use super::canvas::Canvas;
 use super::decoded::{Picture, Source, io};
 use crate::scene::resource;
 
-/// Lines after which those who wait hear of it.
+/// Lines between two progress reports.
 const LINES_A_STEP: u32 = 256;
 
 /// Columns: linear Rec. 709 red, green and blue of CIE X, Y and Z relative to the white D65.
@@ -22,7 +22,7 @@ const RGB_FROM_XYZ: [[f32; 3]; 3] = [
     [-0.498_611, 0.041_555, 1.056_972],
 ];
 
-/// Reads a file line by line, so that memory grows with the lines that are really there and a cut is found where it is.
+/// Reads a file line by line, so that memory grows with actual lines and a truncation is located.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
@@ -60,7 +60,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     Ok(picture)
 }
 
-/// What a file's text says of its pixels.
+/// Header of a file.
 struct Header {
     layout: Layout,
     is_xyz: bool,
@@ -117,12 +117,12 @@ impl Header {
     }
 }
 
-/// The size of the picture and the order of its pixels.
+/// Size of the image and order of its pixels.
 #[derive(Clone, Copy)]
 struct Layout {
     width: u32,
     height: u32,
-    /// A line of the file is a column of the picture.
+    /// True if a line of the file is an image column.
     is_by_columns: bool,
     /// Columns are counted from the right.
     from_right: bool,
@@ -173,15 +173,15 @@ impl Layout {
     }
 }
 
-/// Decodes the next line of pixels (three numbers each). The decoder only knows whole files: each line is handed to it as
-/// a picture of one row.
+/// Decodes the next line of pixels (three numbers each). The decoder only accepts whole files: each line is passed as an
+/// image of one row.
 fn read_line(rest: &mut &[u8], line: &mut [f32]) -> Result<(), ImageError> {
     let header = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X {}\n", line.len() / 3);
     let file: Chain<Cursor<String>, &mut &[u8]> = Cursor::new(header).chain(rest);
     HdrDecoder::new(file)?.read_image(bytemuck::cast_slice_mut(line))
 }
 
-/// What is wrong with a line of pixels.
+/// Error of a line of pixels.
 fn line_error(path: &Path, error: ImageError, number: u32, layout: Layout) -> EnvironmentError {
     let path = path.to_owned();
     let what = if layout.is_by_columns { "column" } else { "row" };

@@ -1,14 +1,14 @@
-//! A small picture of an environment for the panels.
+//! Thumbnails of environments for the panels.
 
 use super::{Environment, environment_direction, environment_radiance};
 
-/// Looks taken along each side of a thumbnail's pixel.
+/// Samples along each side of a thumbnail's pixel.
 const TAPS: u32 = 4;
 /// The luminance that the geometric mean is brought to.
 const MIDDLE_GREY: f32 = 0.3;
 
-/// The whole map as `width` × `height` opaque sRGB pixels, rows from the top, exposed to its own geometric mean; what is
-/// brighter than white is rolled off.
+/// The whole map as `width` × `height` opaque sRGB pixels, rows from the top, exposed to its geometric mean, with a
+/// highlight roll-off.
 pub fn thumbnail(environment: &Environment, width: u32, height: u32) -> Vec<[u8; 4]> {
     let pixels: Vec<[f32; 3]> = (0..height)
         .flat_map(|row| (0..width).map(move |column| [column, row]))

@@ -11,7 +11,7 @@ use crate::scene::model::ModelError;
 const MAX_ZEROS: usize = 1 << 24;
 
 impl Document {
-    /// The elements of a vector accessor as f32, normalised integers as the fractions that they stand for.
+    /// Elements of a vector accessor as f32; normalised integers become fractions.
     pub fn read_vectors<const N: usize>(&self, accessor: usize, what: &str) -> Result<Vec<[f32; N]>, ModelError> {
         let (component, normalized, bytes) = self.read_elements(accessor, N, what)?;
         let size = component.size();
@@ -20,7 +20,7 @@ impl Document {
         Ok(bytes.chunks_exact(N * size).map(vector).collect())
     }
 
-    /// The elements of an accessor of three or four components, the fourth 1 where there are three.
+    /// Elements of an accessor of three or four components; a missing fourth is 1.
     pub fn read_colors(&self, accessor: usize, what: &str) -> Result<Vec<[f32; 4]>, ModelError> {
         let is_vec3 =
             self.root.accessors.get(accessor).map(|accessor| accessor.type_) == Some(Checked::Valid(Type::Vec3));
@@ -71,7 +71,7 @@ impl Document {
         let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(invalid("is of unknown type"));
         };
-        // The columns of smaller matrices of bytes have gaps, which nothing that is read here has.
+        // Small byte matrices have column gaps; none are read here.
         let is_vector = matches!(kind, Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4 | Type::Mat4);
         if !is_vector || kind.multiplicity() != components {
             return Err(invalid(&format!("does not have {components} components")));
@@ -94,7 +94,7 @@ impl Document {
         Ok((component.0, accessor.normalized, elements))
     }
 
-    /// `count` elements of `size` bytes without the gaps between them; nothing where they are beyond the view.
+    /// `count` elements of `size` bytes without gaps; `None` if beyond the view.
     fn strided(&self, view: usize, offset: u64, count: usize, size: usize) -> Option<Vec<u8>> {
         let stride = self
             .root
@@ -109,7 +109,7 @@ impl Document {
             return Some(Vec::new());
         };
         let end = last.checked_mul(stride)?.checked_add(size)?;
-        // Overlapping elements would let a small file ask for any amount of memory.
+        // Overlapping elements would let a small file demand any amount of memory.
         let bytes = bytes.get(..end).filter(|_| stride >= size)?;
         Some(bytes.chunks(stride).flat_map(|chunk| &chunk[..size]).copied().collect())
     }

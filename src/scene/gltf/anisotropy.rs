@@ -1,4 +1,4 @@
-//! KHR_materials_anisotropy: a highlight of two widths, told by the roughness of the narrower one and a strength.
+//! KHR_materials_anisotropy: a highlight of two widths, given by the roughness of the narrower one and a strength.
 //!
 //! Across the direction of anisotropy α is roughness², along it mix(roughness², 1, strength²).
 
@@ -6,21 +6,21 @@ use crate::optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::scene::model::{Slot, Texture};
 use crate::scene::texture::texture_mean;
 
-/// Two widths in one of the ways of telling them.
+/// Two widths in one of the two parametrisations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Widths {
     /// glTF's is that of the narrower width, Glossmith's that of the mean of both.
     pub roughness: f32,
     /// glTF's strength in [0, 1], or Glossmith's anisotropy in [0, 1].
     pub stretch: f32,
-    /// Both widths are as they were in the other way of telling them.
+    /// True if the conversion is exact.
     pub is_exact: bool,
 }
 
-/// Differences below this share are those of rounding.
+/// Relative tolerance for rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Glossmith's widths of glTF's roughness and strength. What is stretched more than Glossmith can has the longer width.
+/// Glossmith's widths from glTF's roughness and strength. Beyond Glossmith's limit, the longer width is kept.
 pub fn widths_from_gltf(roughness: f32, strength: f32) -> Widths {
     let across = f64::from(roughness).powi(2);
     let along = across + (1.0 - across) * f64::from(strength).powi(2);
@@ -58,9 +58,8 @@ pub fn gltf_from_widths(roughness: f32, anisotropy: f32) -> Widths {
     }
 }
 
-/// Gives a slot that was read as glTF tells it the roughness and anisotropy of ours. Where a texture varies the roughness,
-/// a copy of it gets the wider highlight, texel by texel; the anisotropy is that of its mean. Tells whether both widths are
-/// those of the file.
+/// Converts a slot from glTF's roughness and strength to ours. A varying roughness texture is copied with the wider
+/// highlight per texel; the anisotropy is that of its mean. Returns whether both widths are exact.
 pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bool {
     let strength = slot.anisotropy;
     let Some(place) = &mut slot.metallic_roughness_texture else {

@@ -11,7 +11,7 @@ use super::draco::decompress;
 
 /// The extensions of buffer views and buffers.
 pub(super) const EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
-/// The most bytes that meshopt may make of one, and beyond them: a block of 256 equal vertices takes a few bits a byte.
+/// Largest expansion by meshopt: factor, and additional bytes. A block of 256 equal vertices takes a few bits per byte.
 const MESHOPT_GROWTH: [usize; 2] = [2048, 1 << 16];
 
 #[derive(Deserialize)]
@@ -27,7 +27,7 @@ struct MeshoptView {
     filter: Option<String>,
 }
 
-/// The bytes of a buffer view that is compressed by meshopt; none where it is not.
+/// Bytes of a buffer view compressed by meshopt; `None` if not compressed.
 pub(super) fn meshopt_view(document: &Document, view: usize) -> Option<Result<Vec<u8>, String>> {
     let extensions = document.raw["bufferViews"][view].get("extensions")?;
     let found = EXTENSIONS.iter().find_map(|name| extensions.get(name))?;
@@ -57,7 +57,7 @@ fn read_meshopt(document: &Document, extension: &Json) -> Result<Vec<u8>, String
 pub(super) struct DracoPrimitive(PackedGeometry);
 
 impl DracoPrimitive {
-    /// Decompresses a primitive, given as its JSON; none where it is not compressed.
+    /// Decompresses a primitive from its JSON; `None` if not compressed.
     pub(super) fn read(document: &Document, primitive: &Json) -> Option<Result<Self, String>> {
         let extension = primitive.get("extensions")?.get("KHR_draco_mesh_compression")?;
         Some(decompress(document, primitive, extension).map(Self))
@@ -69,7 +69,7 @@ impl DracoPrimitive {
         indices.map_or_else(Vec::new, |indices| unsigned(ComponentType::U32, indices.bytes()))
     }
 
-    /// An attribute, as many components as it has; none where the primitive has it elsewhere.
+    /// An attribute with its components; `None` if stored elsewhere.
     pub(super) fn attribute<const N: usize>(&self, semantic: &str) -> Option<Vec<[f32; N]>> {
         let attribute = self.0.attributes().iter().find(|known| known.semantic() == semantic)?;
         let component = component_type(attribute.component_type())?;

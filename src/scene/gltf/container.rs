@@ -1,4 +1,4 @@
-//! The outer parts of a glTF file: GLB chunks, JSON, extensions, and the buffers and pictures beside it.
+//! Container of a glTF file: GLB chunks, JSON, extensions, and the buffers and images beside it.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,7 +17,7 @@ use crate::scene::files::Files;
 use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
-/// Extensions that change nothing here or are understood.
+/// Extensions that are supported or irrelevant.
 const UNDERSTOOD: [&str; 30] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
@@ -51,7 +51,7 @@ const UNDERSTOOD: [&str; 30] = [
     "MSFT_lod",
 ];
 
-/// Where a texture's picture may be other than in its `source`, the one that is preferred first.
+/// Extensions with a texture's image, preferred first.
 const TEXTURE_SOURCES: [&str; 4] = [
     "EXT_texture_webp",
     "KHR_texture_basisu",
@@ -66,9 +66,9 @@ pub(super) struct Document {
     pub files: Files,
     /// The JSON. Its indices may be out of range.
     pub root: json::Root,
-    /// The JSON once more, for what the crate does not know; without `extras`.
+    /// Raw JSON, for data unknown to the crate; without `extras`.
     pub raw: Json,
-    /// The contents of the buffers; empty where they are missing.
+    /// Contents of the buffers; empty if missing.
     pub buffers: Vec<Vec<u8>>,
     /// Buffer views that were compressed, as they are without.
     pub decompressed: HashMap<usize, Vec<u8>>,
@@ -77,7 +77,7 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// Reads a file with its buffers; its pictures are read when asked for.
+    /// Reads a file with its buffers; images are read on demand.
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
         let Plain(mut raw) = parse(path, text)?;
@@ -131,7 +131,7 @@ impl Document {
         part.get("extensions")?.get(name).cloned()
     }
 
-    /// Tells of extensions that are not known: what they change is not shown, the rest is.
+    /// Reports unknown extensions: their effects are not shown.
     fn check_extensions(&mut self, report: &mut ImportReport) {
         let is_known = |name: &String| UNDERSTOOD.contains(&name.as_str());
         let required = std::mem::take(&mut self.root.extensions_required);
@@ -149,7 +149,7 @@ impl Document {
         }
     }
 
-    /// Gives textures that have a picture in an extension's format only that picture.
+    /// Sets the image of textures whose image is in an extension.
     fn choose_pictures(&mut self) {
         let images = self.root.images.len();
         for (index, texture) in self.root.textures.iter_mut().enumerate() {
@@ -166,9 +166,9 @@ impl Document {
         }
     }
 
-    /// Lets the crate look for broken rules. Few of them matter here: every index is checked where it is used.
+    /// Validates the file with the crate. Few rules matter here: every index is checked at its use.
     fn check_rules(&mut self, report: &mut ImportReport) {
-        // The crate's own check of primitives looks up their positions without asking whether they are there.
+        // The crate's check of primitives does not verify that their positions exist.
         let accessors = self.root.accessors.len();
         let mut primitives = self.root.meshes.iter().flat_map(|mesh| &mesh.primitives);
         if primitives.any(|primitive| {
@@ -181,15 +181,15 @@ impl Document {
             report.note(Fate::Ignored, what, "");
             return;
         }
-        let mut tell = |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
+        let mut on_error = |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
             let path = path().to_string();
-            // A texture may leave its picture to an extension.
+            // A texture's image may be in an extension.
             let is_sourceless = path.ends_with("].source") && error == json::validation::Error::Missing;
             if !is_sourceless && !is_harmless(&path) {
                 report.note(Fate::Ignored, format!("a breach of the format's rules, {error}"), &path);
             }
         };
-        self.root.validate(&self.root, json::Path::new, &mut tell);
+        self.root.validate(&self.root, json::Path::new, &mut on_error);
     }
 
     fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {
@@ -269,14 +269,14 @@ impl Document {
             .ok_or_else(beyond)
     }
 
-    /// A part of a buffer, where it is there.
+    /// A range of a buffer, if present.
     pub fn slice(&self, buffer: usize, start: u64, length: u64) -> Option<&[u8]> {
         let end = usize::try_from(start.checked_add(length)?).ok()?;
         self.buffers.get(buffer)?.get(usize::try_from(start).ok()?..end)
     }
 }
 
-/// The JSON as the crate reads it, which asks for whole numbers without a point. Details that cannot be read are told.
+/// The JSON for the crate, which requires integers without a decimal point. Unreadable details are reported.
 fn root(raw: &mut Json, report: &mut ImportReport) -> serde_json::Result<json::Root> {
     let read = json::Root::deserialize(&*raw).or_else(|_| {
         without_points(raw);
@@ -295,8 +295,8 @@ fn check<T: serde::de::DeserializeOwned>(part: Json) -> serde_json::Result<()> {
     serde_json::from_value::<T>(part).map(|_| ())
 }
 
-/// Lists whose parts a scene can do without: what a part is called, and what stands for one that cannot be read, so that the
-/// others keep their numbers.
+/// Optional lists of a scene: the name of a part, and the replacement of an unreadable one, so that the others keep their
+/// indices.
 const DETAILS: [(&str, &str, &str, Check); 7] = [
     (
         "animations",
@@ -331,8 +331,7 @@ fn without_broken_details(raw: &mut Json, report: &mut ImportReport) {
     }
 }
 
-/// Adds what the crate asks for and the format leaves to the writer. Meshes that no node holds get one where there are no nodes
-/// at all.
+/// Adds data that the crate requires and the format leaves optional. Without any nodes, meshes get one each.
 fn complete(raw: &mut Json) {
     for scene in parts(raw, "scenes").filter_map(Json::as_object_mut) {
         scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
@@ -361,7 +360,7 @@ fn complete(raw: &mut Json) {
             }
         }
         if let Some(channels) = animation.get_mut("channels").and_then(Json::as_array_mut) {
-            // What an extension moves, or nothing.
+            // Target of an extension, or none.
             channels.retain(|channel| !channel["target"].is_object() || channel["target"].get("node").is_some());
         }
     }
@@ -373,7 +372,7 @@ fn complete(raw: &mut Json) {
     }
 }
 
-/// The parts of a list in an object; none where there is no list.
+/// Elements of a list in an object; empty without the list.
 fn parts<'a>(of: &'a mut Json, name: &str) -> impl Iterator<Item = &'a mut Json> {
     of.get_mut(name).and_then(Json::as_array_mut).into_iter().flatten()
 }
@@ -385,7 +384,7 @@ fn without_points(value: &mut Json) {
         Json::Object(values) => values.values_mut().for_each(without_points),
         Json::Number(number) if number.is_f64() => {
             let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 2f64.powi(53));
-            // Of a negative zero the sign would be lost.
+            // A negative zero would lose its sign.
             if let Some(whole) = whole.filter(|x| *x != 0.0 || x.is_sign_positive()) {
                 *number = (whole as i64).into();
             }
@@ -394,7 +393,7 @@ fn without_points(value: &mut Json) {
     }
 }
 
-/// Whether a breach of the rules at this place of the JSON changes no picture.
+/// Whether a violation at this JSON path does not affect the image.
 fn is_harmless(place: &str) -> bool {
     let ends = [
         ".bufferView",
@@ -424,7 +423,7 @@ fn check_version(path: &Path, raw: &Json) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// The JSON of a file's bytes, and where its binary chunk is.
+/// The JSON in a file's bytes, and its binary chunk.
 fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), ModelError> {
     let not_gltf = |reason: String| ModelError::NotGltf {
         path: path.to_owned(),
@@ -483,7 +482,7 @@ fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<Range<usize>>)> {
     (padded.len() < 8 || next_chunk(padded).is_some()).then_some((json, None))
 }
 
-/// The kind and the data of the first chunk, and what follows it.
+/// Kind and data of the first chunk, and the remaining bytes.
 fn next_chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     let (head, tail) = bytes.split_at_checked(8)?;
     let [a, b, c, d, kind @ ..] = <[u8; 8]>::try_from(head).ok()?;

@@ -12,7 +12,7 @@ use super::container::Document;
 #[cfg(feature = "draco")]
 pub(super) fn decompress(document: &Document, primitive: &Json, extension: &Json) -> Result<PackedGeometry, String> {
     use draco_gltf::{DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension};
-    /// Bytes that a byte may stand for, and beyond them: the entropy coder needs next to nothing for what it foresees.
+    /// Largest expansion: factor, and additional bytes. The entropy coder needs almost nothing for predictable data.
     const GROWTH: [u64; 2] = [4096, 1 << 20];
     let text = extension.to_string();
     let value = draco_gltf::JsonValue::parse(text.as_bytes())?;
@@ -26,13 +26,13 @@ pub(super) fn decompress(document: &Document, primitive: &Json, extension: &Json
         .with_max_faces(most / 4)
         .with_max_decoded_bytes(most);
     let mut contract = DracoPrimitiveContract::new().with_limits(limits);
-    // Only whether integers are fractions: what the accessors say of counts is often wrong, and never needed.
+    // Only the normalisation is used: counts in accessors are often wrong, and never needed.
     for (semantic, _) in extension.attributes() {
         let accessor = primitive["attributes"][semantic].as_u64();
         let accessor = accessor.and_then(|index| document.root.accessors.get(usize::try_from(index).ok()?));
         contract = contract.with_attribute(semantic, 0, accessor.is_some_and(|accessor| accessor.normalized));
     }
-    // The crate's checks leave gaps where a damaged stream makes it panic.
+    // The crate may panic on a damaged stream.
     crate::panics::contained(|| extension.decode(&payload, &contract))
         .ok_or("its stream contradicts itself")?
         .map_err(|error| error.to_string())

@@ -1,4 +1,4 @@
-//! The pictures of a file or beside it.
+//! Images inside a file or beside it.
 
 use std::borrow::Cow;
 
@@ -6,7 +6,7 @@ use super::container::Document;
 use crate::scene::model::ModelError;
 use crate::scene::picture::Encoded;
 
-/// What to call a picture: its name, its file or its number.
+/// Name of an image: its name, its file or its index.
 pub(super) fn name(document: &Document, index: usize) -> String {
     let image = document.root.images.get(index);
     let external = image
@@ -18,10 +18,11 @@ pub(super) fn name(document: &Document, index: usize) -> String {
         .unwrap_or_else(|| format!("image {index}"))
 }
 
-/// A picture as the file has it.
+/// An encoded image.
 ///
 /// # Errors
-/// Why it cannot be had, in a few words.
+///
+/// The reason, in a few words.
 pub(super) fn encoded(document: &Document, index: usize) -> Result<Encoded<'_>, String> {
     let image = document.root.images.get(index).ok_or("it is out of bounds")?;
     let name = name(document, index);

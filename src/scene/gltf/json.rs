@@ -1,4 +1,4 @@
-//! The JSON of a file without what other programs keep in it for themselves, of any size.
+//! JSON of a file without other programs' private data, which may be large.
 
 use std::fmt;
 

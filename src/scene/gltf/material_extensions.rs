@@ -106,12 +106,12 @@ impl Default for SpecularGlossiness {
     }
 }
 
-/// An extension of a material; none where the material has none, or where it is not as it should be.
+/// An extension of a material; `None` if absent or invalid.
 pub(super) fn extension<T: DeserializeOwned>(material: &Json, name: &str) -> Option<T> {
     T::deserialize(material.get("extensions")?.get(name)?).ok()
 }
 
-/// The extensions of a material of which [`extension`] can read nothing.
+/// Extensions of a material that [`extension`] cannot read.
 pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> {
     fn is_unreadable<T: DeserializeOwned>(material: &Json, name: &str) -> bool {
         let is_there = material.get("extensions").is_some_and(|all| all.get(name).is_some());
@@ -136,14 +136,14 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
 /// A number or list of an extension, and the key under which a material keeps it.
 struct Kept {
     extension: &'static str,
-    /// The number without which nothing of it shows.
+    /// Weight parameter of the extension.
     weight: &'static str,
     values: &'static [(&'static str, &'static str)],
-    /// What it is called in the report.
+    /// Name in the report.
     what: &'static str,
 }
 
-/// What the renderer cannot show yet.
+/// Extensions that are not supported yet.
 const KEPT: [Kept; 4] = [
     Kept {
         extension: "KHR_materials_sheen",
@@ -182,13 +182,12 @@ const KEPT: [Kept; 4] = [
     },
 ];
 
-/// The keys of a material's file under which it keeps what the renderer cannot show yet.
+/// Keys of a material file for unsupported parameters.
 pub fn kept_keys() -> impl Iterator<Item = &'static str> {
     KEPT.iter().flat_map(|kept| kept.values.iter().map(|(_, key)| *key))
 }
 
-/// What a material has that the renderer cannot show yet: values under the keys of a material's file, and what to call
-/// each.
+/// Unsupported parameters of a material: values under the keys of a material file, and their names.
 pub(super) fn kept(material: &Json) -> (Map<String, Json>, Vec<&'static str>) {
     let (mut values, mut names) = (Map::new(), Vec::new());
     for kept in &KEPT {

@@ -70,7 +70,7 @@ pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOpt
     })
 }
 
-/// All meshes of a scene in one.
+/// Joins all meshes of a scene.
 fn assemble(
     document: &Document,
     pose: &Pose,
@@ -130,7 +130,7 @@ fn assemble(
             left_out += 1;
             continue;
         }
-        // Joints have put a skinned mesh where it is.
+        // Joints have already placed a skinned mesh.
         let world_from_mesh = if joints.is_some() {
             DMat4::IDENTITY
         } else {
@@ -154,7 +154,7 @@ fn assemble(
     Ok((whole, objects))
 }
 
-/// Why a file shows nothing: something is missing, or it is damaged where it has triangles.
+/// Reason for an empty scene: a missing part, or damaged triangles.
 fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report: &ImportReport) -> ModelError {
     if let Some(name) = document.unknown_required.first() {
         return ModelError::Extension {
@@ -204,7 +204,7 @@ fn scene_names(document: &Document) -> Vec<String> {
         .collect()
 }
 
-/// How long the first animation takes, seconds; 0 where there is none.
+/// Length of the first animation in seconds; 0 without one.
 fn duration_s(document: &Document) -> f32 {
     let samplers = document
         .root

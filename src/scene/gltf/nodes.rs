@@ -1,4 +1,4 @@
-//! The nodes of the scene with what hangs on them: meshes, their instances, cameras and lights.
+//! Nodes of the scene with their contents: meshes, instances, cameras and lights.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -21,7 +21,7 @@ pub(super) struct MeshNode {
     pub world_from_node: DMat4,
 }
 
-/// What is in the scene.
+/// Contents of the scene.
 #[derive(Default)]
 pub(super) struct Contents {
     pub meshes: Vec<MeshNode>,
@@ -34,7 +34,7 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
     let root = &document.root;
     let mut contents = Contents::default();
     let mut seen = vec![false; root.nodes.len()];
-    // The node, where its parent is, and whether that is hidden.
+    // Node, parent's transform, and whether the parent is hidden.
     let mut open: Vec<(usize, DMat4, bool)> = scene_roots(root, scene)
         .into_iter()
         .map(|node| (node, DMat4::IDENTITY, false))
@@ -64,20 +64,19 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
     contents
 }
 
-/// Whether the file hides what hangs on a node, but for cameras (KHR_node_visibility).
+/// Whether the file hides a node's contents, except cameras (KHR_node_visibility).
 fn hides(document: &Document, node: usize) -> bool {
     let extension = document.extension(&document.raw["nodes"][node], "KHR_node_visibility");
     extension.is_some_and(|extension| extension["visible"] == false)
 }
 
-/// What to call a node.
+/// Name of a node.
 pub(super) fn node_name(root: &json::Root, node: usize) -> String {
     let name = root.nodes.get(node).and_then(|node| node.name.clone());
     name.unwrap_or_else(|| format!("node {node}"))
 }
 
-/// The topmost nodes of a scene; of the default one, of the first where none is the default; all topmost nodes where
-/// there is no scene.
+/// Root nodes of a scene: of the default one, or the first; all root nodes without a scene.
 fn scene_roots(root: &json::Root, scene: Option<usize>) -> Vec<usize> {
     let scene = scene.unwrap_or_else(|| root.scene.map_or(0, |scene| scene.value()));
     match root.scenes.get(scene).or(root.scenes.first()) {
@@ -145,7 +144,7 @@ impl Contents {
     }
 }
 
-/// Where a node's instances are in its space (EXT_mesh_gpu_instancing); none where it has none.
+/// Transforms of a node's instances in its space (EXT_mesh_gpu_instancing); `None` without instances.
 fn instances(document: &Document, node: usize, report: &mut ImportReport) -> Option<Vec<DMat4>> {
     let extension = document.extension(&document.raw["nodes"][node], "EXT_mesh_gpu_instancing")?;
     let name = node_name(&document.root, node);
@@ -208,7 +207,7 @@ fn camera_at(camera: &json::Camera, name: &str, world_from_node: DMat4) -> Optio
     })
 }
 
-/// Tells what of a camera its bookmark does not keep.
+/// Reports camera properties that a bookmark cannot store.
 fn note_camera(camera: &json::Camera, seen: &ModelCamera, report: &mut ImportReport) {
     if let ModelLens::Orthographic(_) = seen.lens {
         report.note(

@@ -1,4 +1,4 @@
-//! The pose of a model: where its nodes are, how its morph targets are mixed, and what that makes of skinned meshes.
+//! Pose of a model: node transforms, morph target weights and skinning.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use super::container::Document;
 pub(super) struct Pose {
     /// The nodes that an animation moves.
     moved: HashMap<usize, Placement>,
-    /// Where each node is, whether or not it is in the scene; empty where no skin asks.
+    /// World transform of every node, in the scene or not; empty without skins.
     world_from_node: Vec<DMat4>,
     /// Weights of morph targets of nodes that an animation changes.
     weights: HashMap<usize, Vec<f32>>,
@@ -25,7 +25,7 @@ struct Placement {
     translation: DVec3,
     rotation: DQuat,
     scale: DVec3,
-    /// Instead of the three, where nothing moves the node.
+    /// Matrix instead of the three, for nodes without animation.
     matrix: Option<DMat4>,
 }
 
@@ -48,7 +48,7 @@ impl Placement {
     }
 }
 
-/// A rotation of length 1, none where there is no length.
+/// Normalised rotation; the identity for a zero quaternion.
 pub(super) fn unit_rotation(xyzw: [f64; 4]) -> DQuat {
     let rotation = DQuat::from_array(xyzw);
     if rotation.length_squared() > 0.0 && rotation.is_finite() {
@@ -59,14 +59,14 @@ pub(super) fn unit_rotation(xyzw: [f64; 4]) -> DQuat {
 }
 
 impl Pose {
-    /// The nodes where the file puts them or, with a time, where its first animation has moved them then.
+    /// The rest pose, or that of the first animation at a time.
     pub(super) fn new(document: &Document, time_s: Option<f32>) -> Self {
         let nodes = &document.root.nodes;
         let mut moved: HashMap<usize, Placement> = HashMap::new();
         let mut weights = HashMap::new();
         if let (Some(time_s), Some(animation)) = (time_s, document.root.animations.first()) {
             for channel in &animation.channels {
-                // A channel that cannot be read moves nothing.
+                // An unreadable channel is ignored.
                 let _ = animate(document, animation, channel, time_s, &mut moved, &mut weights);
             }
         }
@@ -87,7 +87,7 @@ impl Pose {
         moved.unwrap_or_else(|| Placement::of(node)).parent_from_node()
     }
 
-    /// The weights of a node's morph targets: those of an animation, else its own, else its mesh's.
+    /// Weights of a node's morph targets: from the animation, else the node, else the mesh.
     pub(super) fn weights<'a>(&'a self, document: &'a Document, node: usize) -> &'a [f32] {
         let animated = self.weights.get(&node);
         let node = document.root.nodes.get(node);
@@ -100,7 +100,7 @@ impl Pose {
         mesh.and_then(|mesh| mesh.weights.as_deref()).unwrap_or_default()
     }
 
-    /// Where each joint of a skin has moved what is bound to it; none where the skin is not there.
+    /// Joint matrices of a skin; `None` without the skin.
     pub(super) fn joints(&self, document: &Document, skin: usize) -> Option<Vec<DMat4>> {
         let skin = document.root.skins.get(skin)?;
         let inverse = skin
@@ -115,7 +115,7 @@ impl Pose {
     }
 }
 
-/// The transforms of all nodes, from those that are no node's child down.
+/// World transforms of all nodes, from the roots down.
 fn world_transforms(nodes: &[json::Node], parent_from_node: impl Fn(usize) -> DMat4) -> Vec<DMat4> {
     let mut world = vec![DMat4::IDENTITY; nodes.len()];
     let mut seen = vec![false; nodes.len()];
@@ -145,7 +145,7 @@ pub(super) fn root_nodes(nodes: &[json::Node]) -> Vec<usize> {
     (0..nodes.len()).filter(|&node| !is_child[node]).collect()
 }
 
-/// Puts what a channel of an animation says of its node; nothing where it cannot be read.
+/// Applies an animation channel to its node; `None` if unreadable.
 fn animate(
     document: &Document,
     animation: &json::Animation,

@@ -14,20 +14,20 @@ use crate::scene::mesh::Mesh;
 use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
-/// Least share of a surface's area by which its sides differ where it counts as open.
+/// Relative imbalance of a surface's area vectors from which it counts as open.
 const OPEN: f64 = 0.01;
 
-/// What bends a mesh at a node.
+/// Deformation of a mesh at a node.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Bending<'a> {
     /// Weights of the morph targets.
     pub weights: &'a [f32],
-    /// Where the joints of the skin move what is bound to them.
+    /// Joint matrices of the skin.
     pub joints: Option<&'a [DMat4]>,
 }
 
-/// The triangles of a mesh, in its own space or, where it is skinned, in that of the scene; with slots given by
-/// `materials`. What cannot be read is left out, which the report tells.
+/// Triangles of a mesh, in its own space, or in scene space if skinned; with slots given by `materials`. Unreadable parts
+/// are dropped and reported.
 pub(super) fn read_mesh(
     document: &Document,
     index: usize,
@@ -70,7 +70,7 @@ pub(super) fn read_mesh(
     whole
 }
 
-/// Whether the triangles of the chosen slots surely are no closed surface: the areas of one, as vectors, sum up to nothing.
+/// Whether the triangles of the chosen slots are certainly not a closed surface: a closed one's area vectors sum to zero.
 fn is_open(mesh: &Mesh, is_chosen: impl Fn(u32) -> bool) -> bool {
     let (mut sum, mut total) = (DVec3::ZERO, 0.0);
     for triangle in (0..mesh.triangles.len()).filter(|triangle| is_chosen(mesh.slots[*triangle])) {
@@ -94,7 +94,7 @@ pub(super) fn has_triangles(document: &Document, mesh: usize) -> bool {
     primitives.any(|primitive| triangle_mode(primitive).is_some() && has_places(primitive))
 }
 
-/// How a primitive's triangles are told; none where it has points or lines.
+/// Triangle mode of a primitive; `None` for points and lines.
 fn triangle_mode(primitive: &Primitive) -> Option<Mode> {
     match primitive.mode {
         Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => Some(mode),
@@ -186,7 +186,7 @@ impl Reader<'_> {
         if let Some(normals) = normals {
             mesh.normals = normals.into_iter().map(Vec3::from_array).collect();
         }
-        // The format has tangents ignored where there are no normals.
+        // The format ignores tangents without normals.
         let tangents = tangents.filter(|_| has_normals);
         let has_tangents = tangents.is_some();
         if let Some(tangents) = tangents {
@@ -239,7 +239,7 @@ impl Reader<'_> {
         self.one_a_vertex(read, semantic, count, report)
     }
 
-    /// What was read where it is one value a vertex.
+    /// The values, if there is one per vertex.
     fn one_a_vertex<T>(
         &self,
         read: Result<Option<Vec<T>>, ModelError>,
@@ -262,13 +262,13 @@ impl Reader<'_> {
         }
     }
 
-    /// A set of texture coordinates, where one is wanted and there.
+    /// A set of texture coordinates, if used and present.
     fn uvs(&self, set: Option<u32>, count: usize, report: &mut ImportReport) -> Option<Vec<Vec2>> {
         let uvs: Option<Vec<[f32; 2]>> = self.optional(&Semantic::TexCoords(set?), count, report);
         uvs.map(|uvs| uvs.into_iter().map(finite_uv).collect())
     }
 
-    /// Linear colours and opacities; empty where there are none.
+    /// Linear colours and opacities; empty if absent.
     fn colors(&self, count: usize, report: &mut ImportReport) -> Vec<[f32; 4]> {
         let semantic = Semantic::Colors(0);
         let read = match self.draco.as_ref().and_then(|draco| draco.attribute("COLOR_0")) {
@@ -382,7 +382,7 @@ impl Reader<'_> {
     /// The triangles whose vertices are there.
     fn triangles(&self, mode: Mode, count: usize, report: &mut ImportReport) -> Result<Vec<[u32; 3]>, ModelError> {
         let mut triangles = match (&self.draco, self.primitive.indices) {
-            // Whatever they were before, Draco makes lists of them.
+            // Draco always produces triangle lists.
             (Some(draco), _) => triangles(Mode::Triangles, &draco.indices()),
             (None, Some(accessor)) => triangles(mode, &self.document.read_indices(accessor.value())?),
             (None, None) => triangles(mode, &(0..count as u32).collect::<Vec<_>>()),

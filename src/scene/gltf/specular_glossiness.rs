@@ -1,13 +1,13 @@
-//! The specular-glossiness workflow as metallic-roughness.
+//! Conversion of the specular-glossiness workflow to metallic-roughness.
 //!
-//! Source: Khronos, KHR_materials_pbrSpecularGlossiness, "conversion between the workflows": the metalness is what makes
-//! both give the same brightness of diffuse and specular reflection, where dielectrics reflect 4 %.
+//! Source: Khronos, KHR_materials_pbrSpecularGlossiness, "conversion between the workflows". The metalness is chosen so that
+//! both have the same brightness of diffuse and specular reflection, with dielectrics at 4 %.
 
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::Texture;
 
-/// What dielectrics reflect at normal incidence.
+/// Reflectance of dielectrics at normal incidence.
 pub(super) const DIELECTRIC: f64 = 0.04;
 /// Below this share a quotient would be noise.
 const EPSILON: f64 = 1e-6;

@@ -26,8 +26,8 @@ pub(super) fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
     mesh
 }
 
-/// What normals are multiplied by, up to a positive factor: the inverse transpose, as the matrix of cofactors so that
-/// one that flattens the mesh works too.
+/// Transform of normals, up to a positive factor: the inverse transpose, as the cofactor matrix, which also works for
+/// flattening transforms.
 pub(super) fn normal_matrix(linear: DMat3) -> DMat3 {
     let largest = linear
         .to_cols_array()

@@ -5,7 +5,7 @@
 pub(super) struct Masks {
     /// Bytes a texel, at most 4.
     pub bytes: usize,
-    /// The bits of red, green, blue and opacity; none where a channel is not there.
+    /// Bit masks of red, green, blue and opacity; 0 for a missing channel.
     pub channels: [u32; 4],
 }
 
@@ -21,7 +21,7 @@ const COLORS: u32 = 0x40;
 const GREY: u32 = 0x2_0000;
 
 impl Masks {
-    /// Those of a DDS file that says them itself.
+    /// Masks of a DDS file that states them.
     pub fn of_dds(bytes: &[u8]) -> Option<Self> {
         let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
         let (flags, bits) = (number(80)?, number(88)?);
@@ -53,7 +53,7 @@ impl Masks {
     }
 }
 
-/// The code of 8 bits in some bits of a word; none where there are no bits.
+/// The masked bits of a word as an 8-bit code; `None` for an empty mask.
 fn code(word: u32, mask: u32) -> Option<u8> {
     let [value, most] = [word & mask, mask].map(|bits| u64::from(bits.checked_shr(mask.trailing_zeros()).unwrap_or(0)));
     Some(((value * 255 + most / 2).checked_div(most)?) as u8)

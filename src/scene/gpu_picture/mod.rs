@@ -1,5 +1,5 @@
-//! Pictures in the containers of GPUs, KTX2 and DDS: flat ones, and the six faces of cubes. Texels are decoded by the
-//! basisu, bcdec_rs and half crates.
+//! Images in GPU containers, KTX2 and DDS: flat ones, and the six faces of cubes. Texels are decoded by the basisu, bcdec_rs
+//! and half crates.
 
 mod masks;
 
@@ -18,14 +18,14 @@ use crate::panics::contained;
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// The first bytes of a DDS file.
 const DDS: [u8; 4] = *b"DDS ";
-/// What a DDS file is marked by whose blocks are BC3's with red where opacity is.
+/// DDS code for BC3 blocks with red in the opacity channel.
 const RXGB: u32 = u32::from_le_bytes(*b"RXGB");
-/// Bytes that a byte of Zstandard may stand for, and beyond them.
+/// Largest Zstandard expansion: factor, and additional bytes.
 const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
 /// The most columns or rows.
 const SIDE_MAX: u32 = 1 << 16;
 
-/// One picture, or one face of a cube.
+/// One image, or one face of a cube.
 #[derive(Clone, Debug)]
 pub(super) struct Face {
     /// Columns.
@@ -45,18 +45,18 @@ pub(super) enum Texels {
     Light(Vec<f32>),
 }
 
-/// How texels are laid down.
+/// Layout of texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Layout {
-    /// Bytes a texel, and where red, green, blue and opacity are among them; 255 where they are not.
+    /// Bytes per texel, and positions of red, green, blue and opacity in it; 255 for a missing one.
     Bytes(usize, [u8; 4]),
     /// Some bits of a texel's bytes for each channel.
     Masks(Masks),
-    /// So many numbers a texel: 65535 is one.
+    /// 16-bit integers per texel: 65535 is 1.
     Shorts(usize),
-    /// So many numbers of 16 bits with a point.
+    /// 16-bit floats per texel.
     Halves(usize),
-    /// So many of 32.
+    /// 32-bit floats per texel.
     Floats(usize),
     /// 9 bits each with an exponent that they share.
     SharedExponent,
@@ -66,15 +66,15 @@ enum Layout {
     Blocks(Block, usize),
 }
 
-/// How a block of texels is told.
+/// Block compression formats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Block {
     Bc1,
     Bc2,
     Bc3,
-    /// With red where opacity is.
+    /// BC3 with red in the opacity channel.
     Rxgb,
-    /// Of signed numbers or not.
+    /// BC4; true for signed values.
     Bc4(bool),
     Bc5(bool),
     Bc6h(bool),
@@ -144,10 +144,10 @@ fn of_vulkan(format: u32) -> Option<Layout> {
     })
 }
 
-/// Why a picture cannot be had, in a few words.
+/// Errors of decoding.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// It is as it should be, and not read.
+    /// Valid, but unsupported.
     NotRead(String),
     /// Its bytes contradict each other.
     Damaged(String),
@@ -239,16 +239,17 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
     })
 }
 
-/// Whether a file's bytes begin as those of such a container.
+/// Whether bytes start like such a container.
 pub(super) fn is_container(bytes: &[u8]) -> bool {
     bytes.starts_with(&KTX2) || bytes.starts_with(&DDS)
 }
 
-/// The picture, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), as large as there are but no larger than `side_max`
-/// (of a picture, of a face), unless the smallest is.
+/// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
+/// a face), or the smallest level.
 ///
 /// # Errors
-/// Why it cannot be had.
+///
+/// The reason.
 pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
     // Damaged files may fail assertions inside the crates instead of giving errors.
     let decoded = contained(|| {
@@ -321,7 +322,7 @@ impl<'a> Ktx2<'a> {
         Ok(faces.map(|bytes| layout.face(width, height, bytes)).collect())
     }
 
-    /// So many bytes of a level, as they are without compression.
+    /// The first `size` bytes of a level, decompressed.
     fn level(&self, level: u32, size: usize) -> Option<Cow<'a, [u8]>> {
         let entry = self.bytes.get(80 + 24 * level as usize..)?;
         let number = |at: usize| usize::try_from(u64::from_le_bytes(entry.get(at..at + 8)?.try_into().ok()?)).ok();
@@ -393,7 +394,7 @@ impl Layout {
         columns.checked_mul(rows)?.checked_mul(size)
     }
 
-    /// The picture that bytes hold; exactly as many as it needs.
+    /// Decodes an image from exactly the bytes that it needs.
     fn face(self, width: u32, height: u32, bytes: &[u8]) -> Face {
         let texels = match self {
             Self::Bytes(size, places) => {
@@ -478,7 +479,7 @@ impl<T: Copy + Default> Blocks<T> {
         }
     }
 
-    /// Decodes blocks, row by row; what lies beyond the picture is left out.
+    /// Decodes blocks, row by row; texels beyond the image are skipped.
     fn fill<'a>(&mut self, blocks: impl Iterator<Item = &'a [u8]>, decode: impl Fn(&[u8], &mut [T], usize)) {
         let (across, pitch) = (self.width.div_ceil(4), 4 * self.channels);
         let mut decoded = vec![T::default(); 4 * pitch];
@@ -494,7 +495,7 @@ impl<T: Copy + Default> Blocks<T> {
     }
 }
 
-/// Four numbers a texel of so many: one is grey, two are red and green, opacity is 1 where it is not there.
+/// RGBA per texel from `channels` numbers: one is grey, two are red and green; opacity defaults to 1.
 fn rgba(numbers: impl Iterator<Item = f32>, channels: usize) -> Vec<f32> {
     let mut texels = Vec::new();
     let mut texel = [0.0; 4];

@@ -1,4 +1,4 @@
-//! The binary hierarchy that all others are made of, built by obvhs.
+//! Builder of the binary tree, by obvhs.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -11,19 +11,19 @@ use rayon::prelude::*;
 use super::tree::Tree;
 use crate::scene::loading::{Cancelled, Loading};
 
-/// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
+/// From this many triangles on, build time matters more than the last 3 % of visited nodes.
 const MANY: usize = 200_000;
-/// Cells an axis of the grid whose cells are clusters: so many that only duplicates meet, or so few that the builder's time,
-/// which is quadratic where all boxes overlap, does not matter.
+/// Cells per axis of the clustering grid. Fine: only duplicates share a cell. Coarse: so few cells that the builder's
+/// quadratic time for overlapping boxes does not matter.
 const FINE: u32 = 1 << 21;
 const COARSE: u32 = 1 << 4;
-/// Fewer triangles than this are built in no time whatever they are.
+/// Up to this many triangles, overlap does not matter.
 const SLIVERS_FROM: usize = 1 << 12;
-/// The share of the bounds' area that a box of slivers has at least, in the mean.
+/// Mean share of the bounds' area per box from which triangles count as slivers.
 const SLIVERS_SHARE: f64 = 1.0 / 16.0;
 
-/// The tree over triangles, and the order of its leaves. More triangles than `part_max` are halved along the longest side
-/// of their bounds until they are parts, of which each is built by itself: building takes several hundred bytes a triangle.
+/// Builds the tree over `count` triangles. Also returns the order of its leaves. More than `part_max` triangles are halved
+/// along the longest side of their bounds, because building takes several hundred bytes per triangle.
 pub(super) fn tree(
     count: u32,
     part_max: u32,
@@ -45,7 +45,7 @@ pub(super) fn tree(
     Ok((tree, order))
 }
 
-/// A tree in the making, part by part.
+/// Builder of a tree, part by part.
 struct Parts<'a, F> {
     tree: &'a mut Tree,
     /// Triangles in the whole tree.
@@ -56,7 +56,7 @@ struct Parts<'a, F> {
 }
 
 impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
-    /// Adds the nodes over triangles, and puts these into its order.
+    /// Appends the nodes over `triangles` and sorts these by leaf.
     fn build(&mut self, triangles: &mut [u32]) -> Result<(), Cancelled> {
         let percent = 100 * self.tree.left_leaves.len() / self.count as usize;
         self.loading.step(format!("hierarchy of triangles, {percent} %"))?;
@@ -78,7 +78,7 @@ impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
     }
 }
 
-/// Puts those triangles first whose centres come first along the longest side of the bounds of all centres.
+/// Partitions triangles at `middle` by their centres, along the longest side of the centres' bounds.
 fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + Sync)) {
     let centers = || triangles.par_iter().map(|&triangle| box_of(triangle).center());
     let low = centers().reduce(|| Vec3A::INFINITY, Vec3A::min);
@@ -88,7 +88,7 @@ fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + 
         .par_iter()
         .map(|&triangle| (box_of(triangle).center()[axis], triangle))
         .collect();
-    // Equal places by their numbers, so that the order is always the same.
+    // Ties break by index, so that the order is deterministic.
     keyed.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     triangles
         .iter_mut()
@@ -96,15 +96,15 @@ fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + 
         .for_each(|(place, (_, triangle))| *place = triangle);
 }
 
-/// The hierarchy over the boxes of triangles, in units of the bounding radius, with one triangle a leaf.
+/// Builds a BVH over boxes, in units of the bounding radius, with one triangle per leaf.
 ///
-/// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
+/// Without spatial splits: each triangle is in one leaf, so that triangles can be stored in the order of leaves.
 fn build(boxes: &[Aabb], loading: &Loading) -> Result<Bvh2, Cancelled> {
     let clusters = Clusters::new(boxes, if are_slivers(boxes) { COARSE } else { FINE });
     loading.check()?;
     let mut binary = clusters.build_binary(boxes);
     let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
-    // Rounds that take ever fewer nodes, from the top.
+    // Optimisation rounds over ever fewer nodes, from the top.
     for part in (1..32).step_by(2).map(|round| 1.0 / round as f32) {
         loading.check()?;
         ReinsertionOptimizer::default().run(&mut binary, reinsertion, Some(vec![part]));
@@ -113,21 +113,21 @@ fn build(boxes: &[Aabb], loading: &Loading) -> Result<Bvh2, Cancelled> {
     Ok(binary)
 }
 
-/// Whether boxes mostly lie over each other, as those of a polygon's triangles that all begin at one corner.
+/// Whether boxes mostly overlap, as those of a polygon's triangles that share a corner.
 fn are_slivers(boxes: &[Aabb]) -> bool {
     let whole = boxes.iter().fold(Aabb::INVALID, |all, aabb| all.union(aabb));
     let areas: f64 = boxes.iter().map(|aabb| f64::from(aabb.half_area())).sum();
     boxes.len() > SLIVERS_FROM && areas > SLIVERS_SHARE * boxes.len() as f64 * f64::from(whole.half_area())
 }
 
-/// Triangles whose centres are in the same cell of a grid: of a very fine one, such as duplicates.
+/// Clusters of triangles with centres in the same grid cell; in a fine grid these are duplicates.
 ///
-/// The builder pairs nearest neighbours and makes hardly any pairs where all are equally near: thousands of equal boxes
-/// would take it quadratic time. It sees each cluster as one box; below that come balanced trees.
+/// The builder pairs nearest neighbours and finds hardly any pairs among equal boxes: thousands of them would take quadratic
+/// time. So it builds over clusters, and balanced trees continue below.
 struct Clusters {
-    /// The triangles, cluster by cluster.
+    /// Triangle indices, cluster by cluster.
     members: Vec<u32>,
-    /// Where in `members` each cluster begins, and its end.
+    /// Start of each cluster in `members`, and the end of the last.
     starts: Vec<u32>,
 }
 
@@ -135,7 +135,7 @@ impl Clusters {
     fn new(boxes: &[Aabb], cells_per_axis: u32) -> Self {
         let cell_of = |aabb: &Aabb| {
             let cells_per_axis = cells_per_axis as f32;
-            // From [−1, 1]; the ground's centres are beyond and meet in the outermost cells.
+            // From [−1, 1]; the ground's centres lie outside and share the outermost cells.
             let place = ((aabb.min + aabb.max) * 0.25 + 0.5) * cells_per_axis;
             let [x, y, z] = place
                 .clamp(Vec3A::ZERO, Vec3A::splat(cells_per_axis - 1.0))
@@ -158,7 +158,7 @@ impl Clusters {
         &self.members[start..end]
     }
 
-    /// A binary hierarchy over the clusters.
+    /// Builds a BVH over the clusters' boxes.
     fn build_binary(&self, boxes: &[Aabb]) -> Bvh2 {
         let count = self.starts.len() as u32 - 1;
         let cluster_boxes: Vec<Aabb> = (0..count).map(|cluster| union(self.members(cluster), boxes)).collect();
@@ -171,7 +171,7 @@ impl Clusters {
         )
     }
 
-    /// Replaces leaves that are clusters by leaves that are triangles.
+    /// Replaces each cluster's leaf by a balanced tree of triangles.
     fn expand(&self, binary: &mut Bvh2, boxes: &[Aabb]) {
         for node in 0..binary.nodes.len() {
             if binary.nodes[node].is_leaf() {
@@ -183,7 +183,7 @@ impl Clusters {
     }
 }
 
-/// Makes a node the root of a balanced tree over triangles.
+/// Turns a node into the root of a balanced tree over triangles.
 fn split(nodes: &mut Vec<Bvh2Node>, node: usize, triangles: &[u32], boxes: &[Aabb]) {
     let aabb = union(triangles, boxes);
     if let [triangle] = triangles {

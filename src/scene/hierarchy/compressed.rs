@@ -1,4 +1,4 @@
-//! The GPU's hierarchy: nodes of eight children in 80 bytes (CWBVH, Ylitie, Karras and Laine 2017), by obvhs.
+//! The GPU's hierarchy: eight-wide nodes of 80 bytes (CWBVH, Ylitie, Karras and Laine 2017), by obvhs.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -8,22 +8,22 @@ use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 
 use super::tree::BoxedTree;
 
-/// Up to this many triangles share a leaf (the format's limit).
+/// Triangles per leaf at most (the format's limit).
 const LEAF_TRIANGLES: u32 = 3;
 
-/// The hierarchy over a tree's triangles; its `primitive_indices` say which triangle each entry of a leaf is.
+/// Compresses a tree; `primitive_indices` maps leaf entries to triangles.
 pub(super) fn compress(tree: &BoxedTree<'_>) -> CwBvh {
     let root = tree.root;
     let mut nodes = vec![Bvh2Node::default()];
     let mut open = vec![(root, 0)];
-    while let Some((node, place)) = open.pop() {
+    while let Some((node, index)) = open.pop() {
         let bounds: Aabb = *tree.bounds(node);
         if node.count == 1 {
-            nodes[place] = Bvh2Node::new(bounds, 1, node.first);
+            nodes[index] = Bvh2Node::new(bounds, 1, node.first);
             continue;
         }
         let children = nodes.len();
-        nodes[place] = Bvh2Node::new(bounds, 0, children as u32);
+        nodes[index] = Bvh2Node::new(bounds, 0, children as u32);
         nodes.extend([Bvh2Node::default(); 2]);
         open.extend(tree.tree.sides(node).into_iter().zip(children..));
     }

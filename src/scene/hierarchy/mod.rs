@@ -1,8 +1,8 @@
-//! The hierarchies of boxes by which rays find triangles: one for each engine, built when it is first needed.
+//! The bounding volume hierarchies (BVHs) over triangles: one per engine, built on first use.
 
 mod binary;
-mod bundle;
 mod compressed;
+mod interval;
 mod packet;
 #[cfg(test)]
 mod tests;
@@ -17,45 +17,44 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
-pub(in crate::scene) use bundle::Doors;
-pub(in crate::scene) use packet::Found;
-pub use packet::{PACKET, Packet, WAYS, ray_way};
+pub(in crate::scene) use interval::EntryPoints;
+pub(in crate::scene) use packet::PacketHits;
+pub use packet::{OCTANTS, PACKET, Packet, ray_octant};
 use tree::{BoxedTree, Tree};
 pub(in crate::scene) use wide::Wide;
 
 use super::loading::{Cancelled, Loading};
 
-/// Boxes are grown by this on every side, in units of the bounding radius (some 16 roundings of a coordinate of 1), so
-/// that rounding in a ray's test against a box never loses a triangle in it.
+/// Margin of every box, in units of the bounding radius (about 16 roundings of a coordinate of 1). It keeps rounding in a
+/// ray's test against a box from losing a triangle in it.
 const BOX_MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
-/// Deepest hierarchy that a ray's stack has room for (`STACK_SIZE` in `shaders/scene/bvh.wgsl`).
+/// Levels that the traversal stack has room for (`STACK_SIZE` in `shaders/scene/bvh.wgsl`).
 const DEPTH_MAX: usize = 32;
 
-/// Triangles of which a hierarchy is built at once: what it takes meanwhile, some 300 bytes a triangle, is not asked for all
-/// of a large model.
+/// Triangles that are built into a hierarchy at once, because building takes about 300 bytes per triangle.
 const PART_MAX: u32 = 1 << 20;
 
-/// How triangles, in the order in which it wants them stored, are found by rays.
+/// The hierarchies over a set of triangles, which are stored in its order of leaves.
 #[derive(Clone, Debug, Default)]
 pub struct Hierarchy {
-    /// Nothing where there are no triangles.
+    /// `None` without triangles.
     tree: Option<Tree>,
     wide: OnceLock<Wide>,
     compressed: OnceLock<Compressed>,
 }
 
-/// The hierarchy as the GPU reads it.
+/// The GPU's hierarchy.
 #[derive(Clone, Debug, Default)]
 pub struct Compressed {
-    /// None where there are no triangles.
+    /// Empty without triangles.
     pub nodes: Vec<CwBvhNode>,
-    /// The triangles in the order of the leaves' entries, in which the GPU has them.
+    /// Triangle indices in the order of the leaves' entries, which is the GPU's order.
     pub triangles: Vec<u32>,
 }
 
 impl Compressed {
-    /// Where in the GPU's order each triangle is.
+    /// Position of each triangle in the GPU's order.
     pub fn places(&self) -> Vec<u32> {
         let mut places = vec![0; self.triangles.len()];
         for (place, &triangle) in (0..).zip(&self.triangles) {
@@ -66,8 +65,8 @@ impl Compressed {
 }
 
 impl Hierarchy {
-    /// The hierarchy over so many triangles, and the order in which they are to be stored. Corners are in units of the
-    /// bounding radius.
+    /// Builds the hierarchy over `count` triangles. Also returns the order in which they are to be stored. Corners are in
+    /// units of the bounding radius.
     pub(super) fn new(
         count: usize,
         corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync,
@@ -85,45 +84,45 @@ impl Hierarchy {
         Ok((hierarchy, order))
     }
 
-    /// Bytes in memory of what has been built.
+    /// Memory in bytes of the hierarchies built so far.
     pub(super) fn bytes(&self) -> usize {
-        let compressed = |made: &Compressed| size_of_val(&made.nodes[..]) + size_of_val(&made.triangles[..]);
+        let compressed = |built: &Compressed| size_of_val(&built.nodes[..]) + size_of_val(&built.triangles[..]);
         self.tree.as_ref().map_or(0, Tree::bytes)
             + self.wide.get().map_or(0, Wide::bytes)
             + self.compressed.get().map_or(0, compressed)
     }
 
-    /// The processor's; `corners` of the triangles as they are stored.
+    /// The CPU's hierarchy; `corners` are those of the triangles as stored.
     pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Wide {
         self.wide.get_or_init(|| {
             let make = |tree: &Tree| Wide::new(tree, PART_MAX, &corners);
-            self.made(make, |wide| wide.depth).unwrap_or_default()
+            self.built(make, |wide| wide.depth).unwrap_or_default()
         })
     }
 
-    /// The GPU's; `corners` of the triangles as they are stored.
+    /// The GPU's hierarchy; `corners` are those of the triangles as stored.
     pub(super) fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Compressed {
         self.compressed.get_or_init(|| {
             let make = |tree: &Tree| compressed::compress(&BoxedTree::new(tree, tree.root(), &corners));
-            let made: CwBvh = self.made(make, compressed::depth).unwrap_or_default();
+            let built: CwBvh = self.built(make, compressed::depth).unwrap_or_default();
             Compressed {
-                nodes: made.nodes,
-                triangles: made.primitive_indices,
+                nodes: built.nodes,
+                triangles: built.primitive_indices,
             }
         })
     }
 
-    /// A hierarchy made of the tree; where that is too deep, of the tree that halves the triangles, whose depth is a third
-    /// of the binary logarithm of their number.
-    fn made<H>(&self, make: impl Fn(&Tree) -> H, depth: impl Fn(&H) -> usize) -> Option<H> {
+    /// Converts the tree to a hierarchy. If that is too deep, converts the balanced tree instead, whose depth is a third of
+    /// the binary logarithm of the number of triangles.
+    fn built<H>(&self, make: impl Fn(&Tree) -> H, depth: impl Fn(&H) -> usize) -> Option<H> {
         let tree = self.tree.as_ref()?;
-        let made = make(tree);
-        if depth(&made) <= DEPTH_MAX {
-            return Some(made);
+        let built = make(tree);
+        if depth(&built) <= DEPTH_MAX {
+            return Some(built);
         }
-        // Triangles each a fraction of the last make a chain: halves instead, which rays pass more slowly but never in vain.
-        log::debug!("a hierarchy of {} levels is built anew in halves", depth(&made));
-        drop(made);
+        // Triangles each a fraction of the last make a chain. The balanced tree is slower to traverse, but fits the stack.
+        log::debug!("a hierarchy of {} levels is rebuilt as a balanced tree", depth(&built));
+        drop(built);
         Some(make(&tree.of_halves()))
     }
 }

@@ -1,32 +1,33 @@
-//! Sixteen rays that go much the same way through the processor's hierarchy together: a node's eight boxes are met by the
-//! interval of all rays first, so that rays through empty space end at once.
+//! Packets of sixteen coherent rays through the CPU's hierarchy. The interval of all rays tests a node's eight boxes first,
+//! so that rays through empty space end at once.
 //!
-//! Which rays meet a block's box or a triangle, and where, is computed for each as for single rays, to the last bit; a ray is
-//! met by triangles of blocks alone whose boxes it meets itself, and of triangles as far away the first counts. So a ray meets
-//! in company what it meets by itself, and it does not matter which rays make a packet.
+//! Invariant: the test of a ray against a block's box or a triangle gives the same bits as that of a single ray. A ray tests
+//! the triangles of those blocks alone whose boxes it hits, and of hits at equal distance the lowest triangle wins. So a
+//! ray's hit does not depend on the packet that it is in.
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
 
-use super::bundle::{Bundle, Doors, Place};
-use super::traverse::{BoxRay, Entry, INVERSE_MAX, Met, PLACE_ERROR, SingleRay, Stack, TriangleRay};
+use super::interval::{ChildId, EntryPoints, RayInterval};
+use super::traverse::{BoxRay, Entry, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, Stack, TriangleRay};
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
 use crate::scene::Hit;
 
-/// Rays of a packet.
+/// Rays per packet.
 pub const PACKET: usize = 16;
 
-/// So few rays go on one after the other, as eight boxes or triangles at a time take less than all rays.
-const FEW: u32 = 4;
+/// At or below this many active rays, they continue as single rays: testing eight boxes or triangles at a time is cheaper
+/// than a nearly empty packet.
+const SINGLE_MAX: u32 = 4;
 
-/// Rays, axis by axis.
+/// Rays as structure of arrays: `[axis][ray]`.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Packet {
-    /// Where they start.
+    /// Ray origins.
     pub origins: [[f32; PACKET]; 3],
-    /// Where they go.
+    /// Ray directions, of any length but 0.
     pub directions: [[f32; PACKET]; 3],
-    /// How far they go; negative where there is no ray.
+    /// Ray lengths, in lengths of the direction; negative for an inactive lane.
     pub t_max: [f32; PACKET],
 }
 
@@ -41,7 +42,7 @@ impl Default for Packet {
 }
 
 impl Packet {
-    /// Of rays, sixteen at most: their origins, directions, and how far they go.
+    /// A packet of at most sixteen rays (origin, direction, t_max).
     #[inline(always)]
     pub fn of(rays: impl IntoIterator<Item = ([f32; 3], [f32; 3], f32)>) -> Self {
         let mut packet = Self::default();
@@ -54,7 +55,7 @@ impl Packet {
         packet
     }
 
-    /// Puts a ray in.
+    /// Sets the ray of a lane.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, origin: [f32; 3], direction: [f32; 3], t_max: f32) {
         for axis in 0..3 {
@@ -64,19 +65,19 @@ impl Packet {
         self.t_max[lane] = t_max;
     }
 
-    /// The origin of a ray.
+    /// Origin of a lane's ray.
     #[inline(always)]
     pub fn origin(&self, lane: usize) -> [f32; 3] {
         self.origins.map(|axis| axis[lane])
     }
 
-    /// The direction of a ray.
+    /// Direction of a lane's ray.
     #[inline(always)]
     pub fn direction(&self, lane: usize) -> [f32; 3] {
         self.directions.map(|axis| axis[lane])
     }
 
-    /// Has the first ray stand in where there is none: it goes the same way and is met by nothing.
+    /// Fills the lanes from `count` on with the first ray, inactive, so that all rays of the packet stay in one octant.
     #[inline(always)]
     pub fn fill(&mut self, count: usize) {
         let (origin, direction) = (self.origin(0), self.direction(0));
@@ -84,25 +85,25 @@ impl Packet {
     }
 }
 
-/// What the rays of a packet met.
+/// Closest hits of a packet's rays, or any hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(in crate::scene) struct Found {
-    /// How far away.
+pub(in crate::scene) struct PacketHits {
+    /// Distance of each hit, or the ray's t_max.
     t: [f32; PACKET],
-    /// One more than the triangle's number; 0 where nothing was met.
+    /// Triangle index plus one; 0 without a hit.
     marks: [u32; PACKET],
-    /// Twice the areas that the ray cuts the projected triangle into, opposite to its corners; left out where any triangle
-    /// would do.
+    /// Twice the signed areas into which the ray divides the projected triangle, each opposite to a corner. Not set for any
+    /// hits.
     areas: [[f32; PACKET]; 3],
-    /// Which number the first triangle has of the hierarchy that the rays go through.
+    /// Index of the first triangle of the hierarchy being traversed.
     pub first: u32,
 }
 
-impl Found {
-    /// Nothing yet, as far as the rays go.
+impl PacketHits {
+    /// No hits: distances are the rays' t_max.
     #[inline(always)]
-    pub fn nothing(packet: &Packet) -> Self {
+    pub fn none(packet: &Packet) -> Self {
         Self {
             t: packet.t_max,
             marks: [0; PACKET],
@@ -111,13 +112,13 @@ impl Found {
         }
     }
 
-    /// Takes a triangle of the hierarchy that a ray meets no farther away than what was found; whether it is nearer.
+    /// Records a hit that is no farther than the lane's current one. Returns true if it replaces that.
     #[inline(always)]
     fn add<const ANY: bool>(&mut self, lane: usize, t: f32, areas: [f32; 3], triangle: u32) -> bool {
         let mark = self.first + triangle + 1;
-        // Of two as far away the first: so it does not matter in which order they are found.
-        let is_nearer = t < self.t[lane] || mark < self.marks[lane];
-        if is_nearer {
+        // At equal distance the lowest index wins, so that the order of traversal does not matter.
+        let is_better = t < self.t[lane] || mark < self.marks[lane];
+        if is_better {
             self.t[lane] = if ANY { -1.0 } else { t };
             self.marks[lane] = mark;
             if !ANY {
@@ -126,16 +127,16 @@ impl Found {
                 }
             }
         }
-        is_nearer
+        is_better
     }
 
-    /// Whether a ray met something.
+    /// True if the lane has a hit.
     #[inline(always)]
-    pub fn is_met(&self, lane: usize) -> bool {
+    pub fn is_hit(&self, lane: usize) -> bool {
         self.marks[lane] != 0
     }
 
-    /// What a ray met.
+    /// Hit of a lane.
     #[inline(always)]
     pub fn hit(&self, lane: usize) -> Option<Hit> {
         let areas = [self.areas[0][lane], self.areas[1][lane], self.areas[2][lane]];
@@ -143,29 +144,29 @@ impl Found {
     }
 }
 
-/// Where one of a packet's rays puts what it meets.
-struct OfLane<'f, const ANY: bool> {
+/// The hits of one lane, for single-ray traversal.
+struct LaneSink<'f, const ANY: bool> {
     lane: usize,
-    found: &'f mut Found,
-    /// True once it has met something.
-    is_new: bool,
+    hits: &'f mut PacketHits,
+    /// True once the lane's hit has been replaced.
+    is_closer: bool,
 }
 
-impl<const ANY: bool> Met for OfLane<'_, ANY> {
+impl<const ANY: bool> HitSink for LaneSink<'_, ANY> {
     #[inline(always)]
     fn t_max(&self) -> f32 {
-        self.found.t[self.lane]
+        self.hits.t[self.lane]
     }
 
     #[inline(always)]
-    fn take(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
-        self.is_new |= self.found.add::<ANY>(self.lane, t, areas, triangle);
+    fn record(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
+        self.is_closer |= self.hits.add::<ANY>(self.lane, t, areas, triangle);
     }
 }
 
-/// Which way a ray goes: the signs of its direction, and its longest axis. Rays of a packet go the same way.
+/// Octant of a direction: its signs (bits 0 to 2) and its longest axis (bits 3 and 4). Rays of a packet share it.
 #[inline(always)]
-pub fn ray_way(direction: [f32; 3]) -> usize {
+pub fn ray_octant(direction: [f32; 3]) -> usize {
     let [x, y, z] = direction.map(f32::abs);
     let longest = if z >= x && z >= y {
         2
@@ -178,62 +179,68 @@ pub fn ray_way(direction: [f32; 3]) -> usize {
     longest << 3 | sign(0) | sign(1) | sign(2)
 }
 
-/// How many ways there are.
-pub const WAYS: usize = 24;
+/// Number of octants: eight, times three longest axes.
+pub const OCTANTS: usize = 24;
 
 impl Wide {
-    /// Puts the nearest triangle with 0 < t on each ray in that is nearer than what was found, of what is behind these doors;
-    /// false where the rays do not go the same way, and nothing is done.
-    pub fn nearest_of(&self, level: Level, packet: &Packet, doors: Option<&Doors>, found: &mut Found) -> bool {
-        dispatch!(level, simd => trace::<_, false>(simd, self, packet, doors, found))
+    /// Updates each ray with its closest hit with 0 < t, if that is nearer than its current one. Traversal starts from
+    /// `entry_points`, or from the root. Returns false, and changes nothing, if the rays are not all in one octant.
+    pub fn closest_hits(
+        &self,
+        level: Level,
+        packet: &Packet,
+        entry_points: Option<&EntryPoints>,
+        hits: &mut PacketHits,
+    ) -> bool {
+        dispatch!(level, simd => trace::<_, false>(simd, self, packet, entry_points, hits))
     }
 
-    /// The same with some triangle on each ray, unless one was found.
-    pub fn any_of(&self, level: Level, packet: &Packet, found: &mut Found) -> bool {
-        dispatch!(level, simd => trace::<_, true>(simd, self, packet, None, found))
+    /// The same for any hit of each ray that has none yet.
+    pub fn any_hits(&self, level: Level, packet: &Packet, hits: &mut PacketHits) -> bool {
+        dispatch!(level, simd => trace::<_, true>(simd, self, packet, None, hits))
     }
 }
 
-/// Puts the nearest triangles in, or the first that are found if `ANY`.
+/// Traces a packet for closest hits, or for any hits if `ANY`.
 #[inline(always)]
 fn trace<S: Simd, const ANY: bool>(
     simd: S,
     wide: &Wide,
     packet: &Packet,
-    doors: Option<&Doors>,
-    found: &mut Found,
+    entry_points: Option<&EntryPoints>,
+    hits: &mut PacketHits,
 ) -> bool {
-    let Some(way) = way_of(simd, packet) else {
+    let Some(octant) = common_octant(simd, packet) else {
         return false;
     };
     if wide.nodes.is_empty() {
         return true;
     }
-    let rays = Rays::new(simd, packet, wide, way);
-    let bundle = Bundle::of(simd, &rays, wide);
-    let mut limit = largest(simd, &found.t);
+    let rays = PacketRays::new(simd, packet, wide, octant);
+    let interval = RayInterval::of(simd, &rays, wide);
+    let mut limit = largest(simd, &hits.t);
     let mut stack = Stack::new();
-    match doors {
-        Some(doors) => doors.enter(&mut stack),
-        None => bundle.enter(wide, 0, limit, &mut stack),
+    match entry_points {
+        Some(entry_points) => entry_points.push_to(&mut stack),
+        None => interval.push_children(wide, 0, limit, &mut stack),
     }
     while let Some(next) = stack.pop_before(limit) {
-        let (parent, child) = Place(next.place()).parts();
+        let (parent, child) = ChildId(next.child()).parts();
         let parent = &wide.nodes[parent];
-        let Some(entered) = rays.enter(parent, child, &found.t) else {
+        let Some(entered) = rays.intersect_box(parent, child, &hits.t) else {
             continue;
         };
-        let place = parent.children[child];
-        let is_new = if entered.met.to_bitmask().count_ones() <= FEW {
-            rays.search_alone::<ANY>(wide, place, &entered, found)
-        } else if place & BLOCK == 0 {
-            bundle.enter(wide, place, limit, &mut stack);
+        let target = parent.children[child];
+        let is_closer = if entered.mask.to_bitmask().count_ones() <= SINGLE_MAX {
+            rays.traverse_singly::<ANY>(wide, target, &entered, hits)
+        } else if target & BLOCK == 0 {
+            interval.push_children(wide, target, limit, &mut stack);
             false
         } else {
-            rays.meet::<ANY>(wide, (place & !BLOCK) as usize, &entered, found)
+            rays.intersect_block::<ANY>(wide, (target & !BLOCK) as usize, &entered, hits)
         };
-        if is_new {
-            limit = largest(simd, &found.t);
+        if is_closer {
+            limit = largest(simd, &hits.t);
         }
     }
     true
@@ -254,16 +261,16 @@ fn largest<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32 {
     simd.reduce_max_f32x16(load(simd, lanes))
 }
 
-/// The way of all rays; `None` where they differ.
+/// The octant of all rays; `None` if they differ.
 #[inline(always)]
-fn way_of<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
-    let way = ray_way(packet.direction(0));
+fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
+    let octant = ray_octant(packet.direction(0));
     let zero = f32x16::splat(simd, 0.0);
     let directions = load_three(simd, &packet.directions);
     let mut axis = 0;
     while axis < 3 {
         let backward = directions[axis].simd_lt(zero);
-        let is_alike = if way >> axis & 1 == 1 {
+        let is_alike = if octant >> axis & 1 == 1 {
             backward.all_true()
         } else {
             backward.all_false()
@@ -275,48 +282,48 @@ fn way_of<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
     }
     let (x, y, z) = (directions[0].abs(), directions[1].abs(), directions[2].abs());
     let along_z = z.simd_ge(x) & z.simd_ge(y);
-    let is_alike = match way >> 3 {
+    let is_alike = match octant >> 3 {
         2 => along_z.all_true(),
         1 => along_z.all_false() && y.simd_ge(x).all_true(),
         _ => along_z.all_false() && y.simd_ge(x).all_false(),
     };
-    is_alike.then_some(way)
+    is_alike.then_some(octant)
 }
 
-/// How rays meet a box.
-struct Entered<S: Simd> {
-    /// Which of them do.
-    met: mask32x16<S>,
-    /// How far away, at least 0.
+/// Result of a packet against a box.
+struct BoxHits<S: Simd> {
+    /// Rays that overlap the box within [0, t_max].
+    mask: mask32x16<S>,
+    /// Entry distances, at least 0.
     distance: f32x16<S>,
 }
 
-/// What the tests of single rays need of each ray.
-pub(super) struct Rays<S: Simd> {
+/// A packet's rays prepared for the tests against boxes and triangles; fields as in [`BoxRay`] and [`TriangleRay`].
+pub(super) struct PacketRays<S: Simd> {
     pub origin: [f32x16<S>; 3],
     direction: [f32x16<S>; 3],
     pub inverse: [f32x16<S>; 3],
-    early: [f32x16<S>; 3],
-    late: [f32x16<S>; 3],
-    /// Which of the two sides of a box is near on each axis.
+    near_offset: [f32x16<S>; 3],
+    far_offset: [f32x16<S>; 3],
+    /// Which side of a box is near on each axis: 0 is the low one.
     pub near: [usize; 3],
     axes: [usize; 3],
     shear: [f32x16<S>; 2],
 }
 
-impl<S: Simd> Rays<S> {
+impl<S: Simd> PacketRays<S> {
     #[inline(always)]
-    fn new(simd: S, packet: &Packet, wide: &Wide, way: usize) -> Self {
-        let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][way >> 3];
+    fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
+        let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][octant >> 3];
         let [axis_x, axis_y, along] = axes;
         let direction = load_three(simd, &packet.directions);
         let mut rays = Self {
             origin: load_three(simd, &packet.origins),
             direction,
             inverse: direction,
-            early: direction,
-            late: direction,
-            near: [way & 1, way >> 1 & 1, way >> 2 & 1],
+            near_offset: direction,
+            far_offset: direction,
+            near: [octant & 1, octant >> 1 & 1, octant >> 2 & 1],
             axes,
             shear: [
                 -direction[axis_x] / direction[along],
@@ -329,7 +336,7 @@ impl<S: Simd> Rays<S> {
         rays
     }
 
-    /// What the test against boxes needs on an axis, as for single rays.
+    /// Prepares the test against boxes on one axis, with the same arithmetic as for single rays.
     #[inline(always)]
     fn invert(&mut self, wide: &Wide, axis: usize) {
         let (origin, direction) = (self.origin[axis], self.direction[axis]);
@@ -337,15 +344,15 @@ impl<S: Simd> Rays<S> {
         let size = (f32x16::splat(simd, 1.0) / direction.abs()).min(f32x16::splat(simd, INVERSE_MAX));
         let inverse = if self.near[axis] == 1 { -size } else { size };
         let reach = f32x16::splat(simd, wide.reach[axis]) + origin.abs();
-        let (shift, margin) = (-origin * inverse, reach * size * f32x16::splat(simd, PLACE_ERROR));
+        let (shift, margin) = (-origin * inverse, reach * size * f32x16::splat(simd, RELATIVE_ERROR));
         self.inverse[axis] = inverse;
-        self.early[axis] = shift - margin;
-        self.late[axis] = shift + margin;
+        self.near_offset[axis] = shift - margin;
+        self.far_offset[axis] = shift + margin;
     }
 
-    /// Which rays meet a child's box before they end, and where they enter it; `None` where no ray does.
+    /// Tests the rays against a child's box; `None` if none hits.
     #[inline(always)]
-    fn enter(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<Entered<S>> {
+    fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
         let limits = load(self.origin[0].token(), t_max);
         let simd = limits.token();
         let (x, y, z) = (
@@ -360,47 +367,52 @@ impl<S: Simd> Rays<S> {
             self.far(node, child, 2),
         );
         let left = x.min(y).min(z.min(limits));
-        let met = distance.simd_le(left);
-        met.any_true().then_some(Entered { met, distance })
+        let mask = distance.simd_le(left);
+        mask.any_true().then_some(BoxHits { mask, distance })
     }
 
-    /// How far away a child's near side is.
+    /// Distance to a child's near side.
     #[inline(always)]
     fn near(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
         let side = node.sides[axis][self.near[axis] & 1][child];
-        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.early[axis]
+        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.near_offset[axis]
     }
 
-    /// How far away a child's far side is.
+    /// Distance to a child's far side.
     #[inline(always)]
     fn far(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
         let side = node.sides[axis][(self.near[axis] ^ 1) & 1][child];
-        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.late[axis]
+        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.far_offset[axis]
     }
 
-    /// Has the rays that meet a child's box go on through what is under it one after the other; whether any meets something
-    /// nearer than what was found.
+    /// Continues below a child with the rays that hit its box, one by one. Returns true if any hit is replaced.
     #[inline(always)]
-    fn search_alone<const ANY: bool>(&self, wide: &Wide, child: u32, entered: &Entered<S>, found: &mut Found) -> bool {
-        let mut rays = entered.met.to_bitmask();
+    fn traverse_singly<const ANY: bool>(
+        &self,
+        wide: &Wide,
+        child: u32,
+        entered: &BoxHits<S>,
+        hits: &mut PacketHits,
+    ) -> bool {
+        let mut rays = entered.mask.to_bitmask();
         let distances = entered.distance.to_array();
-        let mut is_new = false;
+        let mut is_closer = false;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize % PACKET;
             rays &= rays - 1;
-            let mut lane_met = OfLane::<ANY> {
+            let mut sink = LaneSink::<ANY> {
                 lane,
-                found,
-                is_new: false,
+                hits,
+                is_closer: false,
             };
             let entry = Entry::new(distances[lane], child);
-            self.single(lane).search::<ANY, _>(wide, entry, &mut lane_met);
-            is_new |= lane_met.is_new;
+            self.single(lane).traverse::<ANY, _>(wide, entry, &mut sink);
+            is_closer |= sink.is_closer;
         }
-        is_new
+        is_closer
     }
 
-    /// One of the rays by itself.
+    /// A lane's ray for single-ray traversal.
     #[inline(always)]
     fn single(&self, lane: usize) -> SingleRay<S> {
         let simd = self.origin[0].token();
@@ -410,8 +422,8 @@ impl<S: Simd> Rays<S> {
         SingleRay {
             boxes: BoxRay {
                 inverse: splats(self.inverse),
-                early: splats(self.early),
-                late: splats(self.late),
+                near_offset: splats(self.near_offset),
+                far_offset: splats(self.far_offset),
                 near: self.near,
             },
             triangles: TriangleRay {
@@ -423,16 +435,21 @@ impl<S: Simd> Rays<S> {
         }
     }
 
-    /// Puts the triangles of a block in that are nearer than what was found, one after the other against all rays; whether
-    /// there are any.
+    /// Tests the triangles of a block one by one against all rays, and records closer hits. Returns true if there are any.
     #[inline(always)]
-    fn meet<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
+    fn intersect_block<const ANY: bool>(
+        &self,
+        wide: &Wide,
+        block: usize,
+        entered: &BoxHits<S>,
+        hits: &mut PacketHits,
+    ) -> bool {
         let (first, normals, block) = (wide.firsts[block], &wide.normals[block], &wide.blocks[block]);
         let simd = self.origin[0].token();
         let zero = f32x16::splat(simd, 0.0);
-        let mut is_new = false;
+        let mut is_closer = false;
         let mut triangle = 0;
-        // Behind the last triangle of a block there is none.
+        // NaN corners mark the end of a partial block.
         while triangle < WIDTH && !block.corners[0][0][triangle].is_nan() {
             let (ax, ay) = self.project(block, 0, triangle);
             let (bx, by) = self.project(block, 1, triangle);
@@ -440,29 +457,28 @@ impl<S: Simd> Rays<S> {
             let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
             let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
                 | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
-            let is_inside = is_inside & entered.met;
+            let is_inside = is_inside & entered.mask;
             if is_inside.any_true() {
                 let area = u + v + w;
                 let (t, towards) = self.distance(block, normals, triangle);
                 let t = t / towards;
-                let placed = t.max(entered.distance);
-                let is_before = t.simd_gt(zero) & placed.simd_le(load(simd, &found.t));
-                let mut met = (is_inside & !area.simd_eq(zero) & is_before).to_bitmask() as u32;
-                let (placed, u, v, w) = (placed.to_array(), u.to_array(), v.to_array(), w.to_array());
-                while met != 0 {
-                    let lane = (met.trailing_zeros() % PACKET as u32) as usize;
-                    met &= met - 1;
+                let clamped = t.max(entered.distance);
+                let is_before = t.simd_gt(zero) & clamped.simd_le(load(simd, &hits.t));
+                let mut hit_bits = (is_inside & !area.simd_eq(zero) & is_before).to_bitmask() as u32;
+                let (clamped, u, v, w) = (clamped.to_array(), u.to_array(), v.to_array(), w.to_array());
+                while hit_bits != 0 {
+                    let lane = (hit_bits.trailing_zeros() % PACKET as u32) as usize;
+                    hit_bits &= hit_bits - 1;
                     let areas = [u[lane], v[lane], w[lane]];
-                    is_new |= found.add::<ANY>(lane, placed[lane], areas, first + triangle as u32);
+                    is_closer |= hits.add::<ANY>(lane, clamped[lane], areas, first + triangle as u32);
                 }
             }
             triangle += 1;
         }
-        is_new
+        is_closer
     }
 
-    /// How far the rays' origins are from the plane of a triangle, and how much nearer they come to it in a unit of length;
-    /// both in lengths of its normal.
+    /// Numerator and denominator of the distance to a triangle's plane: (n · (corner − origin), n · direction).
     #[inline(always)]
     fn distance(&self, block: &Block, normals: &Normals, triangle: usize) -> (f32x16<S>, f32x16<S>) {
         let simd = self.origin[0].token();
@@ -470,26 +486,26 @@ impl<S: Simd> Rays<S> {
         let y = f32x16::splat(simd, normals.axes[1][triangle]);
         let z = f32x16::splat(simd, normals.axes[2][triangle]);
         let [dx, dy, dz] = self.direction;
-        let from_x = self.place(block, 0, 0, triangle);
-        let from_y = self.place(block, 0, 1, triangle);
-        let from_z = self.place(block, 0, 2, triangle);
+        let from_x = self.relative(block, 0, 0, triangle);
+        let from_y = self.relative(block, 0, 1, triangle);
+        let from_z = self.relative(block, 0, 2, triangle);
         (x * from_x + y * from_y + z * from_z, x * dx + y * dy + z * dz)
     }
 
-    /// A coordinate of a corner, from the rays' origins.
+    /// A coordinate of a corner relative to the rays' origins.
     #[inline(always)]
-    fn place(&self, block: &Block, corner: usize, axis: usize, triangle: usize) -> f32x16<S> {
+    fn relative(&self, block: &Block, corner: usize, axis: usize, triangle: usize) -> f32x16<S> {
         f32x16::splat(self.origin[0].token(), block.corners[corner][axis][triangle]) - self.origin[axis]
     }
 
-    /// A corner along the rays.
+    /// A corner projected along the rays.
     #[inline(always)]
     fn project(&self, block: &Block, corner: usize, triangle: usize) -> (f32x16<S>, f32x16<S>) {
         let [axis_x, axis_y, along] = self.axes;
-        let depth = self.place(block, corner, along, triangle);
+        let depth = self.relative(block, corner, along, triangle);
         (
-            self.place(block, corner, axis_x, triangle) + depth * self.shear[0],
-            self.place(block, corner, axis_y, triangle) + depth * self.shear[1],
+            self.relative(block, corner, axis_x, triangle) + depth * self.shear[0],
+            self.relative(block, corner, axis_y, triangle) + depth * self.shear[1],
         )
     }
 }

@@ -47,7 +47,7 @@ fn parts_hold_every_triangle_once_and_rays_find_the_same_as_without() {
         let direction = [-origin[0], 0.1 - origin[1], 0.05 - origin[2]];
         let frame = RayFrame::new(origin.into(), direction.into());
         let nearest = |wide: &Wide, order: &[u32]| {
-            let hit = wide.nearest(level, &frame, f32::MAX)?;
+            let hit = wide.closest_hit(level, &frame, f32::MAX)?;
             Some((hit.t, found[order[hit.triangle as usize] as usize]))
         };
         let (expected, of_parts) = (nearest(&wide, &order), nearest(&of_parts, &order_of_parts));
@@ -69,16 +69,16 @@ fn a_hierarchy_that_nobody_wants_is_not_built() {
     assert!(loading.doing().contains("hierarchy"), "{}", loading.doing());
 }
 
-/// Hierarchies that are too deep for the stack of a ray are built anew: their depth is counted.
+/// Hierarchies too deep for the traversal stack are rebuilt: their depth must be right.
 #[test]
 fn levels_are_counted_to_the_deepest() {
     let found = triangles();
     let box_of = |triangle: u32| triangle_box(found[triangle as usize]);
     let (tree, order) = binary::tree(found.len() as u32, u32::MAX, box_of, &Loading::default()).expect("not cancelled");
     let corners = |triangle: u32| found[order[triangle as usize] as usize];
-    let made = compressed::compress(&BoxedTree::new(&tree, tree.root(), corners));
+    let built = compressed::compress(&BoxedTree::new(&tree, tree.root(), corners));
     // Two levels of eight children hold 64 leaves of three triangles.
-    let depth = compressed::depth(&made);
+    let depth = compressed::depth(&built);
     assert!(
         (3..DEPTH_MAX).contains(&depth),
         "{depth} levels of {} triangles",

@@ -1,4 +1,4 @@
-//! A binary tree over triangles that are stored in the order of its leaves: what both engines' hierarchies are made of.
+//! The binary tree from which both engines' hierarchies are made. Triangles are stored in the order of its leaves.
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -6,36 +6,36 @@ use rayon::prelude::*;
 
 use super::triangle_box;
 
-/// A binary tree over triangles, which are its leaves from left to right. Four bytes a triangle: boxes are found again
-/// from the triangles whenever a hierarchy is made of it.
+/// A binary tree with a triangle per leaf, from left to right. It takes four bytes per triangle: boxes are recomputed from
+/// the triangles for each hierarchy.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Tree {
-    /// How many leaves each inner node has on its left: parents before children, left before right.
+    /// Leaves in each inner node's left subtree. Order: parents before children, left before right.
     pub(super) left_leaves: Vec<u32>,
 }
 
-/// A node with all that is below it.
+/// A node with its subtree.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::scene) struct Subtree {
-    /// Its number among the inner nodes; nothing for a single leaf.
+    /// Index among the inner nodes; meaningless for a leaf.
     inner: u32,
-    /// The first of its leaves.
+    /// First leaf.
     pub first: u32,
-    /// Its leaves.
+    /// Number of leaves.
     pub count: u32,
 }
 
 impl Tree {
-    /// Bytes in memory.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.left_leaves[..])
     }
 
-    /// The tree of a hierarchy whose leaves have one triangle each, and the order of its leaves.
+    /// Converts a hierarchy with one triangle per leaf. Also returns the order of its leaves.
     pub fn of(binary: &Bvh2) -> (Self, Vec<u32>) {
         let mut order = Vec::with_capacity(binary.primitive_indices.len());
         let mut left_leaves: Vec<u32> = Vec::with_capacity(binary.nodes.len() / 2);
-        // Nodes still to be visited, right children with the parent whose left side is then complete.
+        // Nodes to visit. A right child carries its parent, whose left subtree is then complete.
         let mut open = vec![(0, None)];
         while let Some((node, parent)) = open.pop() {
             if let Some(parent) = parent {
@@ -53,7 +53,7 @@ impl Tree {
         (Self { left_leaves }, order)
     }
 
-    /// The tree over as many triangles that halves them again and again.
+    /// The balanced tree over the same number of triangles.
     pub fn of_halves(&self) -> Self {
         let mut left_leaves = Vec::with_capacity(self.left_leaves.len());
         let mut open = vec![self.root().count];
@@ -66,7 +66,7 @@ impl Tree {
         Self { left_leaves }
     }
 
-    /// All of a tree that has leaves.
+    /// The root. Invariant: the tree has leaves.
     pub fn root(&self) -> Subtree {
         Subtree {
             inner: 0,
@@ -75,7 +75,7 @@ impl Tree {
         }
     }
 
-    /// Both sides of a node that is no leaf.
+    /// Left and right subtree of an inner node.
     pub fn sides(&self, node: Subtree) -> [Subtree; 2] {
         let left = self.left_leaves[node.inner as usize];
         [
@@ -93,21 +93,20 @@ impl Tree {
     }
 }
 
-/// A part of a tree with the boxes of its nodes.
+/// A subtree with the boxes of its nodes.
 pub(in crate::scene) struct BoxedTree<'a> {
     pub tree: &'a Tree,
-    /// All of the part.
     pub root: Subtree,
-    /// Its inner nodes, parents before children.
+    /// Inner nodes, parents before children.
     inner: Vec<Subtree>,
-    /// Their boxes.
+    /// Boxes of the inner nodes.
     inner_boxes: Vec<Aabb>,
-    /// The triangles' boxes.
+    /// Boxes of the leaves.
     leaf_boxes: Vec<Aabb>,
 }
 
 impl<'a> BoxedTree<'a> {
-    /// All below a node; `corners` of the triangles as they are stored.
+    /// The subtree of `root`; `corners` are those of the triangles as stored.
     pub fn new(tree: &'a Tree, root: Subtree, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
         let triangles = (root.first..root.first + root.count).into_par_iter();
         let mut inner = vec![Subtree::default(); root.count as usize - 1];
@@ -123,13 +122,13 @@ impl<'a> BoxedTree<'a> {
         }
         for node in 0..inner.len() {
             for side in tree.sides(inner[node]).into_iter().filter(|side| side.count > 1) {
-                inner[boxed.place(side)] = side;
+                inner[boxed.inner_index(side)] = side;
             }
         }
         for node in inner.iter().rev() {
             let [left, right] = tree.sides(*node).map(|side| *boxed.bounds(side));
-            let place = boxed.place(*node);
-            boxed.inner_boxes[place] = left.union(&right);
+            let index = boxed.inner_index(*node);
+            boxed.inner_boxes[index] = left.union(&right);
         }
         Self { inner, ..boxed }
     }
@@ -139,21 +138,21 @@ impl<'a> BoxedTree<'a> {
         self.inner.iter().rev().copied()
     }
 
-    /// How many inner nodes there are.
+    /// Number of inner nodes.
     pub fn inner_count(&self) -> usize {
         self.inner.len()
     }
 
-    /// The number of an inner node among those of the part.
-    pub fn place(&self, node: Subtree) -> usize {
+    /// Index of an inner node within the subtree.
+    pub fn inner_index(&self, node: Subtree) -> usize {
         (node.inner - self.root.inner) as usize
     }
 
-    /// The box of a node.
+    /// Box of a node.
     pub fn bounds(&self, node: Subtree) -> &Aabb {
         match node.count {
             1 => &self.leaf_boxes[(node.first - self.root.first) as usize],
-            _ => &self.inner_boxes[self.place(node)],
+            _ => &self.inner_boxes[self.inner_index(node)],
         }
     }
 }

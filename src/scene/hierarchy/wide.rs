@@ -1,5 +1,5 @@
-//! The processor's hierarchy: nodes of eight children in plain f32, leaves of eight triangles, both laid out so that one
-//! instruction treats all eight.
+//! The CPU's hierarchy: nodes of eight children in plain f32 and leaves of eight triangles, laid out for SIMD tests of all
+//! eight.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -7,28 +7,28 @@ use obvhs::aabb::Aabb;
 use super::tree::{BoxedTree, Subtree, Tree};
 use crate::optics::vector::Vec3;
 use crate::scene::intersect::triangle_normal;
-use crate::scene::memory::{fetch, in_large_pages, room_in_large_pages};
+use crate::scene::memory::{in_large_pages, prefetch, room_in_large_pages};
 
-/// Children of a node, and triangles of a leaf at most.
+/// Children per node, and triangles per leaf at most.
 pub(super) const WIDTH: usize = 8;
 
-/// Marks a child as a block of triangles; the other bits say which.
+/// Flag of a child that is a block of triangles; the other bits are its index.
 pub(super) const BLOCK: u32 = 1 << 31;
 
-/// What a block costs a ray, a node costing 1.
+/// Cost of a block's test relative to a node's.
 const BLOCK_COST: f32 = 1.0;
 
-/// Fewer triangles than most hierarchies have for each node and each block (28 and 4.7 where there are ten million).
+/// Triangles per node and per block, below the usual numbers (28 and 4.7 for ten million triangles), to reserve memory.
 const TRIANGLES_A_NODE: usize = 24;
 const TRIANGLES_A_BLOCK: usize = 4;
 
-/// A node. Its unused children have boxes that no ray meets, and lead to the first block, which could do no harm.
+/// A node of eight children. Unused children have boxes that no ray hits; they refer to the first block, which is harmless.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(in crate::scene) struct Node {
-    /// Low and high sides of the children's boxes on each axis.
+    /// Sides of the children's boxes: `[axis][low, high][child]`.
     pub sides: [[[f32; WIDTH]; 2]; 3],
-    /// Which nodes, or which blocks if [`BLOCK`] is set.
+    /// Indices of nodes, or of blocks if [`BLOCK`] is set.
     pub children: [u32; WIDTH],
 }
 
@@ -49,77 +49,76 @@ impl Node {
     }
 }
 
-/// The corners of up to eight triangles: corner, axis, triangle. Those that are not there are not numbers, which no ray
-/// meets.
+/// Corners of up to eight triangles: `[corner][axis][triangle]`. Missing triangles are NaN, which no ray hits.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(in crate::scene) struct Block {
     pub corners: [[[f32; WIDTH]; 3]; 3],
 }
 
-/// The normals of a block's triangles: axis, triangle. Apart from the corners, as few rays come to need them.
+/// Normals of a block's triangles: `[axis][triangle]`. Apart from the corners, because few rays need them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(in crate::scene) struct Normals {
     pub axes: [[f32; WIDTH]; 3],
 }
 
-/// The hierarchy. Without nodes where there are no triangles.
+/// The CPU's hierarchy; empty without triangles.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Wide {
     pub nodes: Vec<Node>,
     pub blocks: Vec<Block>,
     pub normals: Vec<Normals>,
-    /// The first triangle of each block.
+    /// First triangle of each block.
     pub firsts: Vec<u32>,
-    /// The largest coordinate's size on each axis.
+    /// Largest absolute coordinate on each axis.
     pub reach: Vec3A,
     /// Levels of nodes.
     pub depth: usize,
 }
 
 impl Wide {
-    /// Of the trees that put up to eight nodes of a binary tree under one, that which costs rays least (as in section
-    /// 3.1 of Ylitie, Karras and Laine 2017), found for parts of at most so many triangles, one after the other: what is
-    /// needed to find it takes as much memory as what comes of it.
+    /// Collapses a binary tree to eight children per node with the least surface area cost (section 3.1 of Ylitie, Karras
+    /// and Laine 2017). Works on parts of at most `part_max` triangles one after the other, because the search takes as much
+    /// memory as its result.
     pub fn new(tree: &Tree, part_max: u32, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
-        // Grown step by step they would be copied, and there twice. What is not used of it takes no memory.
+        // Reserved in full: growing would copy, and hold both copies. Unused room takes no memory.
         let [node_count, block_count] =
             [TRIANGLES_A_NODE, TRIANGLES_A_BLOCK].map(|each| tree.root().count as usize / each + 1);
-        let mut made = Self {
+        let mut built = Self {
             nodes: room_in_large_pages(node_count),
             blocks: room_in_large_pages(block_count),
             normals: room_in_large_pages(block_count),
             firsts: Vec::with_capacity(block_count),
             ..Self::default()
         };
-        made.nodes.push(Node::EMPTY);
+        built.nodes.push(Node::EMPTY);
         let bounds = Parts {
             tree,
             part_max,
             corners,
         }
-        .fill(&mut made, tree.root(), 0, 1);
-        made.reach = bounds.min.abs().max(bounds.max.abs());
+        .fill(&mut built, tree.root(), 0, 1);
+        built.reach = bounds.min.abs().max(bounds.max.abs());
         Self {
-            nodes: in_large_pages(made.nodes),
-            blocks: in_large_pages(made.blocks),
-            normals: in_large_pages(made.normals),
-            ..made
+            nodes: in_large_pages(built.nodes),
+            blocks: in_large_pages(built.blocks),
+            normals: in_large_pages(built.normals),
+            ..built
         }
     }
 
-    /// Has the processor fetch a child, given as a node has it.
+    /// Prefetches a child, given as in [`Node::children`].
     #[inline(always)]
-    pub fn fetch(&self, child: u32) {
+    pub fn prefetch(&self, child: u32) {
         if child & BLOCK == 0 {
-            fetch(&self.nodes, child as usize);
+            prefetch(&self.nodes, child as usize);
         } else {
-            fetch(&self.blocks, (child & !BLOCK) as usize);
+            prefetch(&self.blocks, (child & !BLOCK) as usize);
         }
     }
 
-    /// Bytes in memory.
+    /// Memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..])
             + size_of_val(&self.blocks[..])
@@ -128,34 +127,34 @@ impl Wide {
     }
 }
 
-/// How a subtree is best cut into up to eight, by the surface area heuristic.
+/// The best cut of a subtree into up to eight children, by the surface area heuristic.
 #[derive(Clone, Copy, Default)]
 struct Cut {
-    /// Of the subtree as 1 to 7 children, the first as one: a node or a block.
+    /// Costs as 1 to 7 children; as one child it is a node or a block.
     costs: [f32; WIDTH - 1],
-    /// How many of so many children are on the left, 0 where fewer children are better; the first for the eight of a
-    /// node of its own.
+    /// Per number of children, how many are from the left subtree; 0 if fewer children are cheaper. The first entry is for
+    /// the eight children of a node of its own.
     lefts: [u8; WIDTH - 1],
-    /// Whether it is a block when it is one child.
+    /// Whether it is a block if it is one child.
     is_block: bool,
 }
 
 impl Cut {
-    /// The cost of a subtree as up to so many children.
+    /// Cost of a subtree as up to `children` children.
     fn cost(cuts: &[Self], tree: &BoxedTree<'_>, node: Subtree, children: usize) -> f32 {
         match node.count {
             1 => tree.bounds(node).half_area() * BLOCK_COST,
-            _ => cuts[tree.place(node)].costs[children - 1],
+            _ => cuts[tree.inner_index(node)].costs[children - 1],
         }
     }
 }
 
-/// The best cut of each inner node.
+/// The best cut of each inner node, bottom up.
 fn cuts(tree: &BoxedTree<'_>) -> Vec<Cut> {
     let mut cuts = vec![Cut::default(); tree.inner_count()];
     for node in tree.children_first() {
         let [left, right] = tree.tree.sides(node);
-        // Of so many children the number on the left that costs least.
+        // The cheapest number of left children out of `children`, with its cost.
         let best = |children: usize| {
             let cost = |on_left: usize| {
                 Cut::cost(&cuts, tree, left, on_left) + Cut::cost(&cuts, tree, right, children - on_left)
@@ -182,12 +181,12 @@ fn cuts(tree: &BoxedTree<'_>) -> Vec<Cut> {
             (cut.costs[children - 1], cut.lefts[children - 1]) =
                 if cost < fewer { (cost, on_left) } else { (fewer, 0) };
         }
-        cuts[tree.place(node)] = cut;
+        cuts[tree.inner_index(node)] = cut;
     }
     cuts
 }
 
-/// A hierarchy in the making, part by part.
+/// Builder of a hierarchy, part by part.
 struct Parts<'a, F> {
     tree: &'a Tree,
     part_max: u32,
@@ -195,33 +194,32 @@ struct Parts<'a, F> {
 }
 
 impl<F: Fn(u32) -> [[f32; 3]; 3] + Sync> Parts<'_, F> {
-    /// Fills the node at `place` with what is below a node of the binary tree; its box.
-    fn fill(&self, made: &mut Wide, root: Subtree, place: usize, depth: usize) -> Aabb {
+    /// Fills node `index` with the subtree of `root`. Returns its box.
+    fn fill(&self, built: &mut Wide, root: Subtree, index: usize, depth: usize) -> Aabb {
         if root.count <= self.part_max {
             let boxed = BoxedTree::new(self.tree, root, &self.corners);
             let mut builder = Builder {
                 cuts: cuts(&boxed),
                 tree: &boxed,
                 corners: &self.corners,
-                made,
+                built,
             };
-            builder.build(place, depth);
+            builder.build(index, depth);
             return *boxed.bounds(root);
         }
         let children = self.children(root);
-        let first = made.nodes.len();
-        made.nodes.resize(first + children.len(), Node::EMPTY);
+        let first = built.nodes.len();
+        built.nodes.resize(first + children.len(), Node::EMPTY);
         let mut whole = Aabb::INVALID;
         for (slot, child) in children.into_iter().enumerate() {
-            let bounds = self.fill(made, child, first + slot, depth + 1);
-            made.nodes[place].set(slot, &bounds, (first + slot) as u32);
+            let bounds = self.fill(built, child, first + slot, depth + 1);
+            built.nodes[index].set(slot, &bounds, (first + slot) as u32);
             whole = whole.union(&bounds);
         }
         whole
     }
 
-    /// Up to eight children of a node that is more than a part: the largest are cut until there are eight, or all are
-    /// parts.
+    /// Up to eight children of a node above the parts. The largest are split until there are eight, or all are parts.
     fn children(&self, root: Subtree) -> Vec<Subtree> {
         let mut children = self.tree.sides(root).to_vec();
         while children.len() < WIDTH {
@@ -236,61 +234,61 @@ impl<F: Fn(u32) -> [[f32; 3]; 3] + Sync> Parts<'_, F> {
     }
 }
 
-/// A part of a hierarchy in the making.
+/// Builder of one part.
 struct Builder<'a, F> {
     tree: &'a BoxedTree<'a>,
     cuts: Vec<Cut>,
     corners: F,
-    made: &'a mut Wide,
+    built: &'a mut Wide,
 }
 
 impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
-    /// Fills the node at `place`, on this level, with the whole part.
-    fn build(&mut self, place: usize, depth: usize) {
+    /// Fills node `index` at level `depth` with the whole part.
+    fn build(&mut self, index: usize, depth: usize) {
         let root = self.tree.root;
         if self.is_block(root) {
             let block = self.block(root);
-            self.made.nodes[place].set(0, self.tree.bounds(root), block);
-            self.made.depth = self.made.depth.max(depth);
+            self.built.nodes[index].set(0, self.tree.bounds(root), block);
+            self.built.depth = self.built.depth.max(depth);
             return;
         }
-        let mut open = vec![(root, place, depth)];
-        while let Some((node, place, depth)) = open.pop() {
-            self.made.depth = self.made.depth.max(depth);
-            // Siblings lie together, then what is below the first of them, and so on.
-            let inner = self.children(node, place);
-            open.extend(inner.into_iter().rev().map(|(node, place)| (node, place, depth + 1)));
+        let mut open = vec![(root, index, depth)];
+        while let Some((node, index, depth)) = open.pop() {
+            self.built.depth = self.built.depth.max(depth);
+            // Depth first: siblings are adjacent, followed by the subtree of the first.
+            let inner = self.children(node, index);
+            open.extend(inner.into_iter().rev().map(|(node, index)| (node, index, depth + 1)));
         }
     }
 
     fn is_block(&self, node: Subtree) -> bool {
-        node.count == 1 || self.cuts[self.tree.place(node)].is_block
+        node.count == 1 || self.cuts[self.tree.inner_index(node)].is_block
     }
 
-    /// Fills a node; its children that are nodes, with their places.
-    fn children(&mut self, node: Subtree, place: usize) -> Vec<(Subtree, usize)> {
+    /// Fills node `index`. Returns its children that are nodes, with their indices.
+    fn children(&mut self, node: Subtree, index: usize) -> Vec<(Subtree, usize)> {
         let [left, right] = self.tree.tree.sides(node);
-        let on_left = usize::from(self.cuts[self.tree.place(node)].lefts[0]);
+        let on_left = usize::from(self.cuts[self.tree.inner_index(node)].lefts[0]);
         let mut children = Vec::with_capacity(WIDTH);
         self.cut(left, on_left, &mut children);
         self.cut(right, WIDTH - on_left, &mut children);
         let mut inner = Vec::new();
         for (slot, &child) in children.iter().enumerate() {
-            let index = if self.is_block(child) {
+            let child_index = if self.is_block(child) {
                 self.block(child)
             } else {
-                inner.push((child, self.made.nodes.len()));
-                self.made.nodes.push(Node::EMPTY);
-                self.made.nodes.len() as u32 - 1
+                inner.push((child, self.built.nodes.len()));
+                self.built.nodes.push(Node::EMPTY);
+                self.built.nodes.len() as u32 - 1
             };
-            self.made.nodes[place].set(slot, self.tree.bounds(child), index);
+            self.built.nodes[index].set(slot, self.tree.bounds(child), child_index);
         }
         inner
     }
 
-    /// Cuts a subtree into so many children, or fewer.
+    /// Cuts a subtree into at most `count` children.
     fn cut(&self, node: Subtree, mut count: usize, children: &mut Vec<Subtree>) {
-        let lefts = |count: usize| usize::from(self.cuts[self.tree.place(node)].lefts[count - 1]);
+        let lefts = |count: usize| usize::from(self.cuts[self.tree.inner_index(node)].lefts[count - 1]);
         while node.count > 1 && count > 1 && lefts(count) == 0 {
             count -= 1;
         }
@@ -303,7 +301,7 @@ impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
         self.cut(right, count - lefts(count), children);
     }
 
-    /// Adds a block; its index as a child.
+    /// Adds a block. Returns its index, as in [`Node::children`].
     fn block(&mut self, node: Subtree) -> u32 {
         let mut corners = [[[f32::NAN; WIDTH]; 3]; 3];
         let mut normals = [[f32::NAN; WIDTH]; 3];
@@ -318,9 +316,9 @@ impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
                 lanes[lane] = coordinate;
             }
         }
-        self.made.blocks.push(Block { corners });
-        self.made.normals.push(Normals { axes: normals });
-        self.made.firsts.push(node.first);
-        BLOCK | (self.made.blocks.len() as u32 - 1)
+        self.built.blocks.push(Block { corners });
+        self.built.normals.push(Normals { axes: normals });
+        self.built.firsts.push(node.first);
+        BLOCK | (self.built.blocks.len() as u32 - 1)
     }
 }

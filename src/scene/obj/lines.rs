@@ -1,14 +1,14 @@
-//! Lines of OBJ and MTL files as the tobj crate takes them: it refuses a whole file for one that it cannot read.
+//! Lines of OBJ and MTL files, prepared for the tobj crate, which refuses a whole file for one bad line.
 
 use std::borrow::Cow;
 
 use crate::scene::report::{Fate, ImportReport};
 
-/// What a material is called whose name is left out.
+/// Name of an unnamed material.
 const UNNAMED: &str = "(unnamed)";
 
-/// The lines of an OBJ file: those that go on after a `\` are joined, `usemtl` has a name, `vt` two coordinates, and where
-/// some vertices have a colour the others are white.
+/// Lines of an OBJ file: continued lines are joined, `usemtl` gets a name, `vt` two coordinates, and missing vertex colours
+/// are white.
 pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text = text_of(bytes);
     let are_some_colored = has_some_colors(text.as_bytes());
@@ -31,7 +31,7 @@ pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(lines.collect::<Vec<_>>().join("\n").into_bytes())
 }
 
-/// What files in UTF-8 may begin with.
+/// Byte order mark of UTF-8.
 const UTF_8: &[u8] = b"\xef\xbb\xbf";
 
 /// The text of a file in UTF-8 or UTF-16.
@@ -69,7 +69,7 @@ fn is_odd(line: &[u8]) -> bool {
         || line.starts_with(b"vt") && words(line) == 2
 }
 
-/// The lines of a library of materials that can be read; the others are told.
+/// Readable lines of a material library; the others are reported.
 pub(super) fn of_library(bytes: &[u8], name: &str, report: &mut ImportReport) -> Vec<u8> {
     let mut lines = joined(&text_of(bytes));
     for line in &mut lines {
@@ -99,23 +99,23 @@ fn are_numbers(words: &[&str]) -> bool {
     words.iter().all(|word| word.parse::<f32>().is_ok())
 }
 
-/// Lines, those that end in `\` with the next one. A comment may end in a folder's name.
+/// Lines, with those that end in `\` joined to the next. A comment may end in a folder's name.
 fn joined(text: &str) -> Vec<String> {
     let mut lines = Vec::new();
-    let mut goes_on = false;
+    let mut continues = false;
     for line in text.lines() {
-        let (line, next_goes_on) = match line.trim_end().strip_suffix('\\') {
-            Some(start) if goes_on || !line.trim_start().starts_with('#') => (start, true),
+        let (line, next_continues) = match line.trim_end().strip_suffix('\\') {
+            Some(start) if continues || !line.trim_start().starts_with('#') => (start, true),
             _ => (line, false),
         };
         match lines.last_mut() {
-            Some(last) if goes_on => {
+            Some(last) if continues => {
                 String::push(last, ' ');
                 last.push_str(line);
             }
             _ => lines.push(line.to_owned()),
         }
-        goes_on = next_goes_on;
+        continues = next_continues;
     }
     lines
 }

@@ -1,15 +1,15 @@
-//! What a line of a library of materials says of a picture: options that begin with a hyphen, then the file's name.
+//! Texture lines of a material library: options that start with a hyphen, then the file name.
 
-/// A picture's file and how it is laid on the surface.
+/// A texture file and its mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Map<'a> {
-    /// Its name, which may have spaces.
+    /// File name, which may have spaces.
     pub name: &'a str,
-    /// How often it is there along u and v.
+    /// Repetitions along u and v.
     pub scale: [f32; 2],
-    /// By how much it is moved, along u and v upwards.
+    /// Offset along u, and along v upwards.
     pub offset: [f32; 2],
-    /// What is beyond it is as its edge.
+    /// True for clamping to the edge.
     pub is_clamped: bool,
     /// Factor of a bump's height or a normal's tilt.
     pub strength: f32,
@@ -67,21 +67,21 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// Places in the picture from a mesh's coordinates, whose v goes downwards.
+    /// Affine map from the mesh's coordinates, with v downwards, to the image's.
     pub fn texture_from_mesh_uv(&self) -> [f32; 6] {
         let ([scale_u, scale_v], [offset_u, offset_v]) = (self.scale, self.offset);
         [scale_u, 0.0, offset_u, 0.0, scale_v, 1.0 - scale_v - offset_v]
     }
 }
 
-/// The option at the start of a line, its values, and what follows them.
+/// The first option of a line, its values, and the rest.
 fn next_option(line: &str) -> Option<(&str, Vec<&str>, &str)> {
     let (option, mut rest) = next_word(line)?;
     let (option, most, least) = OPTIONS.into_iter().find(|(known, ..)| *known == option)?;
     let mut values = Vec::new();
     while values.len() < most {
         let Some((word, after)) = next_word(rest) else { break };
-        // A name follows where numbers may be left out.
+        // Optional numbers end where a name follows.
         if values.len() >= least && (word.parse::<f32>().is_err() || after.is_empty()) {
             break;
         }

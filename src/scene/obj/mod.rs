@@ -93,7 +93,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     })
 }
 
-/// The materials of a library; none where it is not there.
+/// Materials of a library; empty if it is missing.
 fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -> tobj::MTLLoadResult {
     let name = library.to_string_lossy();
     match files.read(&name) {
@@ -162,12 +162,12 @@ fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>,
 /// Texture coordinates as they are.
 const IDENTITY: [f32; 6] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
-/// The materials as slots, with their pictures.
+/// Converter of materials to slots with textures.
 struct Slots<'a> {
     files: &'a Files,
     side_max: u32,
     materials: &'a [Material],
-    /// Slot of a material; the last one of what has none.
+    /// Slot of each material; the last one is for faces without a material.
     slot_of: Vec<Option<u32>>,
     slots: Vec<Slot>,
     textures: Vec<Texture>,
@@ -204,7 +204,7 @@ impl<'a> Slots<'a> {
 
     fn read(&mut self, material: &Material, report: &mut ImportReport) -> Slot {
         report.note(Fate::Used, "materials", &material.name);
-        // What is no number is as 0.
+        // NaN counts as 0.
         let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
         let unit = |x: f32| within(x, 1.0);
         let number = |key: &str| {
@@ -264,7 +264,7 @@ impl<'a> Slots<'a> {
             Picture::Missing => slot.emission = [0.0; 3],
             Picture::Unnamed => {}
         }
-        table::tell(material, report);
+        table::report_unread(material, report);
         report.note(
             Fate::Approximated,
             "a .mtl material, as metalness and roughness",
@@ -273,7 +273,7 @@ impl<'a> Slots<'a> {
         slot
     }
 
-    /// The base colour's picture, and whether it has the opacity.
+    /// The base colour map, and whether it has opacity.
     fn read_color(&mut self, material: &Material, slot: &mut Slot, report: &mut ImportReport) {
         let [color, opacity] =
             [&material.diffuse_texture, &material.dissolve_texture].map(|line| line.as_deref().map(Map::parse));
@@ -294,7 +294,7 @@ impl<'a> Slots<'a> {
         }
     }
 
-    /// The picture of a line of the library.
+    /// The texture of a line of the library.
     fn texture(&mut self, map: Option<&Map<'_>>, is_color: bool, report: &mut ImportReport) -> Picture {
         let Some(map) = map else { return Picture::Unnamed };
         for option in &map.ignored {
@@ -317,7 +317,7 @@ impl<'a> Slots<'a> {
         })
     }
 
-    /// Adds the picture in a file to those of the model; its number.
+    /// Adds a texture file to the model and returns its index.
     fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
         let budget = &self.files.import.budget;
         let decoded = self
@@ -360,7 +360,7 @@ impl<'a> Slots<'a> {
     }
 }
 
-/// What became of a picture that a material may name.
+/// Result of reading a texture.
 #[derive(Clone, Copy, PartialEq)]
 enum Picture {
     Unnamed,
@@ -377,7 +377,7 @@ impl Picture {
     }
 }
 
-/// Whether a picture is grey all over, as heights are and normals are not.
+/// Whether a map is grey everywhere: a height map, not a normal map.
 fn is_height(texture: &Texture) -> bool {
     let grey = |texel: &[u8; 4]| texel[0].abs_diff(texel[2]) < 8 && texel[1].abs_diff(texel[2]) < 8;
     texture.rgba8.as_chunks::<4>().0.iter().all(grey)

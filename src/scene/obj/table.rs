@@ -1,5 +1,4 @@
-//! What becomes of each keyword of a `.mtl` library: the table in docs/FORMATS.md, by which the import report tells what is
-//! left out.
+//! Fate of each keyword of a `.mtl` library: the table in docs/FORMATS.md, from which the import report is made.
 
 use tobj::Material;
 
@@ -12,13 +11,13 @@ const fn row(place: &'static str, default: &'static str, example: &'static str, 
     FileParameter::new(place, default, example, goes)
 }
 
-/// A picture beside the library.
+/// Example of a texture file.
 const PICTURE: &str = "picture.png";
 
 /// Every keyword of a material that the format and its additions have.
 pub const MTL_PARAMETERS: &[FileParameter] = &[
     row("Kd", "0.6 0.6 0.6", "0.5 0.25 0", To("base.color")).within(0.0, 1.0),
-    row("Ks", "0 0 0", "0.5 0.25 0", To("specular.weight")).told("what is not black reflects as `Ni` says"),
+    row("Ks", "0 0 0", "0.5 0.25 0", To("specular.weight")).with_note("what is not black reflects as `Ni` says"),
     row("Ke", "0 0 0", "0.5 0.25 0", To("emission.color, emission.strength")).within(0.0, 1e6),
     row(
         "Ka",
@@ -26,14 +25,14 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
         "0.5 0.25 0",
         Nowhere("ambient light (Ka), which path tracing needs none of"),
     ),
-    row("Ns", "0", "200", To("specular.roughness")).told("Blinn-Phong's exponent, as the lobe that is chosen"),
+    row("Ns", "0", "200", To("specular.roughness")).with_note("Blinn-Phong's exponent, as the lobe that is chosen"),
     row("Ni", "1.5", "1.25", To("specular.ior"))
         .within(1.0, 4.0)
-        .told("below 1 as 1.5"),
+        .with_note("below 1 as 1.5"),
     row("d", "1", "0.5", To("geometry.opacity")).within(0.0, 1.0),
     row("Tr", "0", "0.5", To("geometry.opacity"))
         .within(0.0, 1.0)
-        .told("where there is no `d`"),
+        .with_note("where there is no `d`"),
     row(
         "Tf",
         "1 1 1",
@@ -41,7 +40,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
         Nowhere("the colour of what passes through (Tf)"),
     ),
     row("illum", "2", "1", To("specular.weight"))
-        .told("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are told"),
+        .with_note("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are told"),
     row(
         "sharpness",
         "60",
@@ -62,9 +61,10 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
     ),
     row("map_Kd", "", PICTURE, To("base.color_texture")),
     row("map_Ke", "", PICTURE, To("emission.color_texture")),
-    row("map_d", "", PICTURE, To("geometry.opacity_texture")).told("the alpha of `map_Kd`; another picture is ignored"),
+    row("map_d", "", PICTURE, To("geometry.opacity_texture"))
+        .with_note("the alpha of `map_Kd`; another picture is ignored"),
     row("norm", "", PICTURE, To("geometry.normal_texture")),
-    row("bump", "", PICTURE, To("geometry.normal_texture")).told("also `map_bump`; heights are ignored"),
+    row("bump", "", PICTURE, To("geometry.normal_texture")).with_note("also `map_bump`; heights are ignored"),
     row("map_Ka", "", PICTURE, Nowhere("a texture given by map_Ka")),
     row("map_Ks", "", PICTURE, Nowhere("a texture given by map_Ks")),
     row("map_Ns", "", PICTURE, Nowhere("a texture given by map_Ns")),
@@ -81,42 +81,42 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
 /// Illumination models that are shown as they are, or nearly: 2 is a highlight; 3, 5 and 8 reflect the scene besides.
 const SHOWN: [u8; 6] = [0, 1, 2, 3, 5, 8];
 
-/// Tells what of a material goes nowhere by the table, what is out of its range, and what the table does not have.
-pub(super) fn tell(material: &Material, report: &mut ImportReport) {
-    let mut tell = |fate, what: String| report.note(fate, what, &material.name);
+/// Reports a material's parameters that the table ignores or does not have, and values out of range.
+pub(super) fn report_unread(material: &Material, report: &mut ImportReport) {
+    let mut note = |fate, what: String| report.note(fate, what, &material.name);
     for (key, text) in keywords(material) {
         let Some(row) = MTL_PARAMETERS.iter().find(|row| row.place == key) else {
             if !matches!(key, "map_bump" | "map_Bump") {
-                tell(Fate::Ignored, format!("{key} of a .mtl material"));
+                note(Fate::Ignored, format!("{key} of a .mtl material"));
             }
             continue;
         };
         let numbers = numbers(&text);
         match (row.goes, row.range) {
             (Nowhere(what), _) if numbers.is_empty() || numbers != self::numbers(row.default) => {
-                tell(Fate::Ignored, what.to_owned());
+                note(Fate::Ignored, what.to_owned());
             }
             (To(_), Some(_)) if numbers.is_empty() => {
-                tell(Fate::Ignored, format!("{key} of a .mtl material, which is no number"));
+                note(Fate::Ignored, format!("{key} of a .mtl material, which is no number"));
             }
             (To(_), Some([least, most])) if numbers.iter().any(|x| !(least..=most).contains(x)) => {
-                tell(Fate::Approximated, format!("{key} beyond {least} to {most}"));
+                note(Fate::Approximated, format!("{key} beyond {least} to {most}"));
             }
             _ => {}
         }
     }
     if material.specular.is_some_and(|color| color != [0.0; 3]) {
-        tell(
+        note(
             Fate::Approximated,
             "a colour of reflections (Ks), as the index has it".to_owned(),
         );
     }
     if let Some(model) = material.illumination_model.filter(|model| !SHOWN.contains(model)) {
-        tell(Fate::Approximated, format!("illumination model {model}, as 2"));
+        note(Fate::Approximated, format!("illumination model {model}, as 2"));
     }
 }
 
-/// The keywords that a material has, with what stands after them.
+/// Keywords of a material with their text.
 fn keywords(material: &Material) -> Vec<(&str, String)> {
     let color = |color: Option<[f32; 3]>| color.map(|[r, g, b]| format!("{r} {g} {b}"));
     let number = |number: Option<f32>| number.map(|x| x.to_string());

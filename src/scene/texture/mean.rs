@@ -1,4 +1,4 @@
-//! Means of pictures.
+//! Means of texture maps.
 
 use std::path::Path;
 
@@ -11,16 +11,16 @@ use crate::scene::picture::read_texture;
 /// Codes of 8 bits.
 const CODES: usize = 256;
 
-/// The mean of a picture.
+/// Mean of a texture map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureMean {
-    /// Of its codes, in [0, 1].
+    /// Mean of the codes, in [0, 1].
     pub codes: [f32; 4],
-    /// Of the light that its codes stand for as sRGB.
+    /// Mean of the decoded sRGB codes, linear.
     pub linear: [f32; 3],
 }
 
-/// The mean of a picture.
+/// Mean of a texture map.
 pub fn texture_mean(picture: &Texture) -> TextureMean {
     let mut sums = [0_u64; 4];
     for texel in picture.rgba8.as_chunks::<4>().0 {
@@ -35,15 +35,16 @@ pub fn texture_mean(picture: &Texture) -> TextureMean {
     }
 }
 
-/// The mean of a picture in a file.
+/// Mean of a texture map in a file.
 ///
 /// # Errors
-/// What is wrong with the file.
+///
+/// The fault of the file.
 pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
     Ok(texture_mean(&read_texture(path, true, u32::MAX, &Budget::default())?))
 }
 
-/// The mean of a picture of sRGB codes, linear.
+/// Mean of sRGB codes, linear.
 fn mean_linear(picture: &Texture) -> [f32; 3] {
     let mut counts = [[0u32; CODES]; 3];
     for texel in picture.rgba8.as_chunks::<4>().0 {

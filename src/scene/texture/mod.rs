@@ -1,14 +1,14 @@
-//! The pictures of a model as the integrators read them: all texels in one array, filtered by hand, so that both engines
-//! find the same numbers. Twin of `shaders/scene/texture.wgsl`.
+//! Texture maps as the integrators read them: all texels in one array, filtered in software, so that both engines get the
+//! same numbers. Twin of `shaders/scene/texture.wgsl`.
 //!
-//! Texels are RGBA of 8 bits in words of 32, or of 16 bits in two words each. The array begins with the linear values of the 256 sRGB codes as the bits of
-//! f32: colours are decoded before they are filtered, by a look-up that has no rounding of its own.
+//! Texels are RGBA, 8 bits each in one word or 16 bits each in two. The array starts with the linear values of the 256 sRGB
+//! codes as bits of f32: colours are decoded before filtering, by a look-up without rounding of its own.
 
 mod mean;
-mod own;
 mod pack;
 pub(super) mod scale;
 pub mod set;
+mod user;
 mod uses;
 
 use bytemuck::{Pod, Zeroable};
@@ -24,13 +24,13 @@ use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
 pub use mean::{TextureMean, mean_of_file, texture_mean};
-pub use own::{OwnTexture, TextureChannel, TextureProjection, TextureSpace, TextureTarget};
-pub use pack::{OwnPicture, Pack, Pictures, SlotTextures, Textures, WORDS_MAX, slots_with_coordinates};
+pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
+pub use user::{TextureChannel, TextureProjection, TextureSpace, TextureTarget, UserTexture};
 pub use uses::TextureAssignment;
 
-/// How a picture goes on beyond its edges: from the start again.
+/// Wrap mode: repeat.
 pub const WRAP_REPEAT: u32 = 0;
-/// Back and forth.
+/// Mirrored repeat.
 pub const WRAP_MIRRORED: u32 = 1;
 /// The texel at the edge.
 pub const WRAP_CLAMP: u32 = 2;
@@ -42,22 +42,22 @@ pub const IS_NEAREST: u32 = 2;
 pub const IS_SECOND_SET: u32 = 4;
 /// [`TextureRecord::flags`]: channels have 16 bits, a texel two words.
 pub const IS_FINE: u32 = 8;
-/// [`TextureRecord::flags`]: the picture lies on the surface as on a box.
+/// [`TextureRecord::flags`]: box projection.
 pub const IS_BOX: u32 = 16;
-/// [`TextureRecord::flags`]: normals turn with their picture.
+/// [`TextureRecord::flags`]: normals rotate with their map.
 pub const TURNS_NORMALS: u32 = 32;
-/// [`TextureRecord::flags`]: where the channel's number begins that stands for all; 0 for none, else 1 more than it.
+/// [`TextureRecord::flags`]: shift of the selected channel plus 1; 0 for all channels.
 pub const CHANNEL_SHIFT: u32 = 8;
-/// [`TextureRecord::flags`]: where it begins how the picture goes on along u; along v two bits further.
+/// [`TextureRecord::flags`]: shift of the wrap mode along u; that along v is two bits further.
 pub const WRAP_SHIFT: u32 = 16;
 
-/// One use of a picture. Three texels of four words on the GPU (`shaders/scene/texture.wgsl`).
+/// One use of a texture map. Three texels of four words on the GPU (`shaders/scene/texture.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TextureRecord {
     /// The place along u: the dot product with (u, v, 1).
     pub u_from_uv: [f32; 3],
-    /// Where the texels begin, row by row from the top.
+    /// First texel; rows from the top.
     pub first_texel: u32,
     /// The place along v.
     pub v_from_uv: [f32; 3],
@@ -65,20 +65,18 @@ pub struct TextureRecord {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// How its texels are read.
+    /// Flags of filtering and format.
     pub flags: u32,
-    /// What is found is multiplied by this.
+    /// Factor of the filtered value.
     pub scale: f32,
     /// Then this is added.
     pub offset: f32,
 }
 
-/// Places on a surface by which pictures are looked up: both sets of texture coordinates, and where the place is on a box
-/// around the model.
+/// Texture coordinates of a surface point: both sets, and those by box projection.
 pub type Uvs<T> = [[T; 2]; 3];
 
-/// Red, green, blue (linear) and alpha that a use of a picture gives at a surface point; the same four times where one channel
-/// counts.
+/// Value of a texture use at a surface point: linear RGB and alpha; one channel is repeated four times.
 pub fn texture_lookup<T: Scalar>(textures: &Textures, index: u32, uvs: Uvs<T>) -> (Vec3<T>, T) {
     let record = &textures.records[index as usize];
     let (color, alpha) = filtered(textures, record, uvs);
@@ -93,7 +91,7 @@ pub fn texture_lookup<T: Scalar>(textures: &Textures, index: u32, uvs: Uvs<T>) -
     (color * scale + Vec3::splat(offset), alpha * scale + offset)
 }
 
-/// A picture at a surface point as it is: red, green, blue (linear) and alpha.
+/// Filtered texture map at a surface point: linear RGB and alpha.
 fn filtered<T: Scalar>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>) -> (Vec3<T>, T) {
     let [u, v] = match record.flags & (IS_SECOND_SET | IS_BOX) {
         0 => uvs[0],
@@ -124,7 +122,7 @@ fn filtered<T: Scalar>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>)
     mix_texels(above, below, fy)
 }
 
-/// Colour and alpha between those of two texels.
+/// Linear interpolation of two texels.
 fn mix_texels<T: Scalar>((a, a_alpha): (Vec3<T>, T), (b, b_alpha): (Vec3<T>, T), t: T) -> (Vec3<T>, T) {
     (a.mix(b, t), a_alpha + (b_alpha - a_alpha) * t)
 }
@@ -182,8 +180,7 @@ fn texel<T: Scalar>(textures: &Textures, record: &TextureRecord, column: u32, ro
     )
 }
 
-/// The texture coordinates at a place of a triangle, given by the weights of its corners; those of the box where
-/// `has_box` says that they are needed.
+/// Texture coordinates at the barycentric weights of a triangle; box projection only if `has_box`.
 #[inline(always)]
 pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
     let corners = geometry.vertices(triangle);
@@ -205,8 +202,7 @@ pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], 
     ]
 }
 
-/// The axis along which a picture lies to the right on the side of a box that a surface with this normal faces: seen from
-/// outside, with y upwards, and with −z upwards on top.
+/// Horizontal axis of the box side that a surface with this normal faces: seen from outside, with +Y up, and −Z up on top.
 pub fn box_right<T: Scalar>(normal: Vec3<T>) -> Vec3<T> {
     let [x, y, z] = normal.to_f64();
     let axis = |x: f64, z: f64| vec3(T::from_f64(x), T::zero(), T::from_f64(z));
@@ -219,8 +215,8 @@ pub fn box_right<T: Scalar>(normal: Vec3<T>) -> Vec3<T> {
     }
 }
 
-/// Where a place with this normal is on the side of the box around the model that it faces, v downwards. The box reaches from
-/// −1 to 1, the model's bounding radius.
+/// Coordinates of a position on the box side that it faces, v downwards. The box reaches from −1 to 1 in bounding radii of
+/// the model.
 fn box_uv<T: Scalar>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
     let [x, y, z] = normal.to_f64();
     let is_level = y.abs() > x.abs() && y.abs() >= z.abs();
@@ -233,8 +229,7 @@ fn box_uv<T: Scalar>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
     [box_right(normal).dot(position) * half + half, down * half + half]
 }
 
-/// The material at a surface point: what its textures say and the colour between its vertices multiplied in.
-/// `tables` holds all materials' tables.
+/// The material at a surface point, with its textures and vertex colours applied. `tables` holds all materials' tables.
 pub fn textured_material<T: Scalar>(
     textures: &Textures,
     tables: &[f32],
@@ -256,7 +251,7 @@ pub fn textured_material<T: Scalar>(
         at_point.base_color = at_point.base_color * color;
         at_point.transmission_tint = at_point.transmission_tint * color;
     }
-    // A picture that has both is looked up once.
+    // A map with both is looked up once.
     let mut of_metalness = Vec3::splat(T::one());
     if roughness != NO_TEXTURE {
         let (values, _) = texture_lookup(textures, roughness, uvs);
@@ -265,7 +260,7 @@ pub fn textured_material<T: Scalar>(
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
-        // What the refraction is rougher by stays.
+        // The refraction keeps its extra roughness.
         let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
         at_point.transmission_roughness = rough.clamp(T::zero(), T::one());
     }
@@ -314,7 +309,7 @@ pub fn textured_materials<T: Real>(
     }
 }
 
-/// What [`textured_material`] changes of a material.
+/// Parameters that [`textured_material`] changes.
 #[derive(Clone, Copy, Default)]
 struct TexturedNumbers<T> {
     /// Base colour, tint of the transmission, emission.
@@ -346,7 +341,7 @@ pub fn vertex_factors<T: Scalar>(
     (color, alpha)
 }
 
-/// What a surface point emits, linear RGB, its holes left out; `of_vertices` from [`vertex_factors`].
+/// Emission at a surface point times its opacity, linear RGB; `of_vertices` from [`vertex_factors`].
 pub fn emission_at<T: Scalar>(
     textures: &Textures,
     material: &Material<T>,
@@ -376,16 +371,15 @@ pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: U
     stopped_share(material, opacity)
 }
 
-/// The share of light that a surface point of this opacity stops: all or nothing where the material is masked.
+/// Effective opacity of a surface point: 0 or 1 for a masked material.
 fn stopped_share<T: Scalar>(material: &Material<T>, opacity: T) -> T {
     let cutoff = material.alpha_cutoff;
     let masked = T::select(opacity.less(cutoff), T::zero(), T::one());
     T::select(cutoff.less(T::zero()), opacity, masked)
 }
 
-/// The normal that a normal texture gives, in world space. `tangent` and the sign of the bitangent as the geometry has
-/// them, `normal` the interpolated one, `outward` the same on the front of the surface; the plain normal where the texture
-/// says nothing.
+/// The normal of a normal map, in world space. `tangent` and the bitangent's sign are the geometry's, `normal` the
+/// interpolated one, `outward` the same on the front. Without a map: `normal`.
 pub fn mapped_normal<T: Scalar>(
     textures: &Textures,
     material: &Material<T>,
@@ -411,7 +405,7 @@ pub fn mapped_normal<T: Scalar>(
     let along = frame_from_tangent(normal, tangent, T::zero());
     let is_left = !is_box && sign.to_f64() < 0.0;
     let bitangent = if is_left { -along.bitangent } else { along.bitangent };
-    // What points into the surface is laid down on it.
+    // A normal that points into the surface is bent onto it.
     let up = signed(texel.z).max(T::zero());
     let mapped = along.tangent * x + bitangent * y + normal * up;
     normalize_or(mapped, normal)

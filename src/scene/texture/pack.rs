@@ -1,12 +1,12 @@
-//! Pictures packed for the integrators.
+//! Packing of texture maps for the integrators.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::mean::{TextureMean, texture_mean};
-use super::own::TextureTarget;
 use super::scale::{fraction, halved};
-use super::uses::{SlotUses, TextureAssignment, Use, of_own, of_slot};
+use super::user::TextureTarget;
+use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::tone::linear_from_srgb;
@@ -15,41 +15,41 @@ use crate::scene::model::{AlphaMode, Model, Slot, Texture};
 
 /// Words before the first texel: the linear values of sRGB codes.
 const DECODED: usize = 256;
-/// Words that a model's texels may take: what every Vulkan adapter binds at once, 128 MiB.
+/// Largest number of texel words of a model: 128 MiB, which every Vulkan adapter can bind.
 pub const WORDS_MAX: usize = 1 << 25;
 
-/// Reads pictures of the user's own; the flag says whether they are read as colours.
+/// Reader of users' texture maps; the flag is true for colours.
 ///
 /// # Errors
-/// Why it can't be had.
+///
+/// The reason why a file cannot be read.
 pub type Pictures<'a> = &'a dyn Fn(&Path, bool) -> Result<Arc<Texture>, String>;
 
-/// A picture of the user's own, or why it can't be had.
+/// A user's texture map, or the reason why it cannot be read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OwnPicture {
-    /// Its file.
+pub struct UserTextureFile {
+    /// File of the map.
     pub file: PathBuf,
-    /// What was read.
+    /// The map, or the error.
     pub picture: Result<Arc<Texture>, String>,
 }
 
-/// What slots look up.
+/// Texture data of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Textures {
-    /// The uses of pictures; never empty, since a GPU's buffer cannot be.
+    /// Records of texture uses; never empty, since a GPU buffer cannot be.
     pub records: Vec<TextureRecord>,
     /// Decoded sRGB codes, then texels.
     pub words: Arc<Vec<u32>>,
-    /// What each of the model's slots looks up.
+    /// Textures per material slot.
     pub slots: Vec<SlotTextures>,
-    /// What had to be changed, and what is missing, one line each.
+    /// Warnings on reduced and missing maps, one line each.
     pub warnings: Vec<String>,
-    /// The pictures of the user's own.
-    pub own: Vec<OwnPicture>,
+    /// Users' texture maps.
+    pub user_textures: Vec<UserTextureFile>,
 }
 
-/// What a slot looks up, as numbers of [`Textures::records`] or [`NO_TEXTURE`]. A picture of one value is a number, not
-/// looked up.
+/// Textures of a slot, as indices into [`Textures::records`] or [`NO_TEXTURE`]. A map of one value is a constant instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlotTextures {
     /// Multiplies the base colour.
@@ -66,23 +66,23 @@ pub struct SlotTextures {
     pub opacity: u32,
     /// Its red multiplies the weight of the coat.
     pub coat: u32,
-    /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+    /// Opacity cutoff of a masked material; negative for blended opacity.
     pub alpha_cutoff: f32,
     /// The emission texture's mean, linear.
     pub mean_emission: [f32; 3],
     /// Linear RGB of a base colour texture of one value.
     pub constant_base_color: Option<[f32; 3]>,
-    /// The same of the opacity's.
+    /// Constant value of a uniform opacity map.
     pub constant_opacity: Option<f32>,
-    /// The same of the roughness's.
+    /// Constant value of a uniform roughness map.
     pub constant_roughness: Option<f32>,
-    /// The same of the metalness's.
+    /// Constant value of a uniform metalness map.
     pub constant_metalness: Option<f32>,
-    /// The same of the coat's.
+    /// Constant value of a uniform coat map.
     pub constant_coat: Option<f32>,
-    /// What the vertices' colours multiply: flags of a material.
+    /// Parameters that vertex colours multiply, as material flags.
     pub vertex_flags: u32,
-    /// Which of them, by target, lie on the surface as on a box.
+    /// Whether each target uses box projection.
     pub on_box: [bool; TextureTarget::ALL.len()],
 }
 
@@ -109,7 +109,7 @@ impl Default for SlotTextures {
     }
 }
 
-/// What the colours at a slot's vertices multiply, as a material's flags.
+/// Parameters that a slot's vertex colours multiply, as material flags.
 fn vertex_flags(slot: &Slot) -> u32 {
     let of_color = if slot.is_unlit { VERTEX_EMISSION } else { VERTEX_BASE };
     let is_clear = slot.has_vertex_alpha && slot.alpha_mode != AlphaMode::Opaque;
@@ -117,34 +117,33 @@ fn vertex_flags(slot: &Slot) -> u32 {
     flag(slot.has_vertex_colors, of_color) | flag(is_clear, VERTEX_OPACITY)
 }
 
-/// The texels of all pictures that are used, and what is known of each: all that does not depend on how they are put on a
-/// surface.
+/// Texels and properties of all used maps: everything that does not depend on their mapping.
 #[derive(Debug)]
 pub struct Pack {
     words: Arc<Vec<u32>>,
     pictures: Vec<Packed>,
-    own: Vec<Own>,
+    user_textures: Vec<PackedUserTexture>,
     /// Whether the triangles of each slot have texture coordinates.
     has_coordinates: Vec<bool>,
     warnings: Vec<String>,
 }
 
-/// A picture of the user's own among the packed ones.
+/// A packed user's map.
 #[derive(Debug)]
-struct Own {
+struct PackedUserTexture {
     is_srgb: bool,
-    /// Its number, where it could be read.
+    /// Index among the packed maps, if readable.
     index: Option<usize>,
-    of: OwnPicture,
+    source: UserTextureFile,
 }
 
-/// A packed picture.
+/// A packed map.
 #[derive(Debug)]
 struct Packed {
     size: [u32; 2],
-    /// Where its texels begin, by [`variant`].
+    /// First texel by [`variant`].
     first_texels: [Option<u32>; 4],
-    /// Its channels, in [0, 1], where each is the same everywhere.
+    /// Uniform channels' values, in [0, 1].
     channels: [Option<f64>; 4],
     mean: Option<TextureMean>,
     is_translucent: bool,
@@ -157,21 +156,21 @@ fn variant(is_fine: bool, is_flipped: bool) -> usize {
 }
 
 impl Pack {
-    /// Packs what a model's slots and pictures of the user's own need. Where that is too much for a GPU the largest
-    /// pictures are halved, which the warnings say.
+    /// Packs the maps that a model's slots and the user's assignments need. If that is too much for a GPU, the largest maps
+    /// are halved, with a warning.
     pub fn new(model: &Model, assigned: &[TextureAssignment], pictures: Pictures<'_>) -> Self {
         Self::within(model, assigned, pictures, WORDS_MAX)
     }
 
     fn within(model: &Model, assigned: &[TextureAssignment], read: Pictures<'_>, words_max: usize) -> Self {
         let mut warnings = Vec::new();
-        let mut own: Vec<Own> = Vec::new();
+        let mut user_textures: Vec<PackedUserTexture> = Vec::new();
         let mut count = model.textures.len();
         for TextureAssignment { target, texture, .. } in assigned {
             let is_srgb = texture.is_srgb(*target);
-            if own
+            if user_textures
                 .iter()
-                .any(|own| own.of.file == texture.file && own.is_srgb == is_srgb)
+                .any(|user| user.source.file == texture.file && user.is_srgb == is_srgb)
             {
                 continue;
             }
@@ -185,21 +184,24 @@ impl Pack {
             }
             let index = picture.is_ok().then_some(count);
             count += usize::from(picture.is_ok());
-            own.push(Own {
+            user_textures.push(PackedUserTexture {
                 is_srgb,
                 index,
-                of: OwnPicture {
+                source: UserTextureFile {
                     file: texture.file.clone(),
                     picture,
                 },
             });
         }
-        let read: Vec<Arc<Texture>> = own.iter().filter_map(|own| own.of.picture.clone().ok()).collect();
+        let read: Vec<Arc<Texture>> = user_textures
+            .iter()
+            .filter_map(|user| user.source.picture.clone().ok())
+            .collect();
         let all: Vec<&Texture> = model.textures.iter().chain(read.iter().map(Arc::as_ref)).collect();
         let mut pack = Self {
             words: Arc::default(),
             pictures: all.iter().map(|picture| Packed::of(picture)).collect(),
-            own,
+            user_textures,
             has_coordinates: slots_with_coordinates(model),
             warnings,
         };
@@ -219,7 +221,7 @@ impl Pack {
         pack
     }
 
-    /// What had to be changed, and what is missing, one line each.
+    /// Warnings on reduced and missing maps, one line each.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
@@ -229,10 +231,10 @@ impl Pack {
         size_of_val(&self.words[..])
     }
 
-    /// The number of a picture of the user's own.
-    fn own_picture(&self, file: &Path, is_srgb: bool) -> Option<usize> {
-        let is_it = |own: &&Own| own.is_srgb == is_srgb && own.of.file == file;
-        self.own.iter().find(is_it)?.index
+    /// Index of a user's map.
+    fn user_texture_index(&self, file: &Path, is_srgb: bool) -> Option<usize> {
+        let is_it = |user: &&PackedUserTexture| user.is_srgb == is_srgb && user.source.file == file;
+        self.user_textures.iter().find(is_it)?.index
     }
 
     fn is_translucent(&self, picture: usize) -> bool {
@@ -244,34 +246,39 @@ impl Pack {
         self.has_coordinates.get(slot).copied().unwrap_or(false)
     }
 
-    /// What each slot uses. A picture of the user's own takes the place of the model's, also where it can't be had.
+    /// Texture uses per slot. A user's map replaces the model's, even if unreadable.
     fn uses(&self, model: &Model, assigned: &[TextureAssignment]) -> Vec<SlotUses> {
         let is_translucent = |picture: usize| self.is_translucent(picture);
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
             if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = self.use_of_own(assignment);
+                slot[assignment.target as usize] = self.use_of_user_texture(assignment);
             }
         }
         uses
     }
 
-    /// A use of a picture of the user's own; none where it can't be had.
-    fn use_of_own(&self, assigned: &TextureAssignment) -> Option<Use> {
+    /// A use of a user's map; `None` if unreadable.
+    fn use_of_user_texture(&self, assigned: &TextureAssignment) -> Option<Use> {
         let (file, is_srgb) = assigned.picture();
-        let picture = self.own_picture(&file, is_srgb)?;
+        let picture = self.user_texture_index(&file, is_srgb)?;
         let has_coordinates = self.has_coordinates(assigned.slot);
-        Some(of_own(assigned, picture, self.is_translucent(picture), has_coordinates))
+        Some(of_user_texture(
+            assigned,
+            picture,
+            self.is_translucent(picture),
+            has_coordinates,
+        ))
     }
 
-    /// What the model's slots look up, with the same pictures of the user's own, put on in any way.
+    /// Texture data for the same users' maps with any mapping.
     pub fn textures(&self, model: &Model, assigned: &[TextureAssignment]) -> Textures {
         let mut textures = Textures {
             records: Vec::new(),
             words: self.words.clone(),
             slots: Vec::new(),
             warnings: self.warnings.clone(),
-            own: self.own.iter().map(|own| own.of.clone()).collect(),
+            user_textures: self.user_textures.iter().map(|user| user.source.clone()).collect(),
         };
         for (slot, uses) in model.slots.iter().zip(self.uses(model, assigned)) {
             let mut packed = SlotTextures {
@@ -292,7 +299,7 @@ impl Pack {
         textures
     }
 
-    /// Has a slot look a picture up, or know its one value.
+    /// Assigns a map, or its uniform value, to a slot.
     fn look_up(&self, used: &Use, textures: &mut Textures, slot: &mut SlotTextures) {
         let picture = &self.pictures[used.picture];
         let value = picture.one_value(used).filter(|_| used.target != TextureTarget::Normal);
@@ -385,7 +392,7 @@ impl Packed {
         }
     }
 
-    /// Linear RGB of what a use finds, or the number that counts in all three, where it is the same everywhere.
+    /// Uniform value of a use, if any: linear RGB, or a scalar in all three.
     fn one_value(&self, used: &Use) -> Option<Vec3<f64>> {
         let is_srgb = used.flags & IS_SRGB != 0;
         let channel = |channel: usize| {
@@ -414,7 +421,7 @@ impl Packed {
         Some(value * f64::from(used.scale) + Vec3::splat(f64::from(used.offset)))
     }
 
-    /// The mean of what a use finds, linear.
+    /// Mean value of a use, linear.
     fn mean(&self, used: &Use) -> [f32; 3] {
         self.mean.map_or([1.0; 3], |mean| {
             let [r, g, b, _] = mean.codes;
@@ -440,12 +447,12 @@ impl Textures {
         size_of_val(&self.records[..])
     }
 
-    /// What a model's slots look up by themselves.
+    /// Texture data of a model without assignments.
     pub fn new(model: &Model) -> Self {
         Self::within(model, WORDS_MAX)
     }
 
-    /// The same within as many words.
+    /// The same within `words_max` words.
     pub fn within(model: &Model, words_max: usize) -> Self {
         let none = |_: &Path, _: bool| Err(String::new());
         Pack::within(model, &[], &none, words_max).textures(model, &[])
@@ -482,7 +489,7 @@ pub fn slots_with_coordinates(model: &Model) -> Vec<bool> {
     has
 }
 
-/// The value of a channel of a picture, in [0, 1], where it is the same everywhere.
+/// Value in [0, 1] of a uniform channel.
 fn one_value(picture: &Texture, channel: usize) -> Option<f64> {
     fn same<C: PartialEq>(texels: &[C], channel: usize) -> bool {
         let mut texels = texels.as_chunks::<4>().0.iter();
@@ -496,7 +503,7 @@ fn one_value(picture: &Texture, channel: usize) -> Option<f64> {
     is_same.then(|| fraction(picture, channel))
 }
 
-/// The pictures that are used (the others without texels), the largest halved until all fit.
+/// The used maps (others empty), with the largest halved until all fit.
 fn fitting(
     model: &Model,
     (pictures, packed): (&[&Texture], &[Packed]),
@@ -509,7 +516,7 @@ fn fitting(
         let mut of_it = uses.iter().filter(|used| used.picture == index);
         of_it.any(|used| used.flags & IS_SRGB != 0)
     };
-    // One texel does where all are the same.
+    // A uniform map needs one texel.
     let used = |(index, picture): (usize, &&Texture)| {
         let is_one_value = packed[index].channels.iter().all(Option::is_some);
         let side = match is_one_value {

@@ -1,4 +1,4 @@
-//! Pictures made smaller.
+//! Reduction of texture maps.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
     }
 }
 
-/// A picture of half the width and height, each texel the mean of those that it covers; of light, where it holds colours.
+/// A map of half the width and height by box filtering; colours are filtered linearly.
 pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     let (width, height) = ((picture.width / 2).max(1), (picture.height / 2).max(1));
     let decode = |[r, g, b, a]: [f64; 4]| {
@@ -59,7 +59,7 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     }
 }
 
-/// The first of some texels, where all are the same: of large pictures of little contents nearly all are.
+/// The common value of some texels, if they are equal: large maps of little content mostly are.
 fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<usize> {
     let place = |row: u32, column: u32| (row * picture.width + column) as usize;
     let texels8 = picture.rgba8.as_chunks::<4>().0;
@@ -70,7 +70,7 @@ fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<
     all.then_some(first)
 }
 
-/// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
+/// A map halved until its sides are at most `side_max`, and the original size if it was larger.
 pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
     let whole = [picture.width, picture.height];
     let mut scaled = picture;

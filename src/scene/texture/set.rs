@@ -1,16 +1,17 @@
-//! Pictures of one surface, recognised by their names: `wood_basecolor.png`, `Wood062_2K_NormalGL.jpg`, `wood_arm_4k.png`.
+//! Texture sets: maps of one surface, recognised by their names: `wood_basecolor.png`, `Wood062_2K_NormalGL.jpg`,
+//! `wood_arm_4k.png`.
 
 use std::path::{Path, PathBuf};
 
-use super::own::{OwnTexture, TextureChannel, TextureTarget};
+use super::user::{TextureChannel, TextureTarget, UserTexture};
 use crate::scene::endings::is_picture;
 
-/// What a word in a picture's name says.
+/// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]
 enum Meaning {
-    /// What it is put on.
+    /// The parameter.
     Is(TextureTarget),
-    /// The same, its numbers upside down.
+    /// The parameter, with inverted values.
     IsInverted(TextureTarget),
     /// Occlusion, roughness and metalness in red, green and blue.
     Packed,
@@ -21,7 +22,7 @@ enum Meaning {
 use Meaning::{Is, IsInverted, Other, Packed};
 use TextureTarget as To;
 
-/// Words by which pictures are named, in lower case without separators. A word of two parts stands before its parts.
+/// Known words, in lower case without separators. A word of two parts comes before its parts.
 #[rustfmt::skip]
 const WORDS: &[(&str, Meaning)] = &[
     ("basecolor", Is(To::BaseColor)), ("basecolour", Is(To::BaseColor)), ("albedo", Is(To::BaseColor)),
@@ -46,8 +47,8 @@ const WORDS: &[(&str, Meaning)] = &[
     ("sheen", Other), ("anisotropy", Other), ("thickness", Other), ("curvature", Other), ("id", Other),
 ];
 
-/// The words of a name in lower case: parted where something else than a letter or a digit stands, and where a capital
-/// follows a small letter.
+/// The words of a file name in lower case: split at characters other than letters and digits, and before a capital after a
+/// small letter.
 fn words(path: &Path) -> Vec<String> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let mut words = vec![String::new()];
@@ -68,7 +69,7 @@ fn words(path: &Path) -> Vec<String> {
     words
 }
 
-/// What a picture's name says last: a resolution and the like may follow.
+/// The last meaning in a file name; a resolution or similar may follow.
 fn meaning(path: &Path) -> Option<Meaning> {
     let words = words(path);
     let known = |text: &str| {
@@ -83,14 +84,13 @@ fn meaning(path: &Path) -> Option<Meaning> {
     })
 }
 
-/// True where a picture is named for holding roughness in green and metalness in blue.
+/// True if a file name announces roughness in green and metalness in blue.
 fn is_packed(path: &Path) -> bool {
     meaning(path) == Some(Packed)
 }
 
-impl OwnTexture {
-    /// The channel that counts, of a target that is a number: 0 to 3. `has_alpha` says whether the picture is translucent
-    /// anywhere.
+impl UserTexture {
+    /// Channel (0 to 3) of a scalar target. `has_alpha`: the map is translucent anywhere.
     pub fn channel_of(&self, target: TextureTarget, has_alpha: bool) -> u32 {
         match self.channel {
             TextureChannel::Red => 0,
@@ -107,13 +107,13 @@ impl OwnTexture {
     }
 }
 
-/// What a picture's name says that it is put on; nothing where it does not say.
-pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
-    let plain = || OwnTexture::of(path.to_owned());
+/// Targets according to a file name; empty if it has none.
+pub fn targets_of(path: &Path) -> Vec<(TextureTarget, UserTexture)> {
+    let plain = || UserTexture::of(path.to_owned());
     match meaning(path) {
         Some(Is(target)) => vec![(target, plain())],
         Some(IsInverted(target)) => {
-            let inverted = OwnTexture {
+            let inverted = UserTexture {
                 inverted: true,
                 ..plain()
             };
@@ -124,11 +124,10 @@ pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
     }
 }
 
-/// What is put on what of several pictures, one each; and those that are left over. Of two for the same target the first
-/// counts, a normal map whose green points upwards before one whose green points down, and a picture of one number before one of
-/// several.
-pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Vec<PathBuf>) {
-    let mut found: Vec<(TextureTarget, OwnTexture)> = Vec::new();
+/// Assigns several maps to targets, one each; also returns the unassigned ones. Of two for the same target the first is
+/// used, but a normal map with green up is preferred to green down, and a map of one scalar to one of several.
+pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, UserTexture)>, Vec<PathBuf>) {
+    let mut found: Vec<(TextureTarget, UserTexture)> = Vec::new();
     let mut in_order: Vec<&PathBuf> = pictures.iter().collect();
     let comes_late = |path: &Path| match meaning(path) {
         Some(IsInverted(_)) => 1,
@@ -149,7 +148,7 @@ pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Ve
     (found, left)
 }
 
-/// The pictures directly in a folder, by name.
+/// The image files directly in a folder, by name.
 pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
@@ -164,9 +163,8 @@ pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
 mod tests {
     use super::*;
 
-    fn told(name: &str) -> Vec<(&'static str, bool)> {
-        let targets = targets_of(Path::new(name));
-        targets
+    fn targets(name: &str) -> Vec<(&'static str, bool)> {
+        targets_of(Path::new(name))
             .iter()
             .map(|(target, texture)| (target.name(), texture.inverted))
             .collect()
@@ -174,22 +172,22 @@ mod tests {
 
     #[test]
     fn pictures_are_known_by_their_names() {
-        assert_eq!(told("wood_BaseColor.png"), [("base-color", false)]);
-        assert_eq!(told("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
-        assert_eq!(told("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
-        assert_eq!(told("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
-        assert_eq!(told("brick_nor_dx_1k.exr"), [("normal", true)]);
-        assert_eq!(told("brick_nor_gl_1k.exr"), [("normal", false)]);
-        assert_eq!(told("paint-Glossiness.tif"), [("roughness", true)]);
+        assert_eq!(targets("wood_BaseColor.png"), [("base-color", false)]);
+        assert_eq!(targets("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
+        assert_eq!(targets("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
+        assert_eq!(targets("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
+        assert_eq!(targets("brick_nor_dx_1k.exr"), [("normal", true)]);
+        assert_eq!(targets("brick_nor_gl_1k.exr"), [("normal", false)]);
+        assert_eq!(targets("paint-Glossiness.tif"), [("roughness", true)]);
         assert_eq!(
-            told("helmet_OcclusionRoughnessMetallic.png"),
+            targets("helmet_OcclusionRoughnessMetallic.png"),
             [("roughness", false), ("metalness", false)]
         );
-        assert_eq!(told("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
-        assert_eq!(told("base_color.png"), [("base-color", false)]);
-        assert_eq!(told("metal_plate_rough.png"), [("roughness", false)]);
-        assert_eq!(told("rock_ao.png"), []);
-        assert_eq!(told("holiday.jpg"), []);
+        assert_eq!(targets("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
+        assert_eq!(targets("base_color.png"), [("base-color", false)]);
+        assert_eq!(targets("metal_plate_rough.png"), [("roughness", false)]);
+        assert_eq!(targets("rock_ao.png"), []);
+        assert_eq!(targets("holiday.jpg"), []);
     }
 
     #[test]

@@ -1,25 +1,25 @@
-//! How slots use pictures: those of the model, and those of the user's own in their place.
+//! Texture uses of slots: the model's maps, and users' maps in their place.
 
 use std::path::PathBuf;
 
-use super::own::{OwnTexture, TextureProjection, TextureTarget};
+use super::user::{TextureProjection, TextureTarget, UserTexture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
 use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
 use crate::scene::model::{AlphaMode, Filter, Slot, TextureRef, Wrap};
 
-/// A picture of the user's own on a slot.
+/// A user's map assigned to a slot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextureAssignment {
     /// The number of the slot.
     pub slot: usize,
     /// What it is put on.
     pub target: TextureTarget,
-    /// The picture.
-    pub texture: OwnTexture,
+    /// The texture map.
+    pub texture: UserTexture,
 }
 
 impl TextureAssignment {
-    /// The picture's file, and whether its numbers are read as colours.
+    /// The map's file, and whether it is read as colours.
     pub fn picture(&self) -> (PathBuf, bool) {
         (self.texture.file.clone(), self.texture.is_srgb(self.target))
     }
@@ -30,29 +30,29 @@ impl TextureAssignment {
     }
 }
 
-/// One use of a picture.
+/// One use of a texture map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Use {
-    /// Which of the packed pictures.
+    /// Index among the packed maps.
     pub picture: usize,
-    /// What of it counts.
+    /// Material parameter that it varies.
     pub target: TextureTarget,
-    /// Its green channel is upside down.
+    /// True if its green channel points down.
     pub is_flipped: bool,
     /// Rows of (u, v, 1).
     pub picture_from_uv: [f32; 6],
     /// [`TextureRecord::flags`](super::TextureRecord::flags), but for the channels' width.
     pub flags: u32,
-    /// What is found times this …
+    /// Factor of the value, …
     pub scale: f32,
-    /// … plus this.
+    /// … and summand.
     pub offset: f32,
 }
 
 /// The uses of a slot, by target.
 pub(super) type SlotUses = [Option<Use>; TextureTarget::ALL.len()];
 
-/// What a slot uses of its model's pictures.
+/// A slot's uses of its model's maps.
 pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> SlotUses {
     let base_color = slot.base_color_texture;
     let opacity = base_color.filter(|place| slot.alpha_mode != AlphaMode::Opaque && is_translucent(place.texture));
@@ -72,7 +72,7 @@ pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> Sl
 
 fn of_reference(target: TextureTarget, reference: &TextureRef) -> Use {
     let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
-    // The alpha of a base colour's picture is read where its colour is.
+    // Opacity in a base colour map's alpha is read with its colour.
     let is_srgb = target.is_color() || target == TextureTarget::Opacity;
     Use {
         picture: reference.texture,
@@ -97,9 +97,14 @@ fn wrap_flags(wrap: [Wrap; 2]) -> u32 {
     u << WRAP_SHIFT | v << (WRAP_SHIFT + 2)
 }
 
-/// A use of a picture of the user's own, which is this one of the packed pictures; whether that is translucent anywhere, and
-/// whether the slot's triangles have texture coordinates.
-pub(super) fn of_own(assigned: &TextureAssignment, picture: usize, is_translucent: bool, has_coordinates: bool) -> Use {
+/// A use of a user's map with its index, whether it is translucent anywhere, and whether the slot's triangles have texture
+/// coordinates.
+pub(super) fn of_user_texture(
+    assigned: &TextureAssignment,
+    picture: usize,
+    is_translucent: bool,
+    has_coordinates: bool,
+) -> Use {
     let TextureAssignment { target, texture, .. } = assigned;
     let is_srgb = texture.is_srgb(*target);
     let channel = match target.is_number() {

@@ -368,10 +368,10 @@ pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> 
             others.join(", ")
         ));
     }
-    let told = |warning: String| format!("{}: {warning}", path.display());
+    let message = |warning: String| format!("{}: {warning}", path.display());
     Ok(Opened::Material(Box::new(Loaded {
         value: material.clone(),
-        warnings: warnings.into_iter().map(told).collect(),
+        warnings: warnings.into_iter().map(message).collect(),
     })))
 }
 

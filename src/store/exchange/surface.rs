@@ -468,7 +468,10 @@ impl Surface {
             "textures of the model",
             "convert to a glTF model to take them along",
         );
-        let has_own = material.own.iter().any(|(target, _)| material.uses_texture(target));
+        let has_own = material
+            .user_textures
+            .iter()
+            .any(|(target, _)| material.uses_texture(target));
         layer(
             has_own && !takes.own_textures,
             false,

@@ -330,7 +330,7 @@ fn warps_agree() {
                 }),
             )
             .output("u32(part.is_below)", Output::Exact)
-            .output("part.stretched", Output::Number(1.0))
+            .output("part.remapped", Output::Number(1.0))
             .group("", |rng, _| units(rng).into())
             .group("ends", |rng, row| {
                 let share = [0.0, 1.0, 1e-6, 0.999_999][row % 4];

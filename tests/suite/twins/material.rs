@@ -77,11 +77,11 @@ fn materials_agree() {
     }
     let mut sample = Case::new(
         "material_sample",
-        "material tangent bitangent shading normal wo coat_normal inside a b c facet d e f wants_density",
+        "material tangent bitangent shading normal wo coat_normal inside a b c facet d e f needs_density",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
          let of_slot = material_at(material); \
          let s = material_sample(of_slot, surface, material_layers(of_slot, surface), \
-         MaterialNumbers(vec3f(a, b, c), facet, vec3f(d, e, f)), wants_density == 1u);",
+         MaterialNumbers(vec3f(a, b, c), facet, vec3f(d, e, f)), needs_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let numbers = MaterialNumbers {
@@ -89,9 +89,9 @@ fn materials_agree() {
                 facet: row.number(),
                 below: row.numbers(),
             };
-            let wants_density = row.bits() == 1;
+            let needs_density = row.bits() == 1;
             let layers = material_layers(&material, &SCENE.tables, &surface);
-            let drawn = material_sample(&material, &SCENE.tables, &surface, &layers, numbers, wants_density);
+            let drawn = material_sample(&material, &SCENE.tables, &surface, &layers, numbers, needs_density);
             row.put_vector(drawn.wi);
             row.put_vector(drawn.throughput);
             row.put(drawn.density);

@@ -107,7 +107,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
 /// The thread that runs the cases, apart from those that render.
 fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Standing>> {
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
+    let work = move |options: HardOptions, desk: &crate::render::background::Responder<'_, HardOptions, Standing>| {
         work_apart();
         run(&options, &stop, &|standing| desk.publish(standing));
     };
@@ -158,8 +158,8 @@ fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHan
             ui.weak(case.group);
         }
     }
-    let told = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
-    ui.label(in_words(case.name)).on_hover_text(told);
+    let tooltip = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
+    ui.label(in_words(case.name)).on_hover_text(tooltip);
     let verdict = format!("{} {}", check.measure, short(check.measure, check.value));
     let most = short(check.measure, check.limit);
     let hover = format!("at most {most}; naive: {}", (case.naive)());

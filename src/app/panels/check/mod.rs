@@ -90,7 +90,7 @@ impl Panel for CheckPanel {
 /// The thread that checks, apart from those that render.
 fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Standing>> {
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options, desk: &crate::render::background::Desk<'_, CheckOptions, Standing>| {
+    let work = move |options, desk: &crate::render::background::Responder<'_, CheckOptions, Standing>| {
         work_apart();
         let progress = |group: &str| desk.publish(Standing::Checking(group.to_owned()));
         desk.publish(match run(options, &stop, progress) {

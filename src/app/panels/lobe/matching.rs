@@ -68,7 +68,8 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
     };
     if state.worker.is_none() {
         let ctx = ui.ctx().clone();
-        let work = |query: Query, desk: &crate::render::background::Desk<'_, Query, Answer>| desk.publish(find(query));
+        let work =
+            |query: Query, desk: &crate::render::background::Responder<'_, Query, Answer>| desk.publish(find(query));
         state.worker = Background::spawn("match look", move || ctx.request_repaint(), work).ok();
     }
     let Some(worker) = &state.worker else {

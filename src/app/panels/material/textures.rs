@@ -72,7 +72,7 @@ fn row(
         None => target.help(),
     };
     let name = Name::new(&full, target.label(), help);
-    let is_own = material.own.get(target).is_some();
+    let is_own = material.user_textures.get(target).is_some();
     let mut wish = None;
     let response = widgets::row(ui, name, |ui| {
         let mut is_on = material.uses_texture(target);
@@ -108,7 +108,7 @@ fn row(
     }
     match wish {
         Some(Wish::Remove) => {
-            material.own.set(target, None);
+            material.user_textures.set(target, None);
             desk.edits.note(format!("Remove the {of_target} texture"), "");
         }
         Some(Wish::Choose) => desk.actions.push(Action::ChooseTexture(target)),
@@ -140,7 +140,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
 
 /// How a picture of the user's own lies on the material.
 fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
-    let Some(mut texture) = material.own.get(target).cloned() else {
+    let Some(mut texture) = material.user_textures.get(target).cloned() else {
         return;
     };
     let title = format!("Placement of the {} texture", target.label().to_lowercase());
@@ -163,7 +163,7 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                 if is_other && parameter.set(&mut texture, value).is_ok() {
                     let key = format!("{}/{}/{}", desk.shared.slot, target.name(), parameter.key);
                     desk.edits.note(full, key);
-                    material.own.set(target, Some(texture.clone()));
+                    material.user_textures.set(target, Some(texture.clone()));
                 }
             }
         })
@@ -174,8 +174,15 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
 /// What a target of the selected slot looks up.
 fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
     let scene = desk.scene();
-    if let Some(own) = desk.material().own.get(target) {
-        let known = scene.and_then(|scene| scene.job.textures.own.iter().find(|known| known.file == own.file));
+    if let Some(own) = desk.material().user_textures.get(target) {
+        let known = scene.and_then(|scene| {
+            scene
+                .job
+                .textures
+                .user_textures
+                .iter()
+                .find(|known| known.file == own.file)
+        });
         return Some(Picture::Own(
             name_of(&own.file),
             known.map(|known| known.picture.clone()),

@@ -1,4 +1,4 @@
-//! Loading files for the window: the outcome is reported, and rendering goes on meanwhile.
+//! Loading files for the window. The result is reported; the current render continues.
 
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ impl State<'_> {
         self.loaded(path, |state| {
             let model = state.session()?.assets().model(&source, &options)?;
             if let Some(summary) = model.report.summary() {
-                state.say(Level::Warning, summary);
+                state.message(Level::Warning, summary);
             }
             Ok(Event::ModelOpened(source, options, model))
         });
@@ -31,13 +31,13 @@ impl State<'_> {
                 .assets()
                 .environment(&source, EnvironmentEncoding::default())?;
             for warning in &environment.warnings {
-                state.say(Level::Warning, warning.clone());
+                state.message(Level::Warning, warning.clone());
             }
             Ok(Event::EnvironmentOpened(source, environment))
         });
     }
 
-    /// Reads the files of what is rendered again and starts over with them.
+    /// Reads the scene's files again and restarts the render.
     pub(super) fn reload(&mut self) {
         let Some(document) = self.stage.as_ref().map(|stage| stage.submission.document.clone()) else {
             lock(&self.shared.events).push(Event::Reloaded(None, None));
@@ -48,7 +48,7 @@ impl State<'_> {
         self.loaded(PathBuf::from(document.model.to_string()), |state| {
             let reloaded = state.session()?.reload(&document)?;
             if let Some(summary) = reloaded.model.report.summary() {
-                state.say(Level::Warning, summary);
+                state.message(Level::Warning, summary);
             }
             is_read = true;
             Ok(Event::Reloaded(reloaded.before, Some(reloaded.model)))
@@ -58,13 +58,13 @@ impl State<'_> {
         }
     }
 
-    /// Reports that something is being loaded; an earlier request to cancel no longer applies.
+    /// Reports the start of loading and resets its cancellation.
     pub(super) fn begin_loading(&mut self, what: String) {
         self.assets.loading().begin();
-        self.tell(Activity::Loading(what));
+        self.report(Activity::Loading(what));
     }
 
-    /// Reports the outcome of loading; a failure does not affect the render in progress.
+    /// Reports the result of loading; a failure does not affect the current render.
     fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
         let event = match caught(|| work(self)) {
             Ok(Ok(event)) => event,

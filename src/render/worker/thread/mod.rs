@@ -1,4 +1,4 @@
-//! The worker's thread: takes orders, steps the session, publishes what comes of it.
+//! The worker's thread: executes commands, steps the session, publishes images.
 
 mod load;
 mod publish;
@@ -25,53 +25,53 @@ use crate::render::session::Session;
 use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
 
-/// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
-/// a GPU the window, which is redrawn for either, takes its time from the renderer.
+/// Shortest and longest time between two images of a render, and between two progress reports: without a GPU the window
+/// redraws for either, which costs the renderer time.
 const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
-/// The interval grows with this share of the render's age.
+/// The interval is this share of the render's age.
 const PUBLISH_SHARE: f64 = 0.1;
 /// Publishing takes at most one part in this many of the time.
 const PUBLISH_COST: u32 = 8;
-/// Weight of the latest measurement in the mean speed.
+/// Weight of the latest measurement in the running mean of the speed.
 const SPEED_WEIGHT: f64 = 0.1;
 
 /// The thread's body.
 pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
     let mut state = State::new(shared, repaint, assets);
     state.open(choice);
-    while state.turn().is_some() {}
+    while state.run_once().is_some() {}
 }
 
 struct State<'a> {
     shared: &'a Shared,
     repaint: &'a dyn Fn(),
     assets: Assets,
-    /// Files whose layers are to be made.
-    wanted_layers: Vec<PathBuf>,
+    /// Files for which layers have been requested.
+    requested_layers: Vec<PathBuf>,
     session: Option<Session>,
     snapshot: Snapshot,
     stage: Option<Stage>,
     /// When the stage's submission was taken.
     taken_at: Instant,
-    /// Measured, to choose resolutions by; 0 before.
+    /// Mean speed in pixel samples per second, to choose resolutions; 0 before the first measurement.
     samples_per_second: f64,
     published_at: Instant,
     published_samples: u32,
     publish_cost: Duration,
-    told_at: Instant,
+    reported_at: Instant,
     serial: u64,
-    /// What of a render is shown.
+    /// The image or a map of it.
     shown: Shown,
-    /// Pictures tell what is known of each pixel.
-    looks_closer: bool,
+    /// True while the inspector needs per-pixel quantities.
+    is_inspected: bool,
     denoising: Denoising,
-    /// The latest denoised picture of what is being rendered.
+    /// The latest denoised image of the current render.
     denoised: Option<Denoised>,
-    /// There is something to do.
+    /// Held while the thread has work.
     at_work: Option<AtWork<'static>>,
 }
 
-/// A session for the window, where a denoised picture or layers may be wanted of what is there already.
+/// A session for the window, which keeps guides: denoising and layers may be requested for samples already rendered.
 fn for_window(mut session: Session) -> Session {
     session.keep_guides("the window keeps them: denoising may be switched on and layers saved at any time");
     session
@@ -82,7 +82,7 @@ impl<'a> State<'a> {
         Self {
             shared,
             repaint,
-            wanted_layers: Vec::new(),
+            requested_layers: Vec::new(),
             session: None,
             snapshot: Snapshot {
                 loading: assets.loading().clone(),
@@ -95,10 +95,10 @@ impl<'a> State<'a> {
             published_at: Instant::now(),
             published_samples: 0,
             publish_cost: Duration::ZERO,
-            told_at: Instant::now(),
+            reported_at: Instant::now(),
             serial: 0,
             shown: Shown::default(),
-            looks_closer: false,
+            is_inspected: false,
             denoising: Denoising::spawn({
                 let shared = shared.clone();
                 move || shared.wake()
@@ -110,80 +110,80 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Orders, then a step; `None` when it is time to go.
-    fn turn(&mut self) -> Option<()> {
-        let (orders, is_paused) = self.await_orders();
-        if orders.quit {
+    /// Executes commands, then renders a step. Returns `None` to end the thread.
+    fn run_once(&mut self) -> Option<()> {
+        let (commands, is_paused) = self.await_commands();
+        if commands.quit {
             return None;
         }
-        if let Some(choice) = orders.engine {
+        if let Some(choice) = commands.engine {
             self.open(choice);
             self.restart();
         }
         if let Some(session) = &mut self.session {
-            orders.mishaps.iter().for_each(|mishap| mishap.befall(session));
+            commands.faults.iter().for_each(|fault| fault.inject(session));
         }
-        (0..orders.reloads).for_each(|_| self.reload());
-        if orders.restart {
+        (0..commands.reloads).for_each(|_| self.reload());
+        if commands.restart {
             self.guarded(|state| {
-                state.session()?.forget();
+                state.session()?.reset();
                 Ok(())
             });
             self.restart();
         }
-        if orders.shown.is_some() || orders.looks_closer.is_some() {
-            self.shown = orders.shown.unwrap_or(self.shown);
-            self.looks_closer = orders.looks_closer.unwrap_or(self.looks_closer);
+        if commands.shown.is_some() || commands.is_inspected.is_some() {
+            self.shown = commands.shown.unwrap_or(self.shown);
+            self.is_inspected = commands.is_inspected.unwrap_or(self.is_inspected);
             if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
-                self.guarded(Self::show_anew);
+                self.guarded(Self::republish);
             }
         }
-        orders
+        commands
             .models
             .into_iter()
             .for_each(|(source, options)| self.load_model(source, options));
-        orders
+        commands
             .environments
             .into_iter()
             .for_each(|source| self.load_environment(source));
-        self.wanted_layers.extend(orders.layers);
+        self.requested_layers.extend(commands.layers);
         self.collect_denoised();
-        if let Some(submission) = orders.submission {
-            self.take(submission);
+        if let Some(submission) = commands.submission {
+            self.accept(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
             self.settle();
         }
         if self.should_render(is_paused) {
             self.guarded(Self::step);
         } else {
-            self.rest(is_paused);
+            self.report_idle(is_paused);
         }
         self.make_layers();
         Some(())
     }
 
-    /// What an order or the step before left to tell.
-    fn rest(&mut self, is_paused: bool) {
+    /// Reports a change of activity while there is nothing to render.
+    fn report_idle(&mut self, is_paused: bool) {
         let activity = self.activity(is_paused);
         let is_news = self.snapshot.activity != activity;
         let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
         if activity == Activity::Done && is_unseen && !self.denoising.is_pending() {
-            // Its time limit passed before its first sample.
+            // The time limit passed before the first sample.
             self.guarded(Self::publish_picture);
         }
         if is_news {
-            self.tell(activity);
+            self.report(activity);
         }
     }
 
-    /// Makes the layers that were asked for, once the picture is there at its full resolution.
+    /// Makes the requested layers once there are samples at full resolution.
     fn make_layers(&mut self) {
         let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
         let has_samples = |session: &Session| session.progress().samples_per_pixel > 0;
-        if self.wanted_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
+        if self.requested_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
             return;
         }
-        for path in std::mem::take(&mut self.wanted_layers) {
+        for path in std::mem::take(&mut self.requested_layers) {
             self.guarded(|state| {
                 let denoised = state.denoised.as_ref().map(|denoised| denoised.image.clone());
                 let layers = Layers {
@@ -205,12 +205,12 @@ impl State<'_> {
         Ok(self.session.insert(session))
     }
 
-    /// Opens an engine; where that fails the processor's.
+    /// Opens an engine; if that fails, the CPU engine.
     fn open(&mut self, choice: EngineChoice) {
         self.session = None;
         self.snapshot.engine = None;
         self.samples_per_second = 0.0;
-        self.tell(Activity::Starting);
+        self.report(Activity::Starting);
         let opened = caught(|| Session::open_fluid(choice, self.assets.clone()));
         let why = match opened {
             Ok(Ok(session)) => {
@@ -221,21 +221,21 @@ impl State<'_> {
             Err(panic) => Some(panic),
         };
         if let Some(why) = why {
-            self.say(Level::Error, format!("{why} (going on with the processor)"));
+            self.message(Level::Error, format!("{why} (going on with the processor)"));
             self.guarded(|state| state.session().map(|_| ()));
         }
-        self.note_engine();
+        self.report_engine();
     }
 
-    fn note_engine(&mut self) {
+    fn report_engine(&mut self) {
         self.snapshot.engine = self.session.as_ref().map(|session| session.engine().clone());
         if let Some(engine) = self.snapshot.engine.clone() {
-            self.say(Level::Info, format!("rendering with {engine}: {}", engine.reason));
+            self.message(Level::Info, format!("rendering with {engine}: {}", engine.reason));
         }
     }
 
-    /// Runs what may fail. Where the GPU is lost it is opened anew, and where that does not last, or something panics, the
-    /// processor takes over with the same document; anything else is said and leaves what was there, the GPU included.
+    /// Runs work that may fail. A lost GPU is opened again. If that fails too, or the work panics, the CPU engine takes over
+    /// with the same document. Other errors are reported and change nothing.
     fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
         let why = match caught(|| work(self)) {
             Ok(Ok(())) => return true,
@@ -245,10 +245,10 @@ impl State<'_> {
             }
             Ok(Err(error)) => {
                 if error.is_cancelled() {
-                    self.say(Level::Info, error.to_string());
+                    self.message(Level::Info, error.to_string());
                     lock(&self.shared.events).push(Event::Cancelled);
                 } else {
-                    self.say(Level::Error, error.to_string());
+                    self.message(Level::Error, error.to_string());
                 }
                 return false;
             }
@@ -259,14 +259,14 @@ impl State<'_> {
             .engine
             .as_ref()
             .is_some_and(|engine| engine.kind == EngineKind::Cpu);
-        self.say(Level::Error, format!("the renderer failed: {why}"));
+        self.message(Level::Error, format!("the renderer failed: {why}"));
         self.session = None;
         if was_cpu {
             // A bug: the same document would trigger it again.
             self.stage = None;
             return false;
         }
-        self.say(Level::Warning, "going on with the processor".to_owned());
+        self.message(Level::Warning, "going on with the processor".to_owned());
         let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone())
             .map(for_window)
             .and_then(|mut session| {
@@ -277,48 +277,48 @@ impl State<'_> {
             });
         match opened {
             Ok(session) => self.session = Some(session),
-            Err(error) => self.say(Level::Error, error.to_string()),
+            Err(error) => self.message(Level::Error, error.to_string()),
         }
         self.samples_per_second = 0.0;
-        self.note_engine();
+        self.report_engine();
         false
     }
 
-    /// Goes on after the GPU's device was lost, with the stage's document.
+    /// Recovers from a lost GPU device, with the stage's document.
     fn recover(&mut self, mut lost: GpuError) {
         while let Some(session) = &mut self.session {
             let how = session.recover(&lost);
             let stage = self.stage.as_ref().map(Stage::document);
             let outcome = stage.map(|document| session.submit_shared(&document));
-            self.say(Level::Warning, how);
+            self.message(Level::Warning, how);
             match outcome {
                 Some(Err(SessionError::Gpu(again))) if again.is_lost() => lost = again,
                 Some(Err(error)) => {
-                    self.say(Level::Error, error.to_string());
+                    self.message(Level::Error, error.to_string());
                     break;
                 }
                 _ => break,
             }
         }
         self.samples_per_second = 0.0;
-        self.note_engine();
+        self.report_engine();
     }
 
-    /// The stage's document once more, as after a change of engine.
+    /// Submits the stage's document again, as after a change of engine.
     fn restart(&mut self) {
         self.snapshot.scene = None;
         if let Some(stage) = self.stage.take() {
-            self.take(stage.submission);
+            self.accept(stage.submission);
         }
     }
 
-    /// Starts on a submission.
-    fn take(&mut self, submission: Submission) {
+    /// Starts or updates the render for a submission.
+    fn accept(&mut self, submission: Submission) {
         if let Some(stage) = &mut self.stage {
             let change = Change::between(&stage.submission.document, &submission.document);
             if !change.restarts() {
                 stage.submission = submission;
-                self.guarded(|state| state.go_on(change));
+                self.guarded(|state| state.apply_change(change));
                 return;
             }
         }
@@ -335,13 +335,13 @@ impl State<'_> {
         }
     }
 
-    /// What the kernel is made for that renders, or is being compiled.
+    /// Specialisation of the kernel that renders or is being compiled.
     fn kernel(&self) -> Option<Specialisation> {
         Some(self.session.as_ref()?.job()?.plan.specialisation())
     }
 
-    /// What has been rendered counts, but is shown in another way or has another aim.
-    fn go_on(&mut self, change: Change) -> Result<(), SessionError> {
+    /// Applies a change that keeps the samples: another display or another goal.
+    fn apply_change(&mut self, change: Change) -> Result<(), SessionError> {
         let Some(stage) = self.stage.clone() else { return Ok(()) };
         self.session()?.submit_shared(&stage.document())?;
         let view = &stage.submission.document.view;
@@ -356,10 +356,10 @@ impl State<'_> {
             }));
         }
         if !denoises_alike && stage.is_shown {
-            self.forget_denoised();
+            self.reset_denoised();
             return self.publish_picture();
         }
-        // Where nothing is left to render, the picture is the new submission's, too.
+        // If nothing is left to render, the image also belongs to the new submission.
         let is_done = self.session()?.progress().is_done;
         if let Some(last) = self
             .snapshot
@@ -372,44 +372,44 @@ impl State<'_> {
         Ok(())
     }
 
-    /// From the small picture to the full one.
+    /// Proceeds from the reduced resolution to the full one.
     fn settle(&mut self) {
         let Some(mut stage) = self.stage.clone() else { return };
         stage.reduction = 1;
         if !self.begin(stage)
             && let Some(small) = &mut self.stage
         {
-            // It would only fail again: the small picture stays until the document changes.
+            // It would fail again: the reduced image stays until the document changes.
             small.is_final = true;
         }
     }
 
-    /// Hands a stage to the session. Where that fails, what was being rendered goes on.
+    /// Submits a stage to the session. If that fails, the current render continues and the result is false.
     fn begin(&mut self, stage: Stage) -> bool {
         let document = stage.document();
         let engine = self.snapshot.engine.clone();
-        let is_taken = self.guarded(|state| state.hand_over(&document))
-            // The GPU could not: the processor gets its chance.
-            || (self.snapshot.engine != engine && self.guarded(|state| state.hand_over(&document)));
+        let is_taken = self.guarded(|state| state.submit_stage(&document))
+            // The GPU failed: try again with the CPU engine.
+            || (self.snapshot.engine != engine && self.guarded(|state| state.submit_stage(&document)));
         if !is_taken {
             return false;
         }
-        let is_first_look = !stage.is_shown;
+        let is_first_image = !stage.is_shown;
         self.stage = Some(stage);
-        self.forget_denoised();
+        self.reset_denoised();
         self.published_samples = 0;
         self.published_at = Instant::now();
-        if is_first_look {
-            self.guarded(Self::note_scene);
+        if is_first_image {
+            self.guarded(Self::update_scene);
         }
         true
     }
 
-    fn hand_over(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
+    fn submit_stage(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
         if self.is_new_model(document) {
             self.begin_loading(document.model.to_string());
             self.session()?.assets().model(&document.model, &document.import)?;
-            self.tell(Activity::Preparing);
+            self.report(Activity::Preparing);
         }
         let environment = &document.lighting.environment;
         if self.is_new_environment(environment) {
@@ -433,7 +433,7 @@ impl State<'_> {
             .is_none_or(|scene| scene.document.lighting.environment != *source)
     }
 
-    fn note_scene(&mut self) -> Result<(), SessionError> {
+    fn update_scene(&mut self) -> Result<(), SessionError> {
         let Some(document) = self.stage.as_ref().map(|stage| stage.submission.document.clone()) else {
             return Ok(());
         };
@@ -445,7 +445,7 @@ impl State<'_> {
         Ok(())
     }
 
-    /// Renders a little, and publishes when that is due.
+    /// Renders a step, and publishes when that is due.
     fn step(&mut self) -> Result<(), SessionError> {
         let is_shown = self.stage.as_ref().is_none_or(|stage| stage.is_shown);
         let progress = self.session()?.step(if is_shown { STEP } else { FIRST_STEP })?;
@@ -458,7 +458,7 @@ impl State<'_> {
         self.snapshot.reduction = stage.reduction;
         if progress.samples_per_pixel > 0 {
             self.snapshot.samples_per_second = progress.samples_per_second;
-            // Averaged, so that resolutions do not flicker while something is dragged.
+            // Averaged, so that the resolution does not flicker during a drag.
             let weight = if self.samples_per_second > 0.0 {
                 SPEED_WEIGHT
             } else {
@@ -474,8 +474,8 @@ impl State<'_> {
             if self.denoising.is_due(&progress) {
                 self.publish_picture()?;
             }
-            if self.told_at.elapsed() >= interval {
-                self.tell(Activity::Rendering);
+            if self.reported_at.elapsed() >= interval {
+                self.report(Activity::Rendering);
             }
             return Ok(());
         }
@@ -484,21 +484,21 @@ impl State<'_> {
         if is_fresh && (is_first || progress.is_done || age >= interval) {
             self.publish_picture()?;
         }
-        if self.told_at.elapsed() >= interval || self.snapshot.activity != Activity::Rendering {
-            self.tell(Activity::Rendering);
+        if self.reported_at.elapsed() >= interval || self.snapshot.activity != Activity::Rendering {
+            self.report(Activity::Rendering);
         }
         Ok(())
     }
 
     /// Publishes the snapshot.
-    fn tell(&mut self, activity: Activity) {
+    fn report(&mut self, activity: Activity) {
         self.snapshot.activity = activity;
-        self.told_at = Instant::now();
+        self.reported_at = Instant::now();
         *lock(&self.shared.snapshot) = Arc::new(self.snapshot.clone());
         (self.repaint)();
     }
 
-    fn say(&self, level: Level, text: String) {
+    fn message(&self, level: Level, text: String) {
         lock(&self.shared.events).push(Event::Message(level, text));
         (self.repaint)();
     }
@@ -507,7 +507,7 @@ impl State<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::worker::{OrderBook, Orders, Pace};
+    use crate::render::worker::{CommandQueue, Commands, Pace};
     use crate::scene::ModelSource;
 
     #[test]
@@ -515,7 +515,7 @@ mod tests {
         let shared = Arc::new(Shared::default());
         let mut state = State::new(&shared, &|| {}, Assets::default());
         state.session = Some(Session::open(EngineChoice::Cpu).expect("the processor"));
-        // A small picture is shown of a document whose model has gone since.
+        // A reduced image is shown of a document whose model is gone.
         let document = Document {
             model: ModelSource::File("gone.glb".into()),
             ..Document::default()
@@ -533,14 +533,14 @@ mod tests {
         });
         for _ in 0..5 {
             // Something to do, so that no turn waits.
-            *lock(&shared.orders) = OrderBook {
-                orders: Orders {
+            *lock(&shared.commands) = CommandQueue {
+                commands: Commands {
                     environments: vec![EnvironmentSource::Furnace],
-                    ..Orders::default()
+                    ..Commands::default()
                 },
-                ..OrderBook::default()
+                ..CommandQueue::default()
             };
-            state.turn().expect("nobody told it to go");
+            state.run_once().expect("nobody told it to go");
         }
         let events = lock(&shared.events);
         let is_failure =

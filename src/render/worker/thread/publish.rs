@@ -1,4 +1,4 @@
-//! What of a render is shown: pictures, denoised ones and maps.
+//! Publishing of images, denoised images and maps.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,45 +12,45 @@ use crate::render::shown::{Facts, Shown, map, map_of_errors};
 use crate::render::worker::{Activity, Level, Picture};
 
 impl State<'_> {
-    /// What is shown already, in another way.
-    pub(super) fn show_anew(&mut self) -> Result<(), SessionError> {
+    /// Publishes the current image again, after a change of display.
+    pub(super) fn republish(&mut self) -> Result<(), SessionError> {
         match self.snapshot.picture.clone().filter(|picture| picture.is_denoised()) {
             Some(last) => self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel),
             None => self.publish_picture(),
         }
     }
 
-    /// Publishes what has been rendered; where it is shown denoised, asks for that instead.
+    /// Publishes the current render, or requests its denoising if it is shown denoised.
     pub(super) fn publish_picture(&mut self) -> Result<(), SessionError> {
-        let begun = Instant::now();
+        let start = Instant::now();
         let progress = self.session()?.progress();
         let Some(stage) = &self.stage else { return Ok(()) };
         if self.denoising.shows(&stage.submission.document, &progress) {
-            // The first look after an edit is to be there soon; what follows is as careful as was asked for.
-            let is_first_look = progress.samples_per_pixel < 2 && !progress.is_done;
+            // The first image after an edit uses the fast filter; later ones use the requested quality.
+            let is_first_image = progress.samples_per_pixel < 2 && !progress.is_done;
             let how = match stage.submission.document.view.denoise {
-                _ if is_first_look => Denoise::Fast,
+                _ if is_first_image => Denoise::Fast,
                 chosen => chosen,
             };
             let noisy = self.session()?.noisy()?;
-            self.denoising.ask(noisy, how, &progress);
+            self.denoising.request(noisy, how, &progress);
             return Ok(());
         }
         let image = Arc::new(self.session()?.image()?);
         self.publish(image.clone(), image, progress.samples_per_pixel)?;
         self.published_samples = progress.samples_per_pixel;
         self.published_at = Instant::now();
-        self.publish_cost = begun.elapsed();
+        self.publish_cost = start.elapsed();
         Ok(())
     }
 
-    /// Another picture is begun, or the same is shown in another way.
-    pub(super) fn forget_denoised(&mut self) {
-        self.denoising.begin();
+    /// Drops the denoised image, for another render or another display.
+    pub(super) fn reset_denoised(&mut self) {
+        self.denoising.reset();
         (self.denoised, self.snapshot.denoised) = (None, None);
     }
 
-    /// Shows the denoised picture that has come back, if one has.
+    /// Publishes the denoiser's result, if there is one.
     pub(super) fn collect_denoised(&mut self) {
         let Some(outcome) = self.denoising.collect() else {
             return;
@@ -59,14 +59,14 @@ impl State<'_> {
             Ok(denoised) => {
                 let image = denoised.image.clone();
                 if let (Some(error), Some(session)) = (denoised.error, &mut self.session) {
-                    session.note_denoised(error);
+                    session.set_denoised_error(error);
                 }
                 self.snapshot.denoised = denoised.error;
                 self.denoised = Some(denoised);
                 self.guarded(|state| state.publish(image, outcome.noisy.image, outcome.samples_per_pixel));
             }
             Err(why) => {
-                self.say(Level::Warning, format!("{why}; pictures are shown as they are"));
+                self.message(Level::Warning, format!("{why}; pictures are shown as they are"));
                 self.guarded(Self::publish_picture);
             }
         }
@@ -79,20 +79,20 @@ impl State<'_> {
         samples_per_pixel: u32,
     ) -> Result<(), SessionError> {
         let wanted = self.shown;
-        let looks_closer = self.looks_closer;
+        let is_inspected = self.is_inspected;
         let Some(view) = self.stage.as_ref().map(|stage| stage.submission.document.view.clone()) else {
             return Ok(());
         };
         let denoised_errors = self.denoised.as_ref().map(|denoised| denoised.error_map.clone());
         let denoised_errors = denoised_errors.filter(|errors| !errors.is_empty());
         let (mut made, mut facts) = (None, None);
-        if wanted != Shown::Picture || looks_closer {
+        if wanted != Shown::Picture || is_inspected {
             let source = self.session()?.source(&image, &view)?;
             made = match (wanted, &denoised_errors) {
                 (Shown::Error, Some(errors)) => Some(map_of_errors(errors)),
                 _ => map(&source, wanted),
             };
-            facts = looks_closer.then(|| Arc::new(Facts::of(&source, denoised_errors.as_deref())));
+            facts = is_inspected.then(|| Arc::new(Facts::of(&source, denoised_errors.as_deref())));
         }
         let Some(stage) = &mut self.stage else { return Ok(()) };
         self.serial += 1;
@@ -116,12 +116,12 @@ impl State<'_> {
             facts,
             document: stage.submission.document.clone(),
         }));
-        self.tell(Activity::Rendering);
+        self.report(Activity::Rendering);
         Ok(())
     }
 }
 
-/// Display-referred bytes, premultiplied as windows blend them.
+/// Display-referred RGBA, premultiplied in gamma space as windows blend it.
 fn shown(image: &Image, view: &ViewSettings) -> Vec<u8> {
     let mut rgba = display(image, view);
     for pixel in rgba.chunks_exact_mut(4).filter(|pixel| pixel[3] < 255) {

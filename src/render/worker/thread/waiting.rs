@@ -1,4 +1,4 @@
-//! When the thread works, and what it waits for.
+//! Scheduling: when the thread works, and what it waits for.
 
 use std::time::Duration;
 
@@ -6,73 +6,73 @@ use super::State;
 use crate::render::quiet::at_work;
 use crate::render::session::Session;
 use crate::render::worker::stage::Stage;
-use crate::render::worker::{Activity, OrderBook, Orders, lock};
+use crate::render::worker::{Activity, CommandQueue, Commands, lock};
 
-/// How long the thread sleeps when there is nothing to do and it is not woken.
+/// Longest sleep without a wake-up.
 const IDLE: Duration = Duration::from_secs(3600);
 
 impl State<'_> {
-    /// Reads the orders; waits for some where there is nothing to render. A submission is left lying while the one
+    /// Takes the commands, after waiting for some if there is nothing to render. A submission stays pending while the one
     /// before it must still be shown.
-    pub(super) fn await_orders(&mut self) -> (Orders, bool) {
+    pub(super) fn await_commands(&mut self) -> (Commands, bool) {
         let shared = self.shared;
-        let mut book = lock(&shared.orders);
+        let mut queue = lock(&shared.commands);
         loop {
-            let is_busy = self.should_render(book.is_paused);
+            let is_busy = self.should_render(queue.is_paused);
             let wait = self.longest_wait();
-            let has_news = self.activity(book.is_paused) != self.snapshot.activity || self.denoising.has_news();
-            if is_busy || has_news || self.has_orders(&book) || wait.is_zero() {
+            let has_news = self.activity(queue.is_paused) != self.snapshot.activity || self.denoising.has_outcome();
+            if is_busy || has_news || self.has_commands(&queue) || wait.is_zero() {
                 break;
             }
             self.at_work = None;
-            let waited = shared.ordered.wait_timeout(book, wait);
-            book = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
+            let waited = shared.command_arrived.wait_timeout(queue, wait);
+            queue = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
         }
         self.at_work.get_or_insert_with(at_work);
-        let mut orders = std::mem::take(&mut book.orders);
-        if self.keeps_stage(book.is_paused) {
-            book.orders.submission = orders.submission.take();
+        let mut commands = std::mem::take(&mut queue.commands);
+        if self.keeps_stage(queue.is_paused) {
+            queue.commands.submission = commands.submission.take();
         }
-        (orders, book.is_paused)
+        (commands, queue.is_paused)
     }
 
-    /// Whether the stage is to be shown before another submission is taken.
+    /// Whether the stage must be shown before another submission is taken.
     fn keeps_stage(&self, is_paused: bool) -> bool {
         let is_unseen = |stage: &Stage| !stage.may_be_replaced(self.taken_at);
         let is_in_work = self.should_render(is_paused) || self.denoising.is_pending();
         self.stage.as_ref().is_some_and(is_unseen) && is_in_work
     }
 
-    /// Whether there are orders that can be followed now.
-    fn has_orders(&self, book: &OrderBook) -> bool {
-        let has_submission = book.orders.submission.is_some() && !self.keeps_stage(book.is_paused);
-        has_submission || !book.orders.is_empty_beside_submission()
+    /// Whether there are commands to execute now.
+    fn has_commands(&self, queue: &CommandQueue) -> bool {
+        let has_submission = queue.commands.submission.is_some() && !self.keeps_stage(queue.is_paused);
+        has_submission || !queue.commands.is_empty_beside_submission()
     }
 
-    /// Until when the stage needs no look if nothing is ordered.
+    /// Time until the stage needs attention without commands.
     fn longest_wait(&self) -> Duration {
         let Some(stage) = &self.stage else { return IDLE };
-        let until_stale = (!stage.may_be_replaced(self.taken_at)).then(|| stage.patience_left(self.taken_at));
+        let until_stale = (!stage.may_be_replaced(self.taken_at)).then(|| stage.wait_left(self.taken_at));
         let ends = [stage.rest_left(), until_stale];
         ends.into_iter().flatten().min().unwrap_or(IDLE)
     }
 
-    /// Whether there is something to step: when paused, only what has not been shown at all.
+    /// Whether to render a step; while paused, only until the first image.
     pub(super) fn should_render(&self, is_paused: bool) -> bool {
         let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
             return false;
         };
-        !session.progress().is_done && (!is_paused || !stage.is_shown) && !self.gives_way()
+        !session.progress().is_done && (!is_paused || !stage.is_shown) && !self.yields_to_denoiser()
     }
 
-    /// Whether the engine waits for the denoiser: on the same cores each would take as long as both, and it is the denoised
-    /// picture that the user waits for.
-    fn gives_way(&self) -> bool {
-        let is_on_cores = |session: &Session| session.engine().is_software || session.is_standing_in();
+    /// Whether the engine waits for the denoiser. On the same cores each would take as long as both, and the user waits for
+    /// the denoised image.
+    fn yields_to_denoiser(&self) -> bool {
+        let is_on_cores = |session: &Session| session.engine().is_software || session.is_fallback();
         self.denoising.is_pending() && self.session.as_ref().is_some_and(is_on_cores)
     }
 
-    /// What there is to do now that orders have been followed.
+    /// The current activity.
     pub(super) fn activity(&self, is_paused: bool) -> Activity {
         match (&self.stage, &self.session) {
             (Some(_), Some(_)) if self.denoising.is_pending() => Activity::Rendering,

@@ -14,9 +14,10 @@ pub use rooms::{overcast, portrait, product, rim, warehouse};
 pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};
 pub use studio::studio;
 
-/// Radiance 1 from everywhere, on a tiny map: what goes in must come out.
+/// The white furnace: radiance 1 from everywhere, on a tiny map.
 ///
 /// # Errors
+///
 /// None in practice; the signature is that of the other environments.
 pub fn furnace() -> Result<Environment, EnvironmentError> {
     Environment::from_texels("furnace", 4, 2, vec![[1.0; 4]; 8])

@@ -23,12 +23,12 @@ const SUN_TAPS: u32 = 32;
 const SUN_OUTSIDE: f64 = 133_800.0 / 683.0;
 /// The sun's colour outside the atmosphere, linear Rec. 709 at luminance 1: a black body of 5778 K.
 const SUN_COLOR: [f64; 3] = [1.113, 0.975, 0.914];
-/// Wavelengths that stand for red, green and blue in the attenuation of the sun, in µm.
+/// Wavelengths of red, green and blue for the attenuation of the sun, in µm.
 const WAVELENGTHS_UM: [f64; 3] = [0.612, 0.549, 0.464];
 /// Optical thickness of 0.35 cm of ozone at these wavelengths.
 const OZONE: [f64; 3] = [0.043, 0.030, 0.003];
-/// The model's unit to ours: sun and sky of the default parameters together shine on level ground with irradiance π,
-/// so that a white diffuse table under them has luminance 1.
+/// Scale from the model's unit: sun and sky of the default parameters give level ground an irradiance of π, so that a white
+/// diffuse table has luminance 1.
 const EXPOSURE: f64 = 0.0315;
 
 /// A clear sky's parameters.
@@ -36,11 +36,11 @@ const EXPOSURE: f64 = 0.0315;
 pub struct SkyParams {
     /// Height of the sun above the horizon in degrees, in [0, 90].
     pub sun_elevation_deg: f64,
-    /// Where the sun stands, in degrees from −Z (u = 0) towards +X (90) and +Z (180).
+    /// Azimuth of the sun in degrees, from −Z (u = 0) towards +X (90) and +Z (180).
     pub sun_azimuth_deg: f64,
     /// Haze: 2 very clear, 3 clear, 6 hazy; in [1, 10].
     pub turbidity: f64,
-    /// What share of light the ground throws back, linear Rec. 709, in [0, 1].
+    /// Albedo of the ground, linear Rec. 709, in [0, 1].
     pub ground_albedo: [f64; 3],
 }
 
@@ -61,8 +61,8 @@ pub fn sun_direction(params: &SkyParams) -> Vec3<f64> {
     environment_direction([params.sun_azimuth_deg / 360.0, 0.5 - params.sun_elevation_deg / 180.0])
 }
 
-/// What the sun alone shines on a surface that faces it: its radiance integrated over its solid angle, in the units of
-/// the map. Attenuation by Rayleigh scattering, aerosol and ozone after Preetham, Shirley and Smits (1999), appendix.
+/// Irradiance of the sun alone on a surface facing it: its radiance integrated over its solid angle, in the units of the
+/// map. Attenuation by Rayleigh scattering, aerosol and ozone after Preetham, Shirley and Smits (1999), appendix.
 pub fn sun_irradiance(params: &SkyParams) -> [f64; 3] {
     let zenith_deg = 90.0 - params.sun_elevation_deg;
     let air_mass = 1.0 / (zenith_deg.to_radians().cos() + 0.15 * (93.885 - zenith_deg).powf(-1.253));
@@ -132,7 +132,7 @@ impl Model {
         })
     }
 
-    /// What the sky without the sun shines on level ground, by the midpoint rule over cos² and azimuth.
+    /// Irradiance of the sky without the sun on level ground, by the midpoint rule over cos² and azimuth.
     fn sky_irradiance(&self) -> [f64; 3] {
         const ROWS: u32 = 128;
         const COLUMNS: u32 = 256;
@@ -159,8 +159,7 @@ impl Model {
     }
 }
 
-/// Adds the sun's disc: each texel as much as the disc covers of it, the sum such that the bilinear picture holds
-/// exactly the sun's irradiance.
+/// Adds the sun's disc, each texel by its covered area, such that the bilinear map has exactly the sun's irradiance.
 fn add_sun(params: &SkyParams, texels: &mut [[f32; 4]]) {
     let direction = sun_direction(params);
     let coverage = sun_coverage(direction);

@@ -35,7 +35,7 @@ pub(super) fn room_with(
 }
 
 impl SoftBox {
-    /// The light from a direction when the box stands in front of `behind`.
+    /// Radiance from a direction with the box composited over `behind`.
     fn over(&self, behind: Vec3<f64>, direction: Vec3<f64>) -> Vec3<f64> {
         let centre = Vec3::from_f64(self.centre);
         let normal = centre.normalize();

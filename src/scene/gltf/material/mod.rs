@@ -1,4 +1,4 @@
-//! Materials as slots.
+//! Conversion of materials to slots.
 
 mod pictures;
 mod table;
@@ -25,17 +25,17 @@ use crate::scene::model::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, texture_mean};
 
-/// The largest index of refraction that a material takes.
+/// Largest index of refraction of a material.
 const IOR_MAX: f32 = 4.0;
 
-/// The texture coordinates that a slot's pictures look up.
+/// Texture coordinates used by a slot's textures.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UvUse {
-    /// The number of the first set, and that of the second where there is one.
+    /// Indices of the first set, and of the second if used.
     pub sets: [Option<u32>; 2],
-    /// How the normal texture is placed: tangents follow it.
+    /// Transform of the normal texture, which tangents follow.
     pub normal_texture_from_uv: [f32; 6],
-    /// Whether tangents must be those that a normal texture was made for.
+    /// Whether tangents must match a normal texture.
     pub has_normal_texture: bool,
 }
 
@@ -49,7 +49,7 @@ impl Default for UvUse {
     }
 }
 
-/// A texture of which a slot takes the mean only: the image, and what its mean changes.
+/// A texture of which a slot uses only the mean: the image, and its effect.
 struct MeanUse {
     slot: usize,
     image: usize,
@@ -57,10 +57,10 @@ struct MeanUse {
     apply: Apply,
 }
 
-/// What a texture's mean changes of a slot.
+/// Effect of a texture's mean on a slot.
 type Apply = fn(&mut Slot, &TextureMean);
 
-/// A texture, where there is one, of which the mean is to be applied.
+/// A use of a texture's mean, if the texture exists.
 fn mean(info: &Option<TextureInfo>, what: &'static str, apply: Apply) -> Option<(usize, &'static str, Apply)> {
     Some((info.as_ref()?.index, what, apply))
 }
@@ -85,7 +85,7 @@ pub(super) struct Materials<'a> {
     /// Slot of a material, none for the default one.
     slot_of: HashMap<Option<usize>, u32>,
     slots: Vec<(Slot, UvUse)>,
-    /// The pictures in use; a texture's number is its place here.
+    /// Images in use; a texture's index is its position here.
     pictures: Vec<PictureKey>,
     means: Vec<MeanUse>,
     conversions: Vec<Conversion>,
@@ -156,7 +156,7 @@ impl<'a> Materials<'a> {
         slot as u32
     }
 
-    /// Which texture coordinates a slot's pictures use.
+    /// Texture coordinates used by a slot.
     pub fn uvs(&self, slot: u32) -> UvUse {
         self.slots[slot as usize].1
     }
@@ -174,7 +174,7 @@ impl<'a> Materials<'a> {
         slot.has_vertex_alpha |= has_alpha;
     }
 
-    /// The slots with their pictures decoded. What of them is missing becomes grey.
+    /// The slots with decoded textures; missing ones become grey.
     pub fn finish(mut self, report: &mut ImportReport) -> (Vec<Slot>, Vec<Texture>) {
         let mut images: Vec<usize> = self.means.iter().map(|mean| mean.image).collect();
         images.extend(
@@ -226,8 +226,8 @@ impl<'a> Materials<'a> {
         (slots, textures)
     }
 
-    /// A material and the texture coordinates of its pictures: the normal texture's are the first set, since tangents
-    /// follow it; pictures on a third set are left out.
+    /// A material and its texture coordinates. The normal texture's set comes first, since tangents follow it; textures on a
+    /// third set are dropped.
     fn read(&mut self, index: usize, slot: usize) -> (Slot, UvUse) {
         let root = &self.document.root;
         let material = &root.materials[index];
@@ -284,7 +284,7 @@ impl<'a> Materials<'a> {
             self.report
                 .note(Fate::Approximated, "an unlit material, which shines", &read.name);
         }
-        table::tell(raw, &root.extensions_used, &read.name, &mut self.report);
+        table::report_unread(raw, &root.extensions_used, &read.name, &mut self.report);
         for extension in unreadable(raw) {
             let what = format!("{extension}, whose values are not of the kinds that it has");
             self.report.note(Fate::Ignored, what, &read.name);
@@ -410,7 +410,7 @@ impl<'a> Materials<'a> {
     fn read_interior(&mut self, material: &Material, raw: &Json, slot: usize, read: &mut Slot) {
         let extensions = material.extensions.as_ref();
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |e| e.ior.0);
-        // 0 stands for a mirror.
+        // 0 means a mirror.
         let ior = if ior == 0.0 { f32::INFINITY } else { ior };
         read.ior = ior.clamp(1.0, IOR_MAX);
         if read.ior != ior {
@@ -474,8 +474,8 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// The strength of a mean of directions of this length: what points everywhere stretches nothing. Below a step of eight
-/// bits, and nearer to 1 than that, it is rounding.
+/// Strength for the mean of directions with this length: an isotropic mean has none. Below an 8-bit step, and within one of
+/// 1, it is rounding.
 fn mean_strength(length: f32) -> f32 {
     const STEP: f32 = 2.0 / 255.0;
     match length {
@@ -485,7 +485,7 @@ fn mean_strength(length: f32) -> f32 {
     }
 }
 
-/// A material that shows its colour whatever the light: it shines with it, and reflects nothing.
+/// An unlit material: it emits its colour and reflects nothing.
 fn make_unlit(slot: &mut Slot) {
     slot.is_unlit = true;
     slot.emission = slot.base_color;
@@ -496,8 +496,8 @@ fn make_unlit(slot: &mut Slot) {
     (slot.coat, slot.transmission) = (0.0, 0.0);
 }
 
-/// A wall without thickness: light goes straight through it, and nothing is absorbed on the way. What it mirrors is left to
-/// a coat, which does not bend light either; a coat of its own takes its place.
+/// A thin-walled material: light passes straight through without absorption. Its reflection is a coat, which does not
+/// refract either; the material's own coat takes precedence.
 fn make_thin(slot: &mut Slot) {
     if slot.coat == 0.0 {
         slot.coat = slot.specular * (1.0 - slot.metalness);

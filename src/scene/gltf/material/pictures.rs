@@ -1,4 +1,4 @@
-//! The pictures that slots look up: which are in use, how they are placed, what becomes of those that cannot be had.
+//! Textures of slots: images in use, their placement, and replacements of missing ones.
 
 use std::collections::HashMap;
 
@@ -16,19 +16,19 @@ use crate::scene::picture::Encoded;
 use crate::scene::report::Fate;
 use crate::scene::texture::scale::scaled_to;
 
-/// A picture that slots look up.
+/// An image used by slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PictureKey {
     /// An image of the file.
     Image(usize),
     /// The base colour that a material of the specular-glossiness workflow is turned into.
     BaseColor(usize),
-    /// Its metalness and roughness.
+    /// Its metalness and roughness channels.
     Surface(usize),
 }
 
 impl Materials<'_> {
-    /// Decodes pictures, none larger than wished, within what the import may take. Those that cannot be had are told.
+    /// Decodes images up to the size limit, within the import's budget. Failures are reported.
     pub(super) fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
         let (document, count) = (self.document, images.len());
         let Import { budget, loading, .. } = &document.files.import;
@@ -56,7 +56,7 @@ impl Materials<'_> {
         decoded
     }
 
-    /// Decodes pictures side by side, on all cores, for which there is room together.
+    /// Decodes images in parallel, as many as fit into the budget together.
     fn decode_beside(&mut self, pictures: Vec<(usize, Encoded<'_>)>, decoded: &mut HashMap<usize, Texture>) {
         let Import { budget, loading, .. } = &self.document.files.import;
         let side_max = self.texture_side_max;
@@ -104,7 +104,7 @@ impl Materials<'_> {
         slots.any(|(slot, _)| colors(slot).iter().flatten().any(is_it))
     }
 
-    /// Tells of an image that can't be had.
+    /// Reports an unreadable image.
     fn miss(&mut self, image: usize, reason: &str) {
         let what = format!("a texture, grey instead ({reason})");
         self.report
@@ -130,7 +130,7 @@ impl Materials<'_> {
         found
     }
 
-    /// A reference to the picture of a texture. Where the texture itself is not there, none.
+    /// A reference to a texture's image; `None` if the texture is missing.
     pub(super) fn texture(
         &mut self,
         reference: Option<Reference>,
@@ -182,7 +182,7 @@ impl Materials<'_> {
     }
 }
 
-/// The textures that are there, with the slots' references to them; what is not there becomes a plain grey.
+/// The existing textures, with the slots' references to them; missing ones become plain grey.
 pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>) -> Vec<Texture> {
     let mut place = 0;
     let places: Vec<Option<usize>> = textures

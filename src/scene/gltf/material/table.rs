@@ -1,5 +1,4 @@
-//! What becomes of each number of a glTF material: the table in docs/FORMATS.md, by which the import report tells what is
-//! left out.
+//! Fate of each glTF material parameter: the table in docs/FORMATS.md, from which the import report is made.
 
 use serde_json::Value as Json;
 
@@ -10,8 +9,8 @@ use crate::scene::report::{Fate, ImportReport};
 const TEXTURE: &str = r#"{"index": 0}"#;
 
 macro_rules! table {
-    ($($prefix:literal { $($key:literal $example:expr => $goes:ident $to:literal $told:literal;)* })*) => {
-        &[$($(FileParameter::new(concat!($prefix, $key), "", $example, Goes::$goes($to)).told($told),)*)*]
+    ($($prefix:literal { $($key:literal $example:expr => $goes:ident $to:literal $note:literal;)* })*) => {
+        &[$($(FileParameter::new(concat!($prefix, $key), "", $example, Goes::$goes($to)).with_note($note),)*)*]
     };
 }
 
@@ -103,9 +102,9 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
     }
 };
 
-/// Tells what of a material goes nowhere by the table, and what the table does not have. Extensions that the file
-/// `declares` are told with the file.
-pub(super) fn tell(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
+/// Reports a material's parameters that the table ignores or does not have. Extensions that the file `declares` are reported
+/// with the file.
+pub(super) fn report_unread(material: &Json, declared: &[String], name: &str, report: &mut ImportReport) {
     let members = |value: &Json| value.as_object().cloned().unwrap_or_default();
     let mut left = vec![(String::new(), members(material))];
     while let Some((place, all)) = left.pop() {

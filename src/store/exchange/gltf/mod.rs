@@ -40,9 +40,9 @@ const TAKES: Takes = Takes {
 
 /// α is 1 there at most.
 fn shown_widths(surface: &Surface) -> [f32; 2] {
-    let told = gltf_from_widths(surface.roughness, surface.anisotropy);
-    let across = told.roughness * told.roughness;
-    [across + (1.0 - across) * told.stretch * told.stretch, across]
+    let exported = gltf_from_widths(surface.roughness, surface.anisotropy);
+    let across = exported.roughness * exported.roughness;
+    [across + (1.0 - across) * exported.stretch * exported.stretch, across]
 }
 
 /// Numbers of the format: of components, buffers' uses, sampling.

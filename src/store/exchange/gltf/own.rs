@@ -5,7 +5,7 @@ use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
 use crate::scene::Budget;
 use crate::scene::picture::read_texture;
-use crate::scene::texture::{OwnTexture, TextureProjection, TextureTarget, slots_with_coordinates};
+use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture, slots_with_coordinates};
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
 use crate::store::exchange::report::Entry;
 
@@ -14,9 +14,13 @@ use crate::store::exchange::report::Entry;
 pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings) -> Vec<Entry> {
     let mut entries = Vec::new();
     // A picture for each target that can be had and said.
-    let mut pictures: Vec<(TextureTarget, OwnTexture, Texture)> = Vec::new();
+    let mut pictures: Vec<(TextureTarget, UserTexture, Texture)> = Vec::new();
     for &target in TextureTarget::ALL {
-        let Some(texture) = material.own.get(target).filter(|_| material.uses_texture(target)) else {
+        let Some(texture) = material
+            .user_textures
+            .get(target)
+            .filter(|_| material.uses_texture(target))
+        else {
             continue;
         };
         match picture(model, slot, target, texture) {
@@ -78,7 +82,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             TextureTarget::Opacity => {}
         }
         model.textures.push(picture);
-        material.own.set(target, None);
+        material.user_textures.set(target, None);
         entries.push(Entry::exact(words(target)));
     }
     entries
@@ -93,7 +97,7 @@ fn dropped(target: TextureTarget, why: &str) -> Entry {
 }
 
 /// A picture with all that is done to its numbers done.
-fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &OwnTexture) -> Result<Texture, String> {
+fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &UserTexture) -> Result<Texture, String> {
     let has_coordinates = slots_with_coordinates(model).get(slot).copied().unwrap_or(false);
     let is_box = texture.projection == TextureProjection::Box
         || (texture.projection == TextureProjection::Auto && !has_coordinates);
@@ -117,7 +121,7 @@ fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &OwnTextu
 }
 
 /// A texel of a file: sRGB codes of a colour, a normal, or a number in all channels.
-fn changed(target: TextureTarget, texture: &OwnTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
+fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
     if target == TextureTarget::Normal {
         return [r, if texture.inverted { 255 - g } else { g }, b, 255];
     }

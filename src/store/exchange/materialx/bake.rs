@@ -92,13 +92,13 @@ fn bake(path: &Path) -> Result<Values, String> {
         return Err("MaterialX's tools would bake it: pip install materialx".to_owned());
     };
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let told = run(command(program)?, path, folder.path())?;
-    if let Some(missing) = told.split("Image file not found: ").nth(1) {
+    let output = run(command(program)?, path, folder.path())?;
+    if let Some(missing) = output.split("Image file not found: ").nth(1) {
         let name = missing.lines().next().unwrap_or_default();
         return Err(format!("{name} is not there"));
     }
     let text = std::fs::read_to_string(folder.path().join("baked.mtlx")).map_err(|_| {
-        let last = told.lines().last().unwrap_or("no word");
+        let last = output.lines().last().unwrap_or("no word");
         format!("{PROGRAM} of MaterialX failed: {last}")
     })?;
     let document = Document::parse(&text).map_err(|error| error.to_string())?;

@@ -48,10 +48,10 @@ impl Inputs {
 
     /// Brings what is set into its range, and tells that and what goes nowhere.
     pub fn settle(&mut self) {
-        let mut told = Vec::new();
+        let mut entries = Vec::new();
         for (name, value) in self.values.clone() {
             let Some(row) = self.row(&name) else {
-                told.push(Entry::dropped(name, format!("{} has no such input", self.kind)));
+                entries.push(Entry::dropped(name, format!("{} has no such input", self.kind)));
                 continue;
             };
             if !row.layer.is_empty() && self.color(row.layer) == [0.0; 3] {
@@ -60,17 +60,17 @@ impl Inputs {
             if let Goes::Nowhere(why) = row.goes
                 && Some(value) != default_of(row)
             {
-                told.push(Entry::dropped(name, why));
+                entries.push(Entry::dropped(name, why));
             } else if let Some([least, most]) = row.range {
                 let within = value.map(|x| x.clamp(least, most));
                 if within != value {
                     let detail = format!("it is taken between {least} and {most}");
-                    told.push(Entry::approximated(name.as_str(), detail, None));
+                    entries.push(Entry::approximated(name.as_str(), detail, None));
                     self.values.insert(name, within);
                 }
             }
         }
-        self.losses.extend(told);
+        self.losses.extend(entries);
     }
 }
 

@@ -84,7 +84,7 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     row("thin_film_ior", "1.4", "1.25", FILM).of("thin_film_weight"),
     row("emission_luminance", "0", "500", To("emission.strength"))
         .within(0.0, 1000.0 * RADIANCE_MAX)
-        .told("1000 nits are radiance 1"),
+        .with_note("1000 nits are radiance 1"),
     row("emission_color", WHITE, COLOR, To("emission.color"))
         .within(0.0, RADIANCE_MAX)
         .of("emission_luminance"),
@@ -92,7 +92,7 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     row("geometry_thin_walled", "false", "true", THIN),
     direction("geometry_normal", NORMALS),
     direction("geometry_coat_normal", NORMALS),
-    direction("geometry_tangent", TURN).told("the turn of a `rotate3d`"),
+    direction("geometry_tangent", TURN).with_note("the turn of a `rotate3d`"),
     direction("geometry_coat_tangent", ROUND_COAT),
 ];
 
@@ -169,10 +169,10 @@ pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
     row("emission_color", WHITE, COLOR, To("emission.color"))
         .within(0.0, RADIANCE_MAX)
         .of("emission"),
-    unit("opacity", WHITE, COLOR, To("geometry.opacity")).told("the luminance of a colour"),
+    unit("opacity", WHITE, COLOR, To("geometry.opacity")).with_note("the luminance of a colour"),
     row("thin_walled", "false", "true", THIN),
     direction("normal", NORMALS),
-    direction("tangent", TURN).told("the turn of a `rotate3d`"),
+    direction("tangent", TURN).with_note("the turn of a `rotate3d`"),
 ];
 
 pub(super) const GLTF_PBR: &[FileParameter] = &[
@@ -180,13 +180,13 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
     unit("metallic", "1", "0.5", To("base.metalness")),
     unit("roughness", "1", "0.5", To("specular.roughness")),
     direction("normal", NORMALS),
-    direction("tangent", TURN).told("the turn of a `rotate3d`"),
+    direction("tangent", TURN).with_note("the turn of a `rotate3d`"),
     row("occlusion", "1", "0.5", OCCLUSION),
     unit("transmission", "0", "0.5", To("transmission.weight")),
     unit("specular", "1", "0.5", To("specular.weight, without metals")),
     row("specular_color", WHITE, COLOR, To("specular.color, without metals"))
         .within(0.0, 1000.0)
-        .told("at most 1 in what transmits"),
+        .with_note("at most 1 in what transmits"),
     ior("ior", "1.5", To("specular.ior")),
     unit("alpha", "1", "0.25", To("geometry.opacity")).of("alpha_mode"),
     row("alpha_mode", "0", "1", To("geometry.opacity"))
@@ -216,7 +216,7 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
         "0.5",
         To("specular.anisotropy, specular.roughness"),
     )
-    .told("stretched at most 19 : 1"),
+    .with_note("stretched at most 19 : 1"),
     row("anisotropy_rotation", "0", "0.5", TURN)
         .within(-6.3, 6.3)
         .of("anisotropy_strength"),

@@ -6,30 +6,30 @@ use serde_json::{Map, Value as Json};
 
 use super::parameter::{ParameterError, TEXTURE_PARAMETERS};
 use super::{MaterialSettings, TextureUse};
-use crate::scene::texture::{OwnTexture, TextureAssignment, TextureProjection, TextureTarget};
+use crate::scene::texture::{TextureAssignment, TextureProjection, TextureTarget, UserTexture};
 
-/// A material's own pictures, at most one for each target.
+/// Texture maps that the user assigned to a material, at most one per target.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct OwnTextures([Option<Box<OwnTexture>>; TextureTarget::ALL.len()]);
+pub struct UserTextures([Option<Box<UserTexture>>; TextureTarget::ALL.len()]);
 
-impl OwnTextures {
+impl UserTextures {
     /// The picture for a target.
-    pub fn get(&self, target: TextureTarget) -> Option<&OwnTexture> {
+    pub fn get(&self, target: TextureTarget) -> Option<&UserTexture> {
         self.0[target as usize].as_deref()
     }
 
     /// The same to be changed.
-    pub fn get_mut(&mut self, target: TextureTarget) -> Option<&mut OwnTexture> {
+    pub fn get_mut(&mut self, target: TextureTarget) -> Option<&mut UserTexture> {
         self.0[target as usize].as_deref_mut()
     }
 
     /// Puts a picture on a target, or takes it off.
-    pub fn set(&mut self, target: TextureTarget, texture: Option<OwnTexture>) {
+    pub fn set(&mut self, target: TextureTarget, texture: Option<UserTexture>) {
         self.0[target as usize] = texture.map(Box::new);
     }
 
     /// All of them.
-    pub fn iter(&self) -> impl Iterator<Item = (TextureTarget, &OwnTexture)> {
+    pub fn iter(&self) -> impl Iterator<Item = (TextureTarget, &UserTexture)> {
         let targets = TextureTarget::ALL.iter();
         targets.filter_map(|&target| Some((target, self.get(target)?)))
     }
@@ -66,9 +66,9 @@ pub fn target_of_key(key: &str) -> Option<TextureTarget> {
 
 impl MaterialSettings {
     /// Puts a picture on a target, so that it is seen: what it multiplies becomes 1 where another value would hide it.
-    pub fn put_texture(&mut self, target: TextureTarget, texture: OwnTexture) {
-        let is_new = self.own.get(target).is_none();
-        self.own.set(target, Some(texture));
+    pub fn put_texture(&mut self, target: TextureTarget, texture: UserTexture) {
+        let is_new = self.user_textures.get(target).is_none();
+        self.user_textures.set(target, Some(texture));
         *self.uses_texture_mut(target) = true;
         if !is_new {
             return;
@@ -98,9 +98,9 @@ impl MaterialSettings {
         }
     }
 
-    /// Which of the model's textures are looked up: those in whose place there is none of the user's own.
+    /// The model's textures in use: those without a user's texture in their place.
     pub fn uses_of_model(&self) -> TextureUse {
-        let of_model = |target| self.uses_texture(target) && self.own.get(target).is_none();
+        let of_model = |target| self.uses_texture(target) && self.user_textures.get(target).is_none();
         TextureUse {
             color: of_model(TextureTarget::BaseColor),
             roughness: of_model(TextureTarget::Roughness) || of_model(TextureTarget::Metalness),
@@ -113,7 +113,7 @@ impl MaterialSettings {
 
     /// Has its pictures lie by the first texture coordinates where they lay as on a box.
     pub fn without_boxes(&mut self) {
-        for texture in self.own.0.iter_mut().flatten() {
+        for texture in self.user_textures.0.iter_mut().flatten() {
             if matches!(texture.projection, TextureProjection::Box | TextureProjection::Auto) {
                 texture.projection = TextureProjection::First;
             }
@@ -133,14 +133,17 @@ impl MaterialSettings {
     }
 }
 
-/// The own pictures of materials, by slot.
+/// Users' textures of materials, by slot.
 pub fn texture_assignments(materials: &[MaterialSettings]) -> Vec<TextureAssignment> {
     let of_slot = |(slot, material): (usize, &MaterialSettings)| {
-        let assigned = material.own.iter().map(|(target, texture)| TextureAssignment {
-            slot,
-            target,
-            texture: texture.clone(),
-        });
+        let assigned = material
+            .user_textures
+            .iter()
+            .map(|(target, texture)| TextureAssignment {
+                slot,
+                target,
+                texture: texture.clone(),
+            });
         assigned.collect::<Vec<_>>()
     };
     materials.iter().enumerate().flat_map(of_slot).collect()
@@ -150,14 +153,14 @@ pub fn texture_assignments(materials: &[MaterialSettings]) -> Vec<TextureAssignm
 ///
 /// # Errors
 /// A value that a parameter does not take; a file that is no text.
-pub fn texture_from_json(json: Json) -> Result<OwnTexture, TextureError> {
+pub fn texture_from_json(json: Json) -> Result<UserTexture, TextureError> {
     let Json::Object(mut values) = json else {
         return Err(TextureError::NoObject);
     };
     let Some(Json::String(file)) = values.shift_remove("file") else {
         return Err(TextureError::NoFile);
     };
-    let mut texture = OwnTexture::of(PathBuf::from(file));
+    let mut texture = UserTexture::of(PathBuf::from(file));
     for parameter in TEXTURE_PARAMETERS.iter() {
         if let Some(json) = values.shift_remove(parameter.key) {
             parameter.set(&mut texture, parameter.value_from_json(&json)?)?;
@@ -167,7 +170,7 @@ pub fn texture_from_json(json: Json) -> Result<OwnTexture, TextureError> {
 }
 
 /// A picture for a material's file; see [`texture_from_json`].
-pub fn texture_to_json(texture: &OwnTexture) -> Json {
+pub fn texture_to_json(texture: &UserTexture) -> Json {
     let mut values = Map::new();
     // With the separators that every system reads.
     let file = texture.file.to_string_lossy().replace('\\', "/");

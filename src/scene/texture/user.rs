@@ -1,4 +1,4 @@
-//! Pictures that a user puts on a material, in place of the model's own.
+//! Texture maps that a user assigns to a material, instead of the model's.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::named::named;
 
 named! {
-    /// What a picture is put on.
+    /// Material parameter of a texture map.
     TextureTarget {
         BaseColor, "base-color", "Base colour", "Multiplies the base colour.";
         Roughness, "roughness", "Roughness", "Multiplies the roughness; its values are meant for GGX, as those of most pictures are.";
@@ -20,7 +20,7 @@ named! {
 }
 
 named! {
-    /// Which number of a texel is meant, where one is.
+    /// Channel of a texel for a scalar parameter.
     #[derive(Default)]
     TextureChannel {
         #[default]
@@ -33,7 +33,7 @@ named! {
 }
 
 named! {
-    /// What a picture's numbers stand for.
+    /// Encoding of a texture map's values.
     #[derive(Default)]
     TextureSpace {
         #[default]
@@ -44,7 +44,7 @@ named! {
 }
 
 named! {
-    /// Where on a surface a picture lies.
+    /// Projection of a texture map.
     #[derive(Default)]
     TextureProjection {
         #[default]
@@ -56,44 +56,44 @@ named! {
 }
 
 impl TextureTarget {
-    /// True where a texel is a colour, false where it is a number or a normal.
+    /// True for a colour, false for a scalar or a normal.
     pub fn is_color(self) -> bool {
         matches!(self, Self::BaseColor | Self::Emission)
     }
 
-    /// True where one channel counts.
+    /// True for a scalar.
     pub fn is_number(self) -> bool {
         !self.is_color() && self != Self::Normal
     }
 }
 
-/// A picture of the user's own, and how it is put on a surface.
+/// A user's texture map and its mapping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct OwnTexture {
-    /// The picture.
+pub struct UserTexture {
+    /// File of the texture map.
     pub file: PathBuf,
-    /// Which of its numbers is meant, of a target that is one.
+    /// Channel, for a scalar target.
     pub channel: TextureChannel,
-    /// What its numbers stand for.
+    /// Encoding of the values.
     pub space: TextureSpace,
-    /// Where it lies on the surface.
+    /// Projection onto the surface.
     pub projection: TextureProjection,
-    /// How many times it repeats from one end of the texture coordinates to the other, above 0.
+    /// Repetitions over the texture coordinates' unit, above 0.
     pub scale: f32,
-    /// How many times oftener it repeats upwards than sidewards, above 0.
+    /// Vertical repetitions per horizontal one, above 0.
     pub stretch: f32,
-    /// Turn about the middle of the texture coordinates, counterclockwise as seen, degrees.
+    /// Rotation about the centre of the texture coordinates in degrees, anticlockwise as seen.
     pub rotation_deg: f32,
-    /// By how much of its width and of its height it lies further to the right and further up.
+    /// Offset to the right and upwards, in its width and height.
     pub offset: [f32; 2],
-    /// 0: what it is put on stays as it is; 1: the picture counts in full.
+    /// Blend amount in [0, 1]; 0 leaves the parameter unchanged.
     pub strength: f32,
     /// A dark texel counts as a bright one: gloss for roughness. Of a normal map, green points downwards.
     pub inverted: bool,
 }
 
-impl Default for OwnTexture {
+impl Default for UserTexture {
     fn default() -> Self {
         Self {
             file: PathBuf::new(),
@@ -110,8 +110,8 @@ impl Default for OwnTexture {
     }
 }
 
-impl OwnTexture {
-    /// A picture as it is.
+impl UserTexture {
+    /// A texture map with default mapping.
     pub fn of(file: PathBuf) -> Self {
         Self {
             file,
@@ -119,12 +119,12 @@ impl OwnTexture {
         }
     }
 
-    /// Places in the picture from texture coordinates, as rows of (u, v, 1); v points down in both.
+    /// Affine map from texture coordinates to image coordinates, as rows of (u, v, 1); v points down in both.
     pub fn picture_from_uv(&self) -> [f32; 6] {
         let (sine, cosine) = f64::from(self.rotation_deg).to_radians().sin_cos();
         let [along, down] = [f64::from(self.scale), f64::from(self.scale) * f64::from(self.stretch)];
         let [right, up] = self.offset.map(f64::from);
-        // The picture turns counterclockwise where the coordinates turn clockwise; v points down. The middle stays.
+        // The image rotates anticlockwise if the coordinates rotate clockwise; v points down. The centre stays.
         let [uu, uv] = [along * cosine, -along * sine];
         let [vu, vv] = [down * sine, down * cosine];
         let middle = |a: f64, b: f64| 0.5 - 0.5 * (a + b);
