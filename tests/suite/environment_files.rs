@@ -523,7 +523,9 @@ fn colours_of_wider_spaces_are_converted() {
         if name == "plain.exr" {
             exr_file(&folder, name, &RGB, "float", Compression::Uncompressed);
         }
-        glossmith::scene::texture::mean_of_file(&path).expect("loads").linear
+        glossmith::scene::texture::mean_of_file(&path, &glossmith::scene::Budget::of_import())
+            .expect("loads")
+            .linear
     });
     assert!(plain != wide, "{plain:?}");
 }

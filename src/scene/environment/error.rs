@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::scene::budget::OverBudget;
 use crate::scene::loading::Cancelled;
 
 /// Errors of an environment. The message names the file, the fault and the remedy.
@@ -87,6 +88,14 @@ pub enum EnvironmentError {
         width: u64,
         /// Height in pixels.
         height: u64,
+    },
+    /// Larger than the memory budget.
+    #[error("the environment {} is not loaded: {over}", path.display())]
+    OverBudget {
+        /// The file.
+        path: PathBuf,
+        /// Needed and available memory.
+        over: OverBudget,
     },
     /// Loading was cancelled.
     #[error(transparent)]

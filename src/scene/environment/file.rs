@@ -5,8 +5,12 @@ use std::path::Path;
 use super::decoded::{Picture, Source};
 use super::{Environment, EnvironmentEncoding, EnvironmentError};
 use super::{container, cube, display_referred, open_exr, radiance_hdr};
+use crate::scene::budget::Budget;
 use crate::scene::endings::{ending, is_picture};
 use crate::scene::loading::Loading;
+
+/// Bytes per texel of unfolding a cube and of the sampling tables, besides the map.
+const WORK_BYTES: u64 = 40;
 
 /// Loads an image of the whole sphere: a latitude-longitude or cube map in a file, or six faces in a folder.
 pub(super) fn load(
@@ -20,12 +24,17 @@ pub(super) fn load(
         path,
         encoding,
         loading,
+        budget: &Budget::of_import(),
     };
+    let check_work = |texels: usize| source.within(source.budget.check(WORK_BYTES * texels as u64));
     let mut picture = if path.is_dir() {
         cube::read_folder(source, decode)?
     } else {
-        cube::unfolded(decode(source)?)
+        let picture = decode(source)?;
+        check_work(picture.texels.len())?;
+        cube::unfolded(picture)
     };
+    check_work(picture.texels.len())?;
     loading.step("the environment's distribution")?;
     repair(&mut picture);
     let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;

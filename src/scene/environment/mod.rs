@@ -37,6 +37,7 @@ use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::loading::Loading;
 use crate::scene::memory::{in_large_pages, prefetch};
+use crate::scene::path_text::path_of_text;
 
 pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
@@ -176,7 +177,7 @@ impl FromStr for EnvironmentSource {
             return Err(EnvironmentError::NoName);
         }
         let built_in = BUILT_IN.iter().find(|built_in| built_in.name == text);
-        Ok(built_in.map_or_else(|| Self::File(PathBuf::from(text)), |found| found.source.clone()))
+        Ok(built_in.map_or_else(|| Self::File(path_of_text(text)), |found| found.source.clone()))
     }
 }
 

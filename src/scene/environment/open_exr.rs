@@ -59,15 +59,15 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, resource::open(path))?);
     let reader = match Reader::read_from_buffered(file, false) {
-        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
+        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(source),
         result => result.map_err(|error| exr_error(path, error))?,
     };
     if has_fine_chroma(reader.headers()) {
-        return luminance_chroma::read(path);
+        return luminance_chroma::read(source);
     }
     let layer = choose_layer(path, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
-    let (mut canvas, offset) = window(path, &header)?;
+    let (mut canvas, offset) = window(source, &header)?;
     check_supported(path, &header, file_bytes)?;
 
     let chunks = reader

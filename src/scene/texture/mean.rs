@@ -6,7 +6,7 @@ use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::scene::budget::Budget;
 use crate::scene::model::Texture;
-use crate::scene::picture::read_texture;
+use crate::scene::picture::whole_texture;
 
 /// Codes of 8 bits.
 const CODES: usize = 256;
@@ -35,13 +35,13 @@ pub fn texture_mean(picture: &Texture) -> TextureMean {
     }
 }
 
-/// Mean of a texture map in a file.
+/// Mean of a texture map in a file, within the import's budget.
 ///
 /// # Errors
 ///
 /// The fault of the file.
-pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
-    Ok(texture_mean(&read_texture(path, true, u32::MAX, &Budget::default())?))
+pub fn mean_of_file(path: &Path, budget: &Budget) -> Result<TextureMean, String> {
+    Ok(texture_mean(&whole_texture(path, true, budget)?))
 }
 
 /// Mean of sRGB codes, linear.

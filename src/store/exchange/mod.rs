@@ -28,6 +28,7 @@ use super::replace::save_atomically;
 use super::{FileError, Loaded};
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::endings::ending;
+use crate::scene::path_text::path_of_text;
 use crate::scene::{Loading, ModelError};
 
 pub use self::materialx::{SURFACES, SurfaceKind};
@@ -380,7 +381,7 @@ pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> 
 /// # Errors
 /// What is wrong with the file, or what the names are.
 pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialSettings>, ExchangeError> {
-    let path = Path::new(name_or_path);
+    let path = &path_of_text(name_or_path);
     if holds_materials(path)
         && let Opened::Material(loaded) = open(path, options)?
     {

@@ -16,7 +16,7 @@ use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, MaterialSettings};
 use crate::scene::resource;
 use crate::scene::texture::texture_mean;
-use crate::scene::{Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
+use crate::scene::{Budget, Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
 use crate::store::picture::png_bytes;
 
 /// `.glb` and `.gltf`.
@@ -57,6 +57,8 @@ impl Format for Gltf {
             Some(document) => load_with(&document.model, &document.import)?,
             None => load(&ModelSource::Sphere)?,
         };
+        let budget = Budget::of_import();
+        let _ = budget.take((model.bytes() as u64).min(budget.left()));
         let used = model
             .mesh
             .slots
@@ -74,7 +76,7 @@ impl Format for Gltf {
             };
             let mut material = material.clone();
             let of_own = match model.slots.get(slot) {
-                Some(_) => own::hand_over(&mut model, slot, &mut material),
+                Some(_) => own::hand_over(&mut model, slot, &mut material, &budget),
                 None => Vec::new(),
             };
             let material = &material;
