@@ -169,7 +169,8 @@ mod tests {
 
     use super::*;
     use crate::scene::budget::Budget;
-    use crate::scene::picture::{Encoded, Wanted};
+    use crate::scene::picture::{Encoded, Wanted, decode_bytes};
+    use crate::scene::texture::scale::scaled_to;
 
     fn encoded(image: &DynamicImage) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
@@ -196,17 +197,12 @@ mod tests {
             let bytes = encoded(&image);
             for is_color in [true, false] {
                 for side_max in [20, 9, 1] {
-                    let texture = |name: &str, bytes: &[u8]| {
-                        let (name, bytes) = (name.to_owned(), bytes.to_vec().into());
-                        let wanted = Wanted { is_color, side_max };
-                        let scaled = Encoded { name, bytes }.texture(wanted, &Budget::of_import());
-                        scaled.unwrap_or_else(|why| panic!("{why}")).texture
-                    };
-                    let by_rows = texture("a.png", &bytes);
-                    // TIFF is decoded as a whole.
-                    let mut tiff = Cursor::new(Vec::new());
-                    image.write_to(&mut tiff, ImageFormat::Tiff).expect("written");
-                    let as_whole = texture("a.tif", tiff.get_ref());
+                    let (name, found) = ("a.png".to_owned(), bytes.clone().into());
+                    let wanted = Wanted { is_color, side_max };
+                    let scaled = Encoded { name, bytes: found }.texture(wanted, &Budget::of_import());
+                    let by_rows = scaled.unwrap_or_else(|why| panic!("{why}")).texture;
+                    let decoded = decode_bytes("a.png".to_owned(), &bytes).unwrap_or_else(|why| panic!("{why}"));
+                    let (as_whole, _) = scaled_to(decoded.texture(is_color), side_max, is_color);
                     let of = (image.color(), is_color, side_max);
                     assert_eq!([by_rows.width, by_rows.height], [as_whole.width, as_whole.height]);
                     assert!(

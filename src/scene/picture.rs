@@ -359,7 +359,7 @@ fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String
 /// # Errors
 ///
 /// The reason, in a few words.
-fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
+pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));
     let (width, height, texels) = decoded?;

@@ -412,7 +412,7 @@ fn pictures_larger_than_needed_are_reduced_while_they_are_decoded() {
 fn environments_share_the_budget_of_imports() {
     let place = Workplace::new();
     let light = |x: usize, y: usize| [x as f32, y as f32, 1.0];
-    super::cli_support::write_hdr(&place.path("l.hdr"), 512, 256, |x, y| light(x, y));
+    super::cli_support::write_hdr(&place.path("l.hdr"), 512, 256, light);
     super::cli_support::write_exr(&place.path("l.exr"), 512, 256, light);
     gradient(512, 0).save(place.path("l.png")).unwrap();
     std::fs::create_dir(place.path("faces")).unwrap();
