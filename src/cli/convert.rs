@@ -12,6 +12,7 @@ use crate::document::ImportLobe;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
 use crate::say::say;
+use crate::scene::path_text::path_text;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
 use crate::store::preset;
@@ -144,7 +145,7 @@ fn convert(input: &Path, output: &Path, arguments: &ConvertArguments) -> anyhow:
         is_plain: arguments.without_exact,
         ..ReadOptions::default()
     };
-    let name = input.to_string_lossy();
+    let name = path_text(input);
     let mut subject = match preset::material_by_name(&name) {
         Some(material) => Subject::of(material.clone()),
         None if input.extension().is_none() => Subject::of(preset::find(&name)?.value),

@@ -1,6 +1,7 @@
 //! What is rendered, and how: a document from files and options.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr as _;
 
 use anyhow::bail;
 use clap::Args;
@@ -31,7 +32,7 @@ pub struct SceneArguments {
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
-    #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball")]
+    #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball", value_parser = parse::name_of_file(parse::model))]
     model: Option<ModelSource>,
     /// Which scene of the model's file, counted from 0. Without it the file's default one.
     #[arg(long, value_name = "N")]
@@ -51,7 +52,7 @@ pub struct SceneArguments {
     /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky,
     /// furnace), an image of the whole sphere (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp; lat-long or cube map), or a
     /// folder with the six faces of a cube [default: product].
-    #[arg(long, value_name = "FILE|NAME")]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(EnvironmentSource::from_str))]
     environment: Option<EnvironmentSource>,
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
@@ -74,7 +75,7 @@ pub struct SceneArguments {
     background: Option<Background>,
     /// The material of everything: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
     /// Without it a file's own materials stay.
-    #[arg(long, value_name = "FILE|NAME")]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
     material: Option<String>,
     /// Put an image on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
     /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.

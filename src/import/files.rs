@@ -43,7 +43,7 @@ impl Import {
     pub fn new(loading: &Loading) -> Self {
         Self {
             asked: Seen::default(),
-            budget: Budget::of(loading),
+            budget: Budget::of_import(),
             loading: loading.clone(),
         }
     }

@@ -8,6 +8,7 @@ use crate::import::{endings, environment};
 use crate::import::{holds_model, is_model};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::path_text::path_of_text;
 use crate::scene::texture::set;
 use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::file_kind::{FileKind, may_hold_document};
@@ -203,8 +204,7 @@ impl App {
             self.refuse_address(address);
             return;
         }
-        let path = |line: &str| PathBuf::from(line.strip_prefix("file://").map_or(line.to_owned(), decoded));
-        let paths: Vec<PathBuf> = lines.map(path).collect();
+        let paths: Vec<PathBuf> = lines.map(path_of_text).collect();
         if paths.iter().all(|path| path.exists()) {
             self.drop_files(paths);
         } else {
@@ -224,27 +224,6 @@ fn is_address(text: &str) -> bool {
     let scheme = text.split_once(":/").map_or("", |(scheme, _)| scheme);
     let is_scheme = scheme.len() > 1 && scheme.chars().all(|letter| letter.is_ascii_alphanumeric());
     is_scheme && scheme != "file"
-}
-
-/// A name as file managers write it, its special characters as %20 and the like.
-fn decoded(text: &str) -> String {
-    let mut bytes = Vec::new();
-    let mut rest = text.as_bytes();
-    while let [first, after @ ..] = rest {
-        let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
-        let code = code.and_then(|digits| u8::from_str_radix(digits, 16).ok());
-        match code {
-            Some(code) if *first == b'%' => {
-                bytes.push(code);
-                rest = &after[2..];
-            }
-            _ => {
-                bytes.push(*first);
-                rest = after;
-            }
-        }
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 #[cfg(test)]
@@ -282,7 +261,5 @@ mod tests {
         assert!(is_address("https://example.org/a.glb") && is_address("https:/example.org/a.glb"));
         assert!(is_address("data:/x") && !is_address("file:///a.glb"));
         assert!(!is_address("/models/a.glb") && !is_address("C:/models/a.glb") && !is_address("a.glb"));
-        assert_eq!(decoded("/my%20models/%c3%a4.glb"), "/my models/ä.glb");
-        assert_eq!(decoded("100%"), "100%");
     }
 }

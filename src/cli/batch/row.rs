@@ -41,6 +41,7 @@ pub(super) struct Row {
     /// What became of it.
     pub(super) status: Status,
     /// Its files.
+    #[serde(with = "crate::scene::path_text::list")]
     pub(super) files: Vec<PathBuf>,
     /// The hash of what it was made of.
     #[serde(skip_serializing_if = "Option::is_none")]

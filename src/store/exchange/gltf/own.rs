@@ -9,9 +9,9 @@ use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture, slots
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
 use crate::store::exchange::report::Entry;
 
-/// Puts a material's own textures into the model's slot where the file can have them, and takes them from the material;
-/// what became of each.
-pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings) -> Vec<Entry> {
+/// Puts a material's own textures into the model's slot where the file can have them, within the budget, and takes them
+/// from the material; what became of each.
+pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings, budget: &Budget) -> Vec<Entry> {
     let mut entries = Vec::new();
     // A picture for each target that can be had and said.
     let mut pictures: Vec<(TextureTarget, UserTexture, Texture)> = Vec::new();
@@ -23,7 +23,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
         else {
             continue;
         };
-        match picture(model, slot, target, texture) {
+        match picture(model, slot, (target, texture), budget) {
             Ok(picture) => pictures.push((target, texture.clone(), picture)),
             Err(why) => entries.push(dropped(target, &why)),
         }
@@ -97,7 +97,12 @@ fn dropped(target: TextureTarget, why: &str) -> Entry {
 }
 
 /// A picture with all that is done to its numbers done.
-fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &UserTexture) -> Result<Texture, String> {
+fn picture(
+    model: &Model,
+    slot: usize,
+    (target, texture): (TextureTarget, &UserTexture),
+    budget: &Budget,
+) -> Result<Texture, String> {
     let has_coordinates = slots_with_coordinates(model).get(slot).copied().unwrap_or(false);
     let is_box = texture.projection == TextureProjection::Box
         || (texture.projection == TextureProjection::Auto && !has_coordinates);
@@ -110,7 +115,7 @@ fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &UserText
     if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
         return Err("the format does not turn normals with their picture".to_owned());
     }
-    let read = read_texture(&texture.file, target.is_color(), u32::MAX, &Budget::default())?;
+    let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
     let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
     Ok(Texture {

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use roxmltree::Document;
 
-use super::graph::{shaders, worth};
+use super::graph::{Images, shaders, worth};
 use crate::scene::Loading;
 
 /// The program of MaterialX, and the folder that it lies in where [`TOOLS_VARIABLE`] does not say another.
@@ -103,13 +103,12 @@ fn bake(path: &Path) -> Result<Values, String> {
     })?;
     let document = Document::parse(&text).map_err(|error| error.to_string())?;
     let mut values = Values::new();
+    let loading = Loading::default();
+    let images = Images::in_folder(folder.path(), &loading);
     for (shader, material) in shaders(document.root_element()) {
         let name = material.unwrap_or(shader).attribute("name").unwrap_or_default();
         for input in shader.children().filter(|node| node.has_tag_name("input")) {
-            if let (Some(key), Ok(Some(found))) = (
-                input.attribute("name"),
-                worth(input, folder.path(), &Loading::default()),
-            ) {
+            if let (Some(key), Ok(Some(found))) = (input.attribute("name"), worth(input, &images)) {
                 values.insert((name.to_owned(), key.to_owned()), found.color());
             }
         }
