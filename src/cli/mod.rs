@@ -6,6 +6,7 @@
 
 mod answer;
 mod batch;
+mod benchmark;
 mod check;
 mod convert;
 mod explain;
@@ -105,6 +106,8 @@ subcommands! {
     Turntable(Box<turntable::TurntableArguments>) => turntable::run;
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments) => check::run;
+    /// Measure every engine and adapter of this machine in three minutes, or compare two such measurements.
+    Benchmark(benchmark::BenchmarkArguments) => benchmark::run;
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments) => scatter::run;
     /// Match the look of another lobe or of a measured material.
