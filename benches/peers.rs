@@ -125,7 +125,11 @@ fn compare(folder: &Path, case: &Scene, extent: &Extent, with_peer: bool) -> Res
         }
     };
     let beside = |ours: f64, theirs: f64| format!(" {ours:.2} | {} | {} |", of_peer(theirs), of_peer(ours / theirs));
-    let mut line = format!("| {} |{}", case.name().replacen(", ", " | ", 1), beside(rate(our_seconds), rate(their_seconds)));
+    let mut line = format!(
+        "| {} |{}",
+        case.name().replacen(", ", " | ", 1),
+        beside(rate(our_seconds), rate(their_seconds))
+    );
     if let ([even, adaptive], Some(reference)) = (&to_goal[..], &reference) {
         let their_time = seconds_to_goal(&theirs, reference);
         line += &beside(seconds_to_goal(&even.renders, reference), their_time);

@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/benchmark.rs"]
+mod benchmark;
 #[cfg(unix)]
 #[path = "suite/bounded.rs"]
 mod bounded;

@@ -46,7 +46,10 @@ pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
     }
     let (text, is_written) = match &arguments.compare {
         Some(paths) => {
-            let reports = paths.iter().map(|path| Report::read(path)).collect::<Result<Vec<_>, _>>()?;
+            let reports = paths
+                .iter()
+                .map(|path| Report::read(path))
+                .collect::<Result<Vec<_>, _>>()?;
             let comparison = compare(&reports[0], &reports[1]);
             (comparison.text(), arguments.answer.write(&comparison))
         }

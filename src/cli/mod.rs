@@ -34,6 +34,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::instructions::Instructions;
+use crate::render::denoise::DenoiseDevice;
 use crate::render::{EngineChoice, RayQueries};
 use crate::store::file_kind::what_is_opened;
 
@@ -63,6 +64,9 @@ pub struct Arguments {
     /// Whether the GPU engine uses hardware ray tracing: if measured to be faster; if available; never.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
     pub ray_queries: RayQueries,
+    /// The device that denoises: the fastest; a GPU (CUDA, HIP, SYCL, Metal), or the CPU where none works; the CPU.
+    #[arg(long, global = true, default_value = "auto", value_name = "auto|gpu|cpu")]
+    pub denoise_device: DenoiseDevice,
     /// Read what files name wherever it lies. Without it they may name what is in the folder above their own, and below.
     #[arg(long, global = true)]
     pub allow_outside: bool,

@@ -78,7 +78,10 @@ impl GpuAdapter {
     ///
     /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
-        let preferred = PREFERRED.lock().unwrap_or_else(std::sync::PoisonError::into_inner).clone();
+        let preferred = PREFERRED
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .clone();
         let mut adapters = Self::of_kind(kind);
         adapters.sort_by_key(|adapter| (Some(adapter.key()) != preferred, rank(&adapter.info)));
         adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {

@@ -15,6 +15,7 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
+use glossmith::render::study::benchmark::report::{EngineReport, Report, number};
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
 use glossmith::store::file_kind::FileKind;
@@ -156,6 +157,70 @@ fn formats() -> String {
     )
 }
 
+/// A row for each engine of each result in `docs/results`.
+fn results() -> String {
+    let folder = root().join("docs/results");
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == "json") && !path.ends_with("schema.json"));
+    files.sort();
+    let of_file = |path: &PathBuf| {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let report = Report::read(path).unwrap_or_else(|error| panic!("{error}"));
+        let rows = report.engines.iter().map(|engine| result_row(&name, &report, engine));
+        rows.collect::<Vec<_>>()
+    };
+    table(
+        &[
+            "file",
+            "engine",
+            "version",
+            "M samples/s",
+            "M rays/s",
+            "clean, s",
+            "denoised, s",
+            "edit, ms",
+            "kernel, s: cold, cached",
+            "Fig. 8, ms: geometric, GGX",
+            "proofs",
+        ],
+        files.iter().flat_map(of_file),
+    )
+}
+
+fn result_row(file: &str, report: &Report, engine: &EngineReport) -> Vec<String> {
+    let value = |step: &str, case: &str| {
+        let row = engine.row(step, case);
+        row.map_or_else(|| "–".to_owned(), |row| number(row.value.median))
+    };
+    let both = |step: &str, [a, b]: [&str; 2]| format!("{}, {}", value(step, a), value(step, b));
+    let [passed, failed] = engine.proofs.iter().fold([0, 0], |[passed, failed], proof| {
+        [passed + proof.passed, failed + proof.failed.len()]
+    });
+    let name = match engine.engine.as_str() {
+        "cpu" => format!(
+            "{}, {} threads, {}",
+            engine.adapter, report.machine.threads, report.machine.instructions
+        ),
+        _ => format!("{}, {}", engine.adapter, engine.driver),
+    };
+    vec![
+        format!("[{file}]({file})"),
+        name,
+        report.version.clone(),
+        value("samples", "default"),
+        value("rays", "default"),
+        value("to clean", "default"),
+        value("to clean, denoised", "default"),
+        value("edit", "roughness dragged"),
+        both("kernel", ["cold", "from the cache"]),
+        both("sampling", ["geometric/smooth", "ggx"]),
+        format!("{passed} passed, {failed} failed"),
+    ]
+}
+
 /// `#rrggbb` in sRGB of a linear colour.
 fn hex(color: [f32; 3]) -> String {
     let srgb = srgb_from_linear(Vec3::<f32>::from_f32(color)).to_f32();
@@ -175,7 +240,9 @@ fn command(name: &str) -> Command {
 
 /// The options of a command: option, default, what it does.
 fn option_rows(command: &Command) -> Vec<Vec<String>> {
-    let is_shown = |argument: &&Arg| !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version);
+    let is_shown = |argument: &&Arg| {
+        !argument.is_hide_set() && !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version)
+    };
     let row = |argument: &Arg| {
         let values: Vec<_> = argument
             .get_value_names()
@@ -308,6 +375,7 @@ fn block(name: &str) -> String {
         "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         "keywords of MTL" => file_parameters(MTL_PARAMETERS),
+        "results" => results(),
         name => match (
             name.strip_prefix("inputs of "),
             name.strip_prefix("options of glossmith"),

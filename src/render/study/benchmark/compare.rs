@@ -60,7 +60,9 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
             continue;
         };
         let is_on_cpu = of_a.is_software && of_b.is_software;
-        let drift = pace_ratio.filter(|_| is_same_machine && is_on_cpu).map_or(0.0, |ratio| ratio.ln().abs());
+        let drift = pace_ratio
+            .filter(|_| is_same_machine && is_on_cpu)
+            .map_or(0.0, |ratio| ratio.ln().abs());
         for row in &of_a.rows {
             match of_b.row(&row.step, &row.case) {
                 Some(other) => rows.push(compared((of_a, row), (of_b, other), drift)),
@@ -80,7 +82,9 @@ fn counterpart<'a>(engine: &EngineReport, of: &Report, among: &'a Report) -> Opt
     let same_kind = |report: &'a Report| report.engines.iter().filter(|other| other.engine == engine.engine);
     let exact = same_kind(among).find(|other| (&other.adapter, &other.backend) == (&engine.adapter, &engine.backend));
     let is_only = of.engines.iter().filter(|other| other.engine == engine.engine).count() == 1;
-    let only = same_kind(among).next().filter(|_| is_only && same_kind(among).count() == 1);
+    let only = same_kind(among)
+        .next()
+        .filter(|_| is_only && same_kind(among).count() == 1);
     exact.or(only)
 }
 
@@ -133,18 +137,30 @@ impl Comparison {
             }
             let [a, b] = row.medians.map(number);
             let within = format!("within a factor of {:.2}", row.tolerance);
-            let verdict = if row.verdict == "noise" { format!("noise, {within}") } else { row.verdict.to_owned() };
+            let verdict = if row.verdict == "noise" {
+                format!("noise, {within}")
+            } else {
+                row.verdict.to_owned()
+            };
             let (what, unit) = (&row.what, &row.unit);
             let _ = writeln!(text, "  {what:40} {a:>9} {b:>9} {:>7.2}  {unit}: {verdict}", row.ratio);
         }
         self.unmatched.iter().for_each(|what| text += &format!("{what}\n"));
         if let Some(pace) = self.pace_ratio {
-            let machine = if self.is_same_machine { "the same machine" } else { "another machine" };
+            let machine = if self.is_same_machine {
+                "the same machine"
+            } else {
+                "another machine"
+            };
             let _ = writeln!(text, "B is of {machine}, whose pace was {pace:.2} of A's.");
         }
         let count = |verdict: &str| self.rows.iter().filter(|row| row.verdict == verdict).count();
         let [noise, better, worse] = ["noise", "better", "worse"].map(count);
-        let _ = write!(text, "{} ratios: {noise} noise, {better} better, {worse} worse", self.rows.len());
+        let _ = write!(
+            text,
+            "{} ratios: {noise} noise, {better} better, {worse} worse",
+            self.rows.len()
+        );
         text
     }
 }

@@ -40,9 +40,12 @@ pub(super) struct Goal {
 /// Renders the references on the CPU engine.
 pub(super) fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<Goal>, StudyError> {
     let size = run.extent.goal_size;
-    let chosen = Scene::all().filter(|scene| MATERIALS.contains(&scene.material) && scene.mesh == "60k" && !scene.ground);
+    let chosen =
+        Scene::all().filter(|scene| MATERIALS.contains(&scene.material) && scene.mesh == "60k" && !scene.ground);
     let scenes = chosen.map(|scene| (scene.name(), scene.document(folder.path(), size)));
-    let mut all: Vec<_> = std::iter::once(("default".to_owned(), default_scene(size))).chain(scenes).collect();
+    let mut all: Vec<_> = std::iter::once(("default".to_owned(), default_scene(size)))
+        .chain(scenes)
+        .collect();
     all.truncate(1 + run.extent.scenes);
     let time = run.options.seconds * REFERENCE_SHARE / (all.len() * REFERENCE_SEEDS.len()) as f64;
     let mut session = Session::open(EngineChoice::Cpu)?;
@@ -148,7 +151,10 @@ impl Goal {
             }
             before = Some((seconds, error));
         }
-        Ok(Times { raw: f64::NAN, denoised })
+        Ok(Times {
+            raw: f64::NAN,
+            denoised,
+        })
     }
 
     fn error(&self, image: &Image) -> f64 {

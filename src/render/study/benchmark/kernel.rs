@@ -35,7 +35,11 @@ pub(super) fn kernels(
         return Ok(());
     };
     let Some(program) = &run.options.program else {
-        report.leave_out("kernel", "", "only the command glossmith benchmark compiles in processes of its own");
+        report.leave_out(
+            "kernel",
+            "",
+            "only the command glossmith benchmark compiles in processes of its own",
+        );
         return Ok(());
     };
     let mut seconds = [const { Vec::new() }; 2];
@@ -45,7 +49,8 @@ pub(super) fn kernels(
         }
         let folder = TempDir::new().map_err(|error| StudyError::Folder(error.to_string()))?;
         for seconds in &mut seconds {
-            run.steps.report(format!("{}, kernel", report.name()), run.begun.elapsed().as_secs_f64())?;
+            run.steps
+                .report(format!("{}, kernel", report.name()), run.begun.elapsed().as_secs_f64())?;
             match in_process(program, adapter, folder.path()) {
                 Ok(time) => seconds.push(time),
                 Err(why) => {
@@ -70,7 +75,11 @@ fn in_process(program: &Path, adapter: &GpuAdapter, folder: &Path) -> Result<f64
     let output = String::from_utf8_lossy(&child.stdout);
     output.trim().parse().map_err(|_| {
         let errors = String::from_utf8_lossy(&child.stderr);
-        errors.lines().last().unwrap_or("the process that compiles ended without an answer").to_owned()
+        errors
+            .lines()
+            .last()
+            .unwrap_or("the process that compiles ended without an answer")
+            .to_owned()
     })
 }
 

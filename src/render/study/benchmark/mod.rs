@@ -214,8 +214,14 @@ fn default_scene(size: u32) -> Document {
 
 fn places(engine: EngineChoice) -> Vec<Place> {
     let cpu = (engine != EngineChoice::Gpu).then_some(Place::Cpu);
-    let adapters = if engine == EngineChoice::Cpu { Vec::new() } else { GpuAdapter::all() };
-    cpu.into_iter().chain(adapters.into_iter().map(Place::Adapter)).collect()
+    let adapters = if engine == EngineChoice::Cpu {
+        Vec::new()
+    } else {
+        GpuAdapter::all()
+    };
+    cpu.into_iter()
+        .chain(adapters.into_iter().map(Place::Adapter))
+        .collect()
 }
 
 impl Run<'_, '_> {
@@ -306,7 +312,8 @@ fn cpu_name() -> String {
 }
 
 fn machine() -> Machine {
-    let system = System::new_with_specifics(RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram()));
+    let system =
+        System::new_with_specifics(RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram()));
     Machine {
         cpu: cpu_name(),
         threads: rayon::current_num_threads(),

@@ -46,7 +46,10 @@ pub(super) fn proofs(
         }
         None => {
             let seconds = begun.as_secs_f64();
-            let why = format!("not finished in {seconds:.0} s: run glossmith check --engine {}", report.engine);
+            let why = format!(
+                "not finished in {seconds:.0} s: run glossmith check --engine {}",
+                report.engine
+            );
             report.leave_out(CHECK, "", why);
         }
     }

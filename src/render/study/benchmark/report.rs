@@ -230,8 +230,15 @@ impl Report {
             let _ = writeln!(text, "\n{} {}", engine.name(), engine.driver);
             for proof in &engine.proofs {
                 let (what, failed) = (&proof.what, proof.failed.len());
-                let _ = writeln!(text, "  {what}: {} passed, {failed} failed, {} not run", proof.passed, proof.not_run);
-                proof.failed.iter().for_each(|name| text += &format!("    FAILED {name}\n"));
+                let _ = writeln!(
+                    text,
+                    "  {what}: {} passed, {failed} failed, {} not run",
+                    proof.passed, proof.not_run
+                );
+                proof
+                    .failed
+                    .iter()
+                    .for_each(|name| text += &format!("    FAILED {name}\n"));
             }
             for row in &engine.rows {
                 let Row { step, case, unit, .. } = row;

@@ -186,8 +186,12 @@ impl Scene {
     pub fn all() -> impl Iterator<Item = Self> {
         let scene = |material, mesh, ground| Self { material, mesh, ground };
         let of_materials = MATERIALS.into_iter().map(move |material| scene(material, "60k", false));
-        let of_meshes = ["6k", "600k"].into_iter().map(move |mesh| scene(MATERIALS[0], mesh, false));
-        let on_ground = [MATERIALS[0], "diffuse"].into_iter().map(move |material| scene(material, "60k", true));
+        let of_meshes = ["6k", "600k"]
+            .into_iter()
+            .map(move |mesh| scene(MATERIALS[0], mesh, false));
+        let on_ground = [MATERIALS[0], "diffuse"]
+            .into_iter()
+            .map(move |material| scene(material, "60k", true));
         of_materials.chain(of_meshes).chain(on_ground)
     }
 
@@ -244,7 +248,10 @@ impl Scene {
             ..metal.clone()
         };
         match self.material {
-            "metal 0.25" => MaterialSettings { roughness: 0.5, ..metal },
+            "metal 0.25" => MaterialSettings {
+                roughness: 0.5,
+                ..metal
+            },
             "diffuse" => MaterialSettings::diffuse("diffuse", [0.8; 3]),
             "plastic" => MaterialSettings {
                 roughness: 0.1_f32.sqrt(),
