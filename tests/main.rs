@@ -50,6 +50,8 @@ mod default_look;
 mod denoise;
 #[path = "suite/denoise_cases.rs"]
 mod denoise_cases;
+#[path = "suite/denoise_libraries.rs"]
+mod denoise_libraries;
 #[path = "suite/denoise_told.rs"]
 mod denoise_told;
 #[path = "suite/density.rs"]
@@ -62,6 +64,8 @@ mod device_loss;
 mod docs;
 #[path = "suite/docs_commands.rs"]
 mod docs_commands;
+#[path = "suite/docs_results.rs"]
+mod docs_results;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]

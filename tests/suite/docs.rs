@@ -1,5 +1,5 @@
 //! The tables of the book that are made from the registries hold what the program has, to the letter; `UPDATE_DOCS=1 cargo
-//! test docs` writes them again. Options, keys and files that the pages name exist.
+//! test docs` writes them again. Keys and files that the pages name exist.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -15,7 +15,6 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
-use glossmith::render::study::benchmark::report::{EngineReport, Report, number};
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
 use glossmith::store::file_kind::FileKind;
@@ -29,7 +28,7 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut text = format!("| {} |\n|{}\n", head.join(" | "), " --- |".repeat(head.len()));
     for row in rows {
         let cells: Vec<_> = row.iter().map(|text| cell(text)).collect();
@@ -155,70 +154,6 @@ fn formats() -> String {
         &["format", "endings", "read", "written", "what it is"],
         FORMATS.iter().map(row),
     )
-}
-
-/// A row for each engine of each result in `docs/results`.
-fn results() -> String {
-    let folder = root().join("docs/results");
-    let mut files: Vec<_> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    files.retain(|path| path.extension().is_some_and(|ending| ending == "json") && !path.ends_with("schema.json"));
-    files.sort();
-    let of_file = |path: &PathBuf| {
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let report = Report::read(path).unwrap_or_else(|error| panic!("{error}"));
-        let rows = report.engines.iter().map(|engine| result_row(&name, &report, engine));
-        rows.collect::<Vec<_>>()
-    };
-    table(
-        &[
-            "file",
-            "engine",
-            "version",
-            "M samples/s",
-            "M rays/s",
-            "clean, s",
-            "denoised, s",
-            "edit, ms",
-            "kernel, s: cold, cached",
-            "Fig. 8, ms: geometric, GGX",
-            "proofs",
-        ],
-        files.iter().flat_map(of_file),
-    )
-}
-
-fn result_row(file: &str, report: &Report, engine: &EngineReport) -> Vec<String> {
-    let value = |step: &str, case: &str| {
-        let row = engine.row(step, case);
-        row.map_or_else(|| "–".to_owned(), |row| number(row.value.median))
-    };
-    let both = |step: &str, [a, b]: [&str; 2]| format!("{}, {}", value(step, a), value(step, b));
-    let [passed, failed] = engine.proofs.iter().fold([0, 0], |[passed, failed], proof| {
-        [passed + proof.passed, failed + proof.failed.len()]
-    });
-    let name = match engine.engine.as_str() {
-        "cpu" => format!(
-            "{}, {} threads, {}",
-            engine.adapter, report.machine.threads, report.machine.instructions
-        ),
-        _ => format!("{}, {}", engine.adapter, engine.driver),
-    };
-    vec![
-        format!("[{file}]({file})"),
-        name,
-        report.version.clone(),
-        value("samples", "default"),
-        value("rays", "default"),
-        value("to clean", "default"),
-        value("to clean, denoised", "default"),
-        value("edit", "roughness dragged"),
-        both("kernel", ["cold", "from the cache"]),
-        both("sampling", ["geometric/smooth", "ggx"]),
-        format!("{passed} passed, {failed} failed"),
-    ]
 }
 
 /// `#rrggbb` in sRGB of a linear colour.
@@ -375,7 +310,7 @@ fn block(name: &str) -> String {
         "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         "keywords of MTL" => file_parameters(MTL_PARAMETERS),
-        "results" => results(),
+        "results" => super::docs_results::table_of_results(),
         name => match (
             name.strip_prefix("inputs of "),
             name.strip_prefix("options of glossmith"),
@@ -410,7 +345,7 @@ fn written(page: &str) -> String {
     std::iter::once(first).chain(rest).collect()
 }
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -567,64 +502,6 @@ fn the_summary_lists_every_page_of_the_book() {
             path == "SUMMARY.md" || summary.contains(&format!("({path})")),
             "docs/SUMMARY.md lacks {path}"
         );
-    }
-}
-
-/// Every option that any command has.
-fn known_options(command: &Command, found: &mut BTreeSet<String>) {
-    for argument in command.get_arguments() {
-        let aliases = argument.get_all_aliases().unwrap_or_default();
-        let names = argument.get_long().into_iter().chain(aliases);
-        found.extend(names.map(str::to_owned));
-    }
-    for command in command.get_subcommands() {
-        known_options(command, found);
-    }
-}
-
-/// Options of commands that are not Glossmith's, as the pages name them.
-const OPTIONS_OF_OTHERS: [&str; 18] = [
-    "all-targets",
-    "bench",
-    "build",
-    "dry-run",
-    "features",
-    "help",
-    "locked",
-    "no-default-features",
-    "no-run",
-    "profile",
-    "release",
-    "run-dependencies",
-    "step",
-    "tasks",
-    "test",
-    "timings",
-    "version",
-    "yes",
-];
-
-#[test]
-fn options_that_the_pages_name_exist() {
-    let mut known = BTreeSet::new();
-    known_options(&Arguments::command(), &mut known);
-    for page in pages() {
-        let text = text_of(&page);
-        for (at, _) in text.match_indices("--") {
-            let is_begin = at == 0 || matches!(text.as_bytes()[at - 1], b' ' | b'`' | b'\n' | b'(' | b'[');
-            let rest = &text[at + 2..];
-            let name: &str = rest
-                .split(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-')
-                .next()
-                .unwrap();
-            let is_whole = !name.is_empty() && !rest[name.len()..].starts_with('…') && !name.ends_with('-');
-            let is_name = is_begin && is_whole && name.starts_with(|c: char| c.is_ascii_lowercase());
-            assert!(
-                !is_name || known.contains(name) || OPTIONS_OF_OTHERS.contains(&name),
-                "{} names --{name}, which no command has",
-                page.display()
-            );
-        }
     }
 }
 
