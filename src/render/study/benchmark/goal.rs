@@ -23,8 +23,9 @@ const SECONDS: (&str, bool) = ("s", false);
 const REFERENCE_SEEDS: [u32; 2] = [1000, 1001];
 /// Materials of the scenes besides the default one.
 const MATERIALS: [&str; 2] = ["diffuse", "metal 0.25"];
-/// Most turns.
+/// Most turns, after one of few samples that warms kernels and denoiser.
 const TURNS: u32 = 5;
+const WARM: u32 = 0;
 /// Render time in seconds after which the rest is extrapolated: the error falls with the number of samples.
 const PATIENCE: f64 = 4.0;
 
@@ -89,15 +90,14 @@ pub(super) fn goals(
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];
-    for turn in 0..=TURNS {
+    for turn in WARM..=TURNS {
         for (number, times) in times.iter_mut().enumerate() {
             if slot.is_over() {
                 break;
             }
             let goal = &run.goals[number];
-            // The first turn warms kernels and denoiser.
             let found = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
-            if turn > 0 {
+            if turn != WARM {
                 times[0].push(found.raw);
                 times[1].extend(found.denoised);
             }
@@ -132,8 +132,9 @@ impl Goal {
         document.render.seed = turn;
         let mut denoiser = denoiser;
         let (mut denoised, mut before) = (None, None);
-        for exponent in 0.. {
-            document.render.samples = 1_u32 << exponent.min(30);
+        let doublings = if turn == WARM { 2 } else { u32::MAX };
+        for exponent in 0..doublings {
+            document.render.samples = 1 << exponent.min(30);
             session.submit(&document)?;
             let progress = session.step(Duration::from_secs_f64(PATIENCE))?;
             let seconds = progress.render_seconds;

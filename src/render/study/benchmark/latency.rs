@@ -13,6 +13,8 @@ use crate::scene::environment::EnvironmentSource;
 pub const VIEWPORT: [u32; 2] = [806, 780];
 /// Least time that a hand needs between two edits.
 pub const INTERVAL: Duration = Duration::from_millis(16);
+/// Least time to wait for an image.
+const PATIENCE_MIN: Duration = Duration::from_secs(5);
 /// Polling interval of the worker.
 const GLANCE: Duration = Duration::from_millis(1);
 /// Samples of a render that is always interrupted.
@@ -76,7 +78,7 @@ pub(super) fn edits(
         }
     };
     // What is compiled now is not compiled again: the time of the next steps gives way.
-    let patience = slot.left() * 2;
+    let patience = (2 * slot.left()).max(PATIENCE_MIN);
     if first_image(&worker, &document, patience).is_none() || !await_kernel(&worker, patience) {
         let why = format!("no image within {:.0} s", patience.as_secs_f64());
         report.leave_out("edit", name, why);

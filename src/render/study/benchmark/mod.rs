@@ -21,7 +21,7 @@ use tempfile::TempDir;
 use super::sampling::{SamplingOptions, sampling};
 use super::{Steps, StudyError, Watch};
 use crate::document::Document;
-use crate::gpu::{GpuAdapter, Traversal};
+use crate::gpu::{GpuAdapter, GpuError, Traversal};
 use crate::instructions;
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, Session};
@@ -128,6 +128,15 @@ impl Place {
     }
 }
 
+/// Ends the preference of an adapter, however a run ends.
+struct Preference;
+
+impl Drop for Preference {
+    fn drop(&mut self) {
+        GpuAdapter::prefer(None);
+    }
+}
+
 /// A document with its name.
 struct Case {
     name: String,
@@ -179,12 +188,15 @@ pub fn benchmark(options: &BenchmarkOptions, watch: &mut Watch<'_>) -> Result<Re
     run.goals = goal::references(&mut run, &folder)?;
     let mut report = run.empty_report();
     let places = places(options.engine);
+    if places.is_empty() {
+        return Err(GpuError::NoAdapter("").into());
+    }
+    let _preference = Preference;
     for (number, place) in places.iter().enumerate() {
         let left = Duration::from_secs_f64(options.seconds).saturating_sub(run.begun.elapsed());
         let share = left.div_f64((places.len() - number) as f64);
         report.engines.push(run.engine(place, share)?);
     }
-    GpuAdapter::prefer(None);
     report.pace = Spread::of(&run.pace);
     report.peak_memory_mib = peak_memory_mib();
     report.seconds = run.begun.elapsed().as_secs_f64();
