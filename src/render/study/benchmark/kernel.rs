@@ -89,7 +89,7 @@ fn in_process(program: &Path, adapter: &GpuAdapter, folder: &Path) -> Result<f64
 /// An adapter that is not there, or cannot render.
 pub fn compile_on(key: &str) -> Result<Duration, StudyError> {
     let adapter = GpuAdapter::all().into_iter().find(|adapter| adapter.key() == key);
-    let adapter = adapter.ok_or_else(|| crate::gpu::GpuError::NoAdapter(""))?;
+    let adapter = adapter.ok_or(crate::gpu::GpuError::NoAdapter(""))?;
     let mut session = Session::on_adapter(&adapter, Traversal::Own)?;
     let document = default_scene(SIZE);
     let begun = Instant::now();

@@ -109,7 +109,7 @@ impl Slot {
 /// An engine to measure.
 enum Place {
     Cpu,
-    Adapter(GpuAdapter),
+    Adapter(Box<GpuAdapter>),
 }
 
 impl Place {
@@ -232,7 +232,7 @@ fn places(engine: EngineChoice) -> Vec<Place> {
         GpuAdapter::all()
     };
     cpu.into_iter()
-        .chain(adapters.into_iter().map(Place::Adapter))
+        .chain(adapters.into_iter().map(|adapter| Place::Adapter(Box::new(adapter))))
         .collect()
 }
 

@@ -31,22 +31,21 @@ pub(super) fn rates(
     let mut session = place.open()?;
     let mut found: Vec<Rates> = run.cases.iter().map(|_| Rates::default()).collect();
     for turn in 0..=run.extent.turns {
-        for number in 0..run.cases.len() {
+        for (case, rates) in std::iter::zip(&run.cases, &mut found) {
             if slot.is_over() {
                 break;
             }
-            let case = &run.cases[number];
             // The first turn compiles kernels and fills caches.
             match measured(&mut session, case, turn, run.extent.turn) {
                 Ok([samples, rays]) if turn > 0 => {
-                    found[number].samples.push(samples);
-                    found[number].rays.push(rays);
+                    rates.samples.push(samples);
+                    rates.rays.push(rays);
                 }
                 Ok(_) => {}
                 Err(error) => report.leave_out("samples", &case.name, error.to_string()),
             }
             let what = format!("{}, {}, turn {turn}", report.name(), case.name);
-            run.report(&what)?;
+            run.steps.report(what, run.begun.elapsed().as_secs_f64())?;
         }
         run.measure_pace();
     }
