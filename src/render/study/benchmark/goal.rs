@@ -92,7 +92,7 @@ pub(super) fn goals(
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];
     for turn in WARM..=TURNS {
         for (number, times) in times.iter_mut().enumerate() {
-            if slot.is_over() {
+            if slot.is_over_at(turn as usize, number) {
                 break;
             }
             let goal = &run.goals[number];

@@ -101,6 +101,11 @@ impl Slot {
         Instant::now() >= self.end
     }
 
+    /// The same for a turn through several scenes: the first scene is warmed and measured once in any case.
+    fn is_over_at(self, turn: usize, scene: usize) -> bool {
+        self.is_over() && (turn > 1 || scene > 0)
+    }
+
     fn left(self) -> Duration {
         self.end.saturating_duration_since(Instant::now())
     }

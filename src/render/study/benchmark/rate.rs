@@ -31,8 +31,8 @@ pub(super) fn rates(
     let mut session = place.open()?;
     let mut found: Vec<Rates> = run.cases.iter().map(|_| Rates::default()).collect();
     for turn in 0..=run.extent.turns {
-        for (case, rates) in std::iter::zip(&run.cases, &mut found) {
-            if slot.is_over() {
+        for (place, (case, rates)) in std::iter::zip(&run.cases, &mut found).enumerate() {
+            if slot.is_over_at(turn, place) {
                 break;
             }
             // The first turn compiles kernels and fills caches.
@@ -106,10 +106,10 @@ pub(super) fn ray_queries(
     let mut found = vec![[const { Vec::new() }; 2]; count];
     for turn in 0..=run.extent.turns {
         for (number, of_case) in found.iter_mut().enumerate() {
+            if slot.is_over_at(turn, number) {
+                break;
+            }
             for (session, rates) in sessions.iter_mut().zip(of_case) {
-                if slot.is_over() {
-                    break;
-                }
                 let [_, rays] = measured(session, &run.cases[number], turn, run.extent.turn)?;
                 if turn > 0 {
                     rates.push(rays);
