@@ -72,7 +72,7 @@ struct Extent {
 const FULL: Extent = Extent {
     size: 512,
     goal_size: 256,
-    scenes: usize::MAX,
+    scenes: 9,
     turn: Duration::from_millis(250),
     turns: 9,
     edits: 30,
