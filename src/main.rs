@@ -78,6 +78,7 @@ fn message(error: &anyhow::Error) -> String {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
     arguments.ray_queries.choose();
+    arguments.denoise_device.choose();
     if arguments.allow_outside {
         glossmith::import::resource::allow_everything();
     }

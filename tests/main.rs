@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/benchmark.rs"]
+mod benchmark;
 #[cfg(unix)]
 #[path = "suite/bounded.rs"]
 mod bounded;
@@ -48,6 +50,8 @@ mod default_look;
 mod denoise;
 #[path = "suite/denoise_cases.rs"]
 mod denoise_cases;
+#[path = "suite/denoise_libraries.rs"]
+mod denoise_libraries;
 #[path = "suite/denoise_told.rs"]
 mod denoise_told;
 #[path = "suite/density.rs"]
@@ -60,6 +64,8 @@ mod device_loss;
 mod docs;
 #[path = "suite/docs_commands.rs"]
 mod docs_commands;
+#[path = "suite/docs_results.rs"]
+mod docs_results;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]

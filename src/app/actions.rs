@@ -212,6 +212,7 @@ commands! {
     Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered pictures, while one goes on editing.", None, 3;
     Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
     Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", key(Key::F1), 0;
+    Benchmark, Help, "Benchmark", "Measures every engine and adapter of this machine, below the checks.", None, 1;
     About, Help, "About Glossmith", "Version, licence and the paper to cite.", None, 1;
 }
 

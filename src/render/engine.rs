@@ -186,7 +186,7 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 }
 
 /// Name of the CPU, if the system reports it.
-fn processor_name() -> String {
+pub(super) fn processor_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()

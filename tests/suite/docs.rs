@@ -1,5 +1,5 @@
 //! The tables of the book that are made from the registries hold what the program has, to the letter; `UPDATE_DOCS=1 cargo
-//! test docs` writes them again. Options, keys and files that the pages name exist.
+//! test docs` writes them again. Keys and files that the pages name exist.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -28,7 +28,7 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut text = format!("| {} |\n|{}\n", head.join(" | "), " --- |".repeat(head.len()));
     for row in rows {
         let cells: Vec<_> = row.iter().map(|text| cell(text)).collect();
@@ -175,7 +175,9 @@ fn command(name: &str) -> Command {
 
 /// The options of a command: option, default, what it does.
 fn option_rows(command: &Command) -> Vec<Vec<String>> {
-    let is_shown = |argument: &&Arg| !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version);
+    let is_shown = |argument: &&Arg| {
+        !argument.is_hide_set() && !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version)
+    };
     let row = |argument: &Arg| {
         let values: Vec<_> = argument
             .get_value_names()
@@ -308,6 +310,7 @@ fn block(name: &str) -> String {
         "kinds of files" => file_kinds(),
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         "keywords of MTL" => file_parameters(MTL_PARAMETERS),
+        "results" => super::docs_results::table_of_results(),
         name => match (
             name.strip_prefix("inputs of "),
             name.strip_prefix("options of glossmith"),
@@ -342,7 +345,7 @@ fn written(page: &str) -> String {
     std::iter::once(first).chain(rest).collect()
 }
 
-fn root() -> &'static Path {
+pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -499,64 +502,6 @@ fn the_summary_lists_every_page_of_the_book() {
             path == "SUMMARY.md" || summary.contains(&format!("({path})")),
             "docs/SUMMARY.md lacks {path}"
         );
-    }
-}
-
-/// Every option that any command has.
-fn known_options(command: &Command, found: &mut BTreeSet<String>) {
-    for argument in command.get_arguments() {
-        let aliases = argument.get_all_aliases().unwrap_or_default();
-        let names = argument.get_long().into_iter().chain(aliases);
-        found.extend(names.map(str::to_owned));
-    }
-    for command in command.get_subcommands() {
-        known_options(command, found);
-    }
-}
-
-/// Options of commands that are not Glossmith's, as the pages name them.
-const OPTIONS_OF_OTHERS: [&str; 18] = [
-    "all-targets",
-    "bench",
-    "build",
-    "dry-run",
-    "features",
-    "help",
-    "locked",
-    "no-default-features",
-    "no-run",
-    "profile",
-    "release",
-    "run-dependencies",
-    "step",
-    "tasks",
-    "test",
-    "timings",
-    "version",
-    "yes",
-];
-
-#[test]
-fn options_that_the_pages_name_exist() {
-    let mut known = BTreeSet::new();
-    known_options(&Arguments::command(), &mut known);
-    for page in pages() {
-        let text = text_of(&page);
-        for (at, _) in text.match_indices("--") {
-            let is_begin = at == 0 || matches!(text.as_bytes()[at - 1], b' ' | b'`' | b'\n' | b'(' | b'[');
-            let rest = &text[at + 2..];
-            let name: &str = rest
-                .split(|c: char| !c.is_ascii_lowercase() && !c.is_ascii_digit() && c != '-')
-                .next()
-                .unwrap();
-            let is_whole = !name.is_empty() && !rest[name.len()..].starts_with('…') && !name.ends_with('-');
-            let is_name = is_begin && is_whole && name.starts_with(|c: char| c.is_ascii_lowercase());
-            assert!(
-                !is_name || known.contains(name) || OPTIONS_OF_OTHERS.contains(&name),
-                "{} names --{name}, which no command has",
-                page.display()
-            );
-        }
     }
 }
 

@@ -229,6 +229,7 @@ impl App {
                 self.panels.hear(command);
                 self.reveal(Pane::Race);
             }
+            Command::Benchmark => self.reveal(Pane::Check),
             Command::Turntable => self.open_turntable(),
             Command::PreviewTurn => self.toggle_preview(),
             Command::Palette => {

@@ -1,6 +1,7 @@
 //! Studies of cost and accuracy: a race of techniques, a ledger of effects and settings, and scaling with size. All are
 //! measured on the rendering engine, by its own clock, in interleaved trials.
 
+pub mod benchmark;
 mod convergence;
 pub mod ledger;
 pub mod race;
@@ -35,6 +36,9 @@ pub enum StudyError {
     /// The image is (nearly) black, so that relative errors are undefined.
     #[error("the picture is black: errors relative to its brightness mean nothing. Give the scene some light")]
     Black,
+    /// The system's temporary folder cannot be written to.
+    #[error("the temporary folder cannot be written to: {0}; make room in it, or name another one by TMPDIR")]
+    Folder(String),
     /// The study was stopped.
     #[error("the study was stopped")]
     Stopped,
