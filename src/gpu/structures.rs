@@ -147,7 +147,7 @@ mod tests {
         assert!(first.model.is_some() && first.model == second.model);
         assert!(
             first.whole != second.whole,
-            "pictures in the making go on with the first"
+            "renders in progress go on with the first"
         );
         let are_there = |structures: &Structures| [0, 1].map(|number| structures.whole[number].is_some());
         assert_eq!([are_there(&first), are_there(&second)], [[true, false], [true, true]]);

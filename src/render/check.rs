@@ -434,11 +434,11 @@ fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sess
     Ok(vec![
         compare(
             "engines",
-            "this engine against the processor, whole picture",
+            "this engine against the CPU, whole image",
             &processor,
         ),
-        compare("strategies", "mis against lobe, whole picture", &lobe),
-        compare("strategies", "mis against light, whole picture", &light),
+        compare("strategies", "mis against lobe, whole image", &lobe),
+        compare("strategies", "mis against light, whole image", &light),
         Check::new(
             "soundness",
             "samples dropped because they were not finite",

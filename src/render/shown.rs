@@ -50,7 +50,7 @@ pub enum Shown {
 impl Shown {
     /// All views, with labels and descriptions.
     pub const ALL: [(Self, &str, &str); 10] = [
-        (Self::Picture, "Picture", "The picture itself."),
+        (Self::Picture, "Image", "The image itself."),
         (
             Self::Error,
             "Error",
@@ -74,7 +74,7 @@ impl Shown {
         (
             Self::Clipping,
             "Clipping",
-            "The picture; red where a channel is as bright as the screen can be, blue where all are black.",
+            "The image; red where a channel is as bright as the screen can be, blue where all are black.",
         ),
         (
             Self::Albedo,

@@ -95,7 +95,7 @@ fn what_is_lost_again_and_again_is_left_to_the_processor() {
         let worker = gpu_worker();
         worker.lose_device(moment, 4);
         worker.submit(&long_document(), Pace::Still);
-        let told = warnings_until(&worker, "going on with the processor");
+        let told = warnings_until(&worker, "going on with the CPU");
         for time in 1..=3 {
             let word = format!("({time} of 3 times)");
             assert!(told.iter().any(|text| text.contains(&word)), "{moment:?}: {told:?}");

@@ -42,7 +42,7 @@ pub(in crate::app) fn wish_focus(ctx: &egui::Context, group: &'static str, row: 
     ctx.request_repaint();
 }
 
-/// What is typed before the row has the keys waits for it: at the start of each frame it is taken out of the input, and put
+/// What is typed before the row has the keys waits for it: at the start of each frame it is removed from the input, and put
 /// back once the row's number is selected, which it then replaces.
 pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
     let frame = ctx.cumulative_frame_nr();

@@ -29,7 +29,7 @@ pub(in crate::app) struct Name<'a> {
     pub(in crate::app) label: &'a str,
     /// A symbol behind it, or empty.
     pub(in crate::app) symbol: &'a str,
-    /// What it does to the picture.
+    /// What it does to the image.
     pub(in crate::app) help: &'a str,
 }
 
@@ -432,7 +432,7 @@ fn show_focus(ui: &Ui, response: &Response) {
 }
 
 /// Content that appears and disappears by itself, such as answers of other threads, above controls that stay. egui
-/// tells controls apart by their order: without this those below would be others once it came, and a click, a drag or
+/// distinguishes controls by their order: without this those below would be others once it came, and a click, a drag or
 /// the keys that one of them had would be lost.
 pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     let mut inside = ui.new_child(UiBuilder::new());
@@ -447,16 +447,16 @@ pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut U
     result
 }
 
-/// A picture with a name beside it, to choose.
+/// An image with a name beside it, to choose.
 pub(in crate::app) struct PictureRow<'a> {
     pub(in crate::app) name: &'a str,
     /// What it is called where only one thing may have a name.
     pub(in crate::app) full_name: &'a str,
     /// `None` until it is there.
     pub(in crate::app) picture: Option<&'a TextureHandle>,
-    /// Of the picture, points.
+    /// Of the image, points.
     pub(in crate::app) size: Vec2,
-    /// Stands in for the picture.
+    /// Stands in for the image.
     pub(in crate::app) color: Color32,
     pub(in crate::app) is_current: bool,
 }

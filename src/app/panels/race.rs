@@ -20,9 +20,9 @@ use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 
-/// Longest side of the raced picture, pixels.
+/// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;
-/// Width of a small picture, points.
+/// Width of a thumbnail, points.
 const THUMBNAIL: f32 = 112.0;
 /// How near to a point a click must be, points.
 const REACH: f32 = 14.0;
@@ -40,7 +40,7 @@ pub(super) struct RacePanel {
     pictured: Option<Pictured>,
 }
 
-/// The small pictures of a race.
+/// The thumbnails of a race.
 struct Pictured {
     race: Arc<Race>,
     equal_time: Vec<TextureHandle>,
@@ -278,7 +278,7 @@ fn bias(runner: &Runner) -> String {
     }
 }
 
-/// The small pictures of equal time or of equal error.
+/// The thumbnails of equal time or of equal error.
 fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
     ui.horizontal(|ui| {
         ui.selectable_value(&mut state.shows_equal_error, false, "Equal time");

@@ -151,7 +151,7 @@ impl Source<'_> {
                 text = beside.to_string_lossy().into_owned();
             }
         }
-        // A project is what a picture begins with.
+        // A project is what an image begins with.
         Ok(if name == "project" {
             text
         } else {

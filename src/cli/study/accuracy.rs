@@ -228,7 +228,7 @@ fn pareto_plot(race: &Race) -> PointPlot {
         },
         y: Axis {
             label: format!(
-                "Bias (%), at {} and below: none that could be told",
+                "Bias (%); values under {} are not significant",
                 small_number(least)
             ),
             range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),

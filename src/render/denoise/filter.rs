@@ -118,7 +118,7 @@ impl<'a> Buffer<'a> {
     }
 
     fn write(&self, values: &[[f32; 3]]) {
-        assert_eq!(values.len(), self.pixels, "a picture of another size");
+        assert_eq!(values.len(), self.pixels, "an image of another size");
         // SAFETY: as many bytes as the buffer has are read from the slice.
         unsafe {
             (self.device.functions.write_buffer)(self.handle, 0, size_of_val(values), values.as_ptr().cast::<c_void>());

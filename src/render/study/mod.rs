@@ -33,7 +33,7 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The image is (nearly) black, so that relative errors are undefined.
-    #[error("the picture is black: errors relative to its brightness mean nothing. Give the scene some light")]
+    #[error("the image is black: errors relative to its brightness mean nothing. Give the scene some light")]
     Black,
     /// The study was stopped.
     #[error("the study was stopped")]

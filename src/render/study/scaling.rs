@@ -17,7 +17,7 @@ named! {
     /// The scaled quantity.
     Growing {
         Triangles, "triangles", "Triangles", "The triangles of the model.";
-        Pixels, "pixels", "Pixels", "The pixels of the picture.";
+        Pixels, "pixels", "Pixels", "The pixels of the image.";
         Bounces, "bounces", "Bounces at most", "The longest path.";
         Texels, "texels", "Texels of the environment", "The texels of the environment.";
     }

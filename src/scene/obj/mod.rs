@@ -350,7 +350,7 @@ impl<'a> Slots<'a> {
         }
         if let Some([width, height]) = scaled_from {
             let what = format!(
-                "a picture of {width} × {height}, used at {} × {}",
+                "a texture of {width} × {height}, used at {} × {}",
                 texture.width, texture.height
             );
             report.note(Fate::Approximated, what, name);

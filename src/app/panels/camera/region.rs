@@ -1,13 +1,13 @@
-//! The part of the picture that is rendered, by numbers.
+//! The part of the image that is rendered, by numbers.
 
 use egui::Ui;
 
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 
-/// What the switch begins with: the middle of the picture.
+/// What the switch begins with: the middle of the image.
 const AT_FIRST: [f64; 4] = [0.25, 0.25, 0.75, 0.75];
-/// The least width and height, shares of the picture.
+/// The least width and height, shares of the image.
 const LEAST: f64 = 0.01;
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -10,7 +10,7 @@ use crate::app::kit::widgets;
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
-/// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
+/// Longest side of the image that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;
 
 /// What the panel remembers.

@@ -17,7 +17,7 @@ use crate::scene::{AlphaMode, Model, Texture};
 /// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;
 
-/// A picture that a target looks up.
+/// An image that a target looks up.
 enum Picture {
     /// One of the model's.
     OfModel(Arc<Model>, usize),
@@ -31,7 +31,7 @@ enum Wish {
     Remove,
 }
 
-/// A row for each target, with its picture, and how the user's own ones are put on.
+/// A row for each target, with its image, and how the user's own ones are mapped.
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     for &target in TextureTarget::ALL {
         widgets::comes_and_goes(ui, |ui| {
@@ -87,7 +87,7 @@ fn row(
             (_, None) => {
                 let response = ui
                     .button("Choose…")
-                    .on_hover_text("Puts a picture of your own here; or drop one on the window");
+                    .on_hover_text("Assigns a texture of your own; or drop one on the window");
                 if response.clicked() {
                     wish = Some(Wish::Choose);
                 }
@@ -122,7 +122,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
     egui::Popup::menu(&more).show(|ui| {
         if ui
             .button("Replace…")
-            .on_hover_text("Another picture of your own")
+            .on_hover_text("Another texture of your own")
             .clicked()
         {
             *wish = Some(Wish::Choose);
@@ -138,7 +138,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
     });
 }
 
-/// How a picture of the user's own lies on the material.
+/// How an image of the user's own lies on the material.
 fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let Some(mut texture) = material.user_textures.get(target).cloned() else {
         return;
@@ -244,7 +244,7 @@ impl Picture {
         shown.inner
     }
 
-    /// The picture, where it is there, and what its small copy is remembered by.
+    /// The image, where it is there, and what its small copy is remembered by.
     fn texels(&self) -> Option<(&Texture, egui::Id)> {
         match self {
             Self::OfModel(model, texture) => {
@@ -264,7 +264,7 @@ fn about(picture: &Texture) -> String {
     format!("{}\n{} × {}", picture.name, picture.width, picture.height)
 }
 
-/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
+/// An image reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
 fn small_copy(picture: &Texture) -> egui::ColorImage {
     let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
     let pixels = (0..width * height).map(|i| {

@@ -36,7 +36,7 @@ impl Materials<'_> {
         let mut beside: Vec<(usize, Encoded<'_>)> = Vec::new();
         let mut cost = 0;
         for (place, image) in images.into_iter().enumerate() {
-            if loading.step(format!("picture {} of {count}", place + 1)).is_err() {
+            if loading.step(format!("texture {} of {count}", place + 1)).is_err() {
                 break;
             }
             match image::encoded(document, image) {
@@ -84,7 +84,7 @@ impl Materials<'_> {
                     }
                     if let Some([width, height]) = scaled_from {
                         let what = format!(
-                            "a picture of {width} × {height}, used at {} × {}",
+                            "a texture of {width} × {height}, used at {} × {}",
                             texture.width, texture.height
                         );
                         self.report.note(Fate::Approximated, what, &texture.name);
@@ -123,7 +123,7 @@ impl Materials<'_> {
         if found.is_none() {
             self.report.note(
                 Fate::Missing,
-                "a texture without a picture",
+                "a texture without an image",
                 &format!("texture {texture}"),
             );
         }
