@@ -60,6 +60,8 @@ mod device_loss;
 mod docs;
 #[path = "suite/docs_commands.rs"]
 mod docs_commands;
+#[path = "suite/docs_tables.rs"]
+mod docs_tables;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]
@@ -138,6 +140,8 @@ mod lobe_views;
 mod look_of_ggx;
 #[path = "suite/lut.rs"]
 mod lut;
+#[path = "suite/manual.rs"]
+mod manual;
 #[path = "suite/many_materials.rs"]
 mod many_materials;
 #[path = "suite/memory.rs"]
@@ -214,6 +218,8 @@ mod textures;
 mod tone;
 #[path = "suite/transmission.rs"]
 mod transmission;
+#[path = "suite/tutorials.rs"]
+mod tutorials;
 #[path = "suite/twin_names.rs"]
 mod twin_names;
 #[path = "suite/ui.rs"]

@@ -161,7 +161,9 @@ fn linked(line: &str, folder: &str) -> String {
     let mut text = String::new();
     let mut rest = line;
     while let Some((before, after)) = rest.split_once("](") {
-        let Some((target, after)) = after.split_once(')') else { break };
+        let Some((target, after)) = after.split_once(')') else {
+            break;
+        };
         rest = after;
         match before.rfind("![") {
             Some(image) if !before[image..].contains(']') => {
@@ -199,7 +201,8 @@ mod tests {
 
     #[test]
     fn links_lead_from_page_to_page() {
-        let line = "See [how](../PERFORMANCE.md#estimation), ![a pot](../pictures/pot.png) and [that](https://example.org).";
+        let line =
+            "See [how](../PERFORMANCE.md#estimation), ![a pot](../pictures/pot.png) and [that](https://example.org).";
         let expected = "See [how](book:PERFORMANCE.md#estimation), (image: a pot) and [that](https://example.org).";
         assert_eq!(linked(line, "tutorials"), expected);
     }

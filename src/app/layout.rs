@@ -203,7 +203,9 @@ pub(super) fn viewport_tile(tree: &Tree<Pane>) -> Option<TileId> {
 pub(super) fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
     let is_there = |tile: TileId| tree.tiles.rect(tile).is_some_and(|rect| rect.contains(at));
     let panes = Pane::ALL.into_iter().filter(|pane| is_open(tree, *pane));
-    panes.into_iter().find(|pane| tree.tiles.find_pane(pane).is_some_and(is_there))
+    panes
+        .into_iter()
+        .find(|pane| tree.tiles.find_pane(pane).is_some_and(is_there))
 }
 
 /// Hides all panels but the image, or shows them.

@@ -31,8 +31,8 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
             Some((slot, name)) => (Some(slot.to_owned()), name),
             None => (None, left),
         };
-        let target = TextureTarget::by_name(name)
-            .ok_or_else(|| format!("{name} takes no texture; give one of {}", uses()))?;
+        let target =
+            TextureTarget::by_name(name).ok_or_else(|| format!("{name} takes no texture; give one of {}", uses()))?;
         let file = existing(file)?;
         let named = set::targets_of(&file).into_iter().find(|(known, _)| *known == target);
         let texture = named.map_or_else(|| UserTexture::of(file), |(_, texture)| texture);

@@ -14,7 +14,7 @@ pub enum GpuError {
     /// No adapter of the requested kind.
     #[error(
         "no {0}Vulkan adapter was found. Install a driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers), or \
-         render on the processor with --engine cpu"
+         render on the CPU with --engine cpu"
     )]
     NoAdapter(&'static str),
     /// The adapter can't run the path tracer.

@@ -25,7 +25,7 @@ const IMPORT_SHARE: f64 = 0.5;
 /// The render is too large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a picture of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
+    "an image of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
      Make it smaller (at most about {side} x {side}), or close other programs{remedy}"
 )]
 pub struct TooLarge {

@@ -54,7 +54,7 @@ impl Shown {
         (
             Self::Error,
             "Error",
-            "The estimated standard error of each pixel, relative to the picture's mean luminance.",
+            "The estimated standard error of each pixel, relative to the image's mean luminance.",
         ),
         (
             Self::Samples,

@@ -16,7 +16,7 @@ named! {
         Picture, "picture", "Images", "Images for screens: environments, textures, or images saved here, which have the document inside.";
         Material, "material", "Materials of other programs", "Materials in other programs' formats.";
         Measured, "measured", "Measured materials (MERL)", "Measurements that a material is fitted to.";
-        ColorTable, "color-table", "Tables of colours", "Tables that the picture's colours go through.";
+        ColorTable, "color-table", "Tables of colours", "Tables that the image's colours go through.";
         Part, "part", "Parts of models", "What models refer to; dropped together with them.";
     }
 }

@@ -100,7 +100,7 @@ pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: 
         reason,
     };
     let picture = image::RgbaImage::from_raw(width, height, rgba.to_vec())
-        .ok_or_else(|| content("the picture's size is not that of its pixels; report it".to_owned()))?;
+        .ok_or_else(|| content("the image's size is not that of its pixels; report it".to_owned()))?;
     let longest = width.max(height).max(1);
     let picture = if longest > SIDE_MAX {
         let side = |side: u32| (side * SIDE_MAX / longest).max(1);

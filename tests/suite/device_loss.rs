@@ -122,7 +122,7 @@ fn what_was_read_back_counts() {
         other => panic!("{other:?}"),
     };
     let told = session.recover(&lost);
-    assert!(told.contains("opened anew"), "{told}");
+    assert!(told.contains("opened again"), "{told}");
     assert_eq!(session.progress().samples_per_pixel, had);
     while !session.step(Duration::from_secs(1)).expect("it is whole again").is_done {}
     let mut alone = Session::open(EngineChoice::Cpu).expect("always");

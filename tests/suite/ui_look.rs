@@ -62,7 +62,7 @@ fn shown(harness: &Editor) -> std::sync::Arc<Picture> {
 #[test]
 fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     let mut harness = inspecting();
-    assert!(says(&harness, "Move the pointer over the picture"));
+    assert!(says(&harness, "Move the pointer over the image"));
     for pixel in [[20, 12], [3, 2]] {
         hover_pixel(&mut harness, pixel);
         let [x, y] = pixel;

@@ -27,12 +27,9 @@ impl App {
         });
         ctx.request_repaint();
         self.files.disk.write_beside(move || {
-            let image: Arc<ColorImage> = taken.recv_timeout(PATIENCE).map_err(|_| {
-                format!(
-                    "{}: the screenshot can't be read back from the GPU",
-                    path.display()
-                )
-            })?;
+            let image: Arc<ColorImage> = taken
+                .recv_timeout(PATIENCE)
+                .map_err(|_| format!("{}: the screenshot can't be read back from the GPU", path.display()))?;
             let [width, height] = image.size;
             save(&path, &image)?;
             Ok(format!("saved {} ({width} × {height})", path.display()))

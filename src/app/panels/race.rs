@@ -86,7 +86,7 @@ impl Panel for RacePanel {
             None => widgets::note(
                 ui,
                 "Which settings are worth their time on this view: how soon each reaches a noise of 2 %, and how far it \
-                 stays from the most accurate picture.",
+                 stays from the most accurate image.",
             ),
             Some(found) => outcome(ui, desk, state, &found),
         }
@@ -141,7 +141,7 @@ fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<R
     widgets::note(
         ui,
         format!(
-            "Left: faster, to a noise of {}. Low: less bias against the most accurate picture; on the lowest line none \
+            "Left: faster, to a noise of {}. Low: less bias against the most accurate image; on the lowest line none \
              could be measured. Click a point to use its settings.",
             percent(race.noise)
         ),

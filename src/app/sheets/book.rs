@@ -55,7 +55,11 @@ impl Manual {
         let (page, _) = book::parts(&address);
         self.sections = book::sections(page);
         self.cache = CommonMarkCache::default();
-        for link in self.sections.iter().flat_map(|section| section.text.split("](").skip(1)) {
+        for link in self
+            .sections
+            .iter()
+            .flat_map(|section| section.text.split("](").skip(1))
+        {
             let target = link.split(')').next().unwrap_or_default();
             if target.starts_with(SCHEME) {
                 self.cache.add_link_hook(target);

@@ -313,10 +313,7 @@ fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Pa
     Part::text(ui, Rank::Window, text, |ui| {
         meter.describe(ui);
         if let Some(first) = snapshot.first_picture {
-            ui.label(format!(
-                "From the last change to its first image: {:.0} ms",
-                ms(first)
-            ));
+            ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
         }
     })
 }

@@ -358,7 +358,7 @@ fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let [a, b] = compared.samples;
         let help = format!(
-            "Root mean square of (B − A) over A, with at least 0.1 for A: with {a} samples a pixel of A and {b} of B, \
+            "Root mean square of (B − A) over A, with at least 0.1 for A. A has {a} samples per pixel and B {b}, \
              drawn with the same random numbers."
         );
         ui.label(format!("RMS {:.2} %", 100.0 * compared.rms))

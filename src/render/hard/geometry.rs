@@ -184,7 +184,7 @@ pub(super) const CASES: &[HardCase] = &[
         name: "rays-leave-their-surface",
         group: "geometry",
         danger: "a place on a surface is rounded to beside it: a ray from there meets the surface that it left",
-        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1; rays leaving hits at all \
+        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1. Rays leave hits at all \
                angles down to 1e-5 from the plane, outwards and inwards",
         must: "outwards nothing is met, inwards the mesh is; others are counted",
         naive: || {

@@ -8,7 +8,7 @@ use crate::scene::loading::Cancelled;
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentError {
     /// An empty name.
-    #[error("no environment was named: give studio, sky, furnace, or a picture's file")]
+    #[error("no environment was named: give studio, sky, furnace, or an image file")]
     NoName,
     /// The file system refused.
     #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
@@ -20,8 +20,8 @@ pub enum EnvironmentError {
     },
     /// An ending that is not known.
     #[error(
-        "the environment {} is neither a .hdr nor an .exr, .ktx2 or .dds file, nor a PNG, JPEG, TIFF or WebP picture: convert it \
-         to one of them, or use studio, sky or furnace",
+        "the environment {} is neither a .hdr nor an .exr, .ktx2, .dds, PNG, JPEG, TIFF or WebP file: convert it to one of them, \
+         or use studio, sky or furnace",
         path.display()
     )]
     UnknownExtension {
@@ -30,7 +30,7 @@ pub enum EnvironmentError {
     },
     /// A folder without the faces of a cube.
     #[error(
-        "the environment {} is a folder without six pictures whose names end in px, nx, py, ny, pz, nz (or right, left, \
+        "the environment {} is a folder without six images whose names end in px, nx, py, ny, pz, nz (or right, left, \
          top, bottom, front, back): name a file in it",
         path.display()
     )]

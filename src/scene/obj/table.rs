@@ -41,12 +41,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
     ),
     row("illum", "2", "1", To("specular.weight"))
         .with_note("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are reported"),
-    row(
-        "sharpness",
-        "60",
-        "100",
-        Nowhere("the sharpness of a reflection map"),
-    ),
+    row("sharpness", "60", "100", Nowhere("the sharpness of a reflection map")),
     row("Pr", "", "0.25", To("specular.roughness")).within(0.0, 1.0),
     row("Pm", "0", "0.25", To("base.metalness")).within(0.0, 1.0),
     row("Pc", "0", "0.25", To("coat.weight")).within(0.0, 1.0),

@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         let name = Name::new(
             full,
             label,
-            "Share of the picture's width or height, from its left or upper edge.",
+            "Share of the image's width or height, from its left or upper edge.",
         );
         if widgets::row(ui, name, |ui| widgets::number(ui, &mut percent, &style)).changed {
             *side = (0.01 * percent).clamp(0.0, 1.0);

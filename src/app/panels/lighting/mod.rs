@@ -112,7 +112,7 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
         (
             Kind::Transparent,
             "Transparent",
-            "Nothing: the picture's opacity is 0 there.",
+            "Nothing: the image's opacity is 0 there.",
         ),
         (
             Kind::Color,
