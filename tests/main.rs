@@ -256,6 +256,8 @@ mod ui_strangers;
 mod ui_study;
 #[path = "suite/ui_textures.rs"]
 mod ui_textures;
+#[path = "suite/ui_windows.rs"]
+mod ui_windows;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
 #[path = "suite/walk.rs"]

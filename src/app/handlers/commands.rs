@@ -108,7 +108,7 @@ impl App {
     fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
         if let Ok(parameter) = parameter(key) {
             self.reveal(Pane::Material);
-            keys::wish_focus(ctx, parameter.group, parameter.full_name());
+            keys::focus_row(ctx, parameter.group, parameter.full_name());
         } else if let Some(setting) = setting(key) {
             let is_light = key.starts_with("lighting.") || key == "scene.ground";
             self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
@@ -118,7 +118,7 @@ impl App {
                 self.shared.resolution = Resolution::Document;
                 group = "Image";
             }
-            keys::wish_focus(ctx, group, setting.full_name());
+            keys::focus_row(ctx, group, setting.full_name());
         }
     }
 

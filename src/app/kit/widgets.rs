@@ -8,7 +8,7 @@ use egui::{
     Ui, UiBuilder, Vec2,
 };
 
-use crate::app::kit::keys::{fulfil_wish, note_wished, wish};
+use crate::app::kit::keys::{fulfil_request, note_requested, requested};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
@@ -57,7 +57,7 @@ pub(in crate::app) struct RowResponse {
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
-        let is_wished = fulfil_wish(ui, name.full);
+        let is_requested = fulfil_request(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
@@ -67,8 +67,8 @@ pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut
             .inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
-        if is_wished {
-            note_wished(ui, &control);
+        if is_requested {
+            note_requested(ui, &control);
         }
         if !name.help.is_empty() {
             control.on_hover_text(name.help);
@@ -413,7 +413,11 @@ pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)
     let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(true)
-        .open(wish(ui).is_some_and(|wish| wish.group == title).then_some(true))
+        .open(
+            requested(ui)
+                .is_some_and(|requested| requested.group == title)
+                .then_some(true),
+        )
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);

@@ -98,7 +98,7 @@ impl Panel for RacePanel {
 
     fn hear(&mut self, command: Command) {
         if command == Command::Race {
-            self.worker.wish();
+            self.worker.request();
         }
     }
 }

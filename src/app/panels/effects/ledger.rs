@@ -23,8 +23,8 @@ pub(super) struct LedgerState {
 
 impl LedgerState {
     /// Measures when the panel is shown next.
-    pub(super) fn wish(&mut self) {
-        self.worker.wish();
+    pub(super) fn request(&mut self) {
+        self.worker.request();
     }
 
     /// See [`StudyWorker::tick`].

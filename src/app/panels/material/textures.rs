@@ -26,7 +26,7 @@ enum Picture {
 }
 
 /// What a row's buttons ask for.
-enum Wish {
+enum Asked {
     Choose,
     Remove,
 }
@@ -73,7 +73,7 @@ fn row(
     };
     let name = Name::new(&full, target.label(), help);
     let is_own = material.user_textures.get(target).is_some();
-    let mut wish = None;
+    let mut asked = None;
     let response = widgets::row(ui, name, |ui| {
         let mut is_on = material.uses_texture(target);
         let response = match (switch, picture) {
@@ -89,7 +89,7 @@ fn row(
                     .button("Choose…")
                     .on_hover_text("Assigns a texture of your own; or drop one on the window");
                 if response.clicked() {
-                    wish = Some(Wish::Choose);
+                    asked = Some(Asked::Choose);
                 }
                 return response;
             }
@@ -97,7 +97,7 @@ fn row(
         if response.changed() {
             *material.uses_texture_mut(target) = is_on;
         }
-        menu(ui, &of_target, is_own, &mut wish);
+        menu(ui, &of_target, is_own, &mut asked);
         response
     });
     if response.changed
@@ -106,17 +106,17 @@ fn row(
         desk.edits
             .note(parameter.full_name(), format!("{}/{}", desk.shared.slot, parameter.key));
     }
-    match wish {
-        Some(Wish::Remove) => {
+    match asked {
+        Some(Asked::Remove) => {
             material.user_textures.set(target, None);
             desk.edits.note(format!("Remove the {of_target} texture"), "");
         }
-        Some(Wish::Choose) => desk.actions.push(Action::ChooseTexture(target)),
+        Some(Asked::Choose) => desk.actions.push(Action::ChooseTexture(target)),
         None => {}
     }
 }
 
-fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
+fn menu(ui: &mut Ui, of_target: &str, is_own: bool, asked: &mut Option<Asked>) {
     let name = format!("Menu of the {of_target} texture");
     let more = icons::button(ui, Icon::More, &name, "Replace, remove");
     egui::Popup::menu(&more).show(|ui| {
@@ -125,7 +125,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
             .on_hover_text("Another texture of your own")
             .clicked()
         {
-            *wish = Some(Wish::Choose);
+            *asked = Some(Asked::Choose);
         }
         let remove = ui.add_enabled(is_own, egui::Button::new("Remove"));
         let remove = remove.on_hover_text("The model's texture comes back, where it has one");
@@ -133,7 +133,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
             .on_disabled_hover_text("It is the model's; its switch leaves it out")
             .clicked()
         {
-            *wish = Some(Wish::Remove);
+            *asked = Some(Asked::Remove);
         }
     });
 }
