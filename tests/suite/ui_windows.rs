@@ -16,7 +16,7 @@ use glossmith::store::save_document;
 
 use super::docs::{pages, root, text_of};
 use super::ui::{Editor, options, request, see, see_label, settle, wait};
-use super::ui_hands::type_path;
+use super::ui_hands::{press, type_path};
 
 /// Width and height of the window, pixels.
 const SIZE: [u32; 2] = [1440, 900];
@@ -118,6 +118,10 @@ fn take_all() {
     type_path(&mut harness, &folder.path().join("car-paint.mtlx"), "Save");
     see_label(&mut harness, "Write the file");
     take(&mut harness, "window-export");
+    press(&mut harness, "Cancel");
+    press(&mut harness, "Manual: Light");
+    harness.run_steps(5);
+    take(&mut harness, "window-manual");
 }
 
 #[test]
