@@ -66,6 +66,8 @@ mod docs;
 mod docs_commands;
 #[path = "suite/docs_results.rs"]
 mod docs_results;
+#[path = "suite/docs_tables.rs"]
+mod docs_tables;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]
@@ -144,6 +146,8 @@ mod lobe_views;
 mod look_of_ggx;
 #[path = "suite/lut.rs"]
 mod lut;
+#[path = "suite/manual.rs"]
+mod manual;
 #[path = "suite/many_materials.rs"]
 mod many_materials;
 #[path = "suite/memory.rs"]
@@ -220,6 +224,8 @@ mod textures;
 mod tone;
 #[path = "suite/transmission.rs"]
 mod transmission;
+#[path = "suite/tutorials.rs"]
+mod tutorials;
 #[path = "suite/twin_names.rs"]
 mod twin_names;
 #[path = "suite/ui.rs"]
@@ -256,6 +262,8 @@ mod ui_strangers;
 mod ui_study;
 #[path = "suite/ui_textures.rs"]
 mod ui_textures;
+#[path = "suite/ui_windows.rs"]
+mod ui_windows;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
 #[path = "suite/walk.rs"]

@@ -35,7 +35,7 @@ pub(super) struct StudyWorker<R> {
     /// The viewport's renderer was stopped for it.
     holds_renderer: bool,
     /// It is to be started as soon as it is shown.
-    is_wished: bool,
+    is_requested: bool,
     /// The document that it was asked about last, and what its outcome made of it.
     asked: Vec<Document>,
 }
@@ -47,7 +47,7 @@ impl<R> Default for StudyWorker<R> {
             stop: Arc::default(),
             has_begun: false,
             holds_renderer: false,
-            is_wished: false,
+            is_requested: false,
             asked: Vec::new(),
         }
     }
@@ -73,8 +73,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// Starts the study when its controls are shown next, unless it runs.
-    pub(super) fn wish(&mut self) {
-        self.is_wished = true;
+    pub(super) fn request(&mut self) {
+        self.is_requested = true;
     }
 
     /// A button that starts the study, and while it runs what it does and a button that stops it. The viewport's
@@ -90,7 +90,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
         let is_free = !desk.shared.is_measuring;
-        let is_wished = is_free && std::mem::take(&mut self.is_wished);
+        let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
                 let button = button.on_hover_text(help);
@@ -99,7 +99,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             let pressed = start_or_stop(ui, label, is_busy, is_free, dress);
             if pressed == Pressed::Stop {
                 self.stop.store(true, Ordering::Relaxed);
-            } else if pressed == Pressed::Start || (is_wished && !is_busy) {
+            } else if pressed == Pressed::Start || (is_requested && !is_busy) {
                 self.asked = vec![desk.document.clone()];
                 let work = begin(desk);
                 self.begin(ui, work);

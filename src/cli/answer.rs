@@ -100,7 +100,7 @@ enum LinesPlace {
     Output,
     /// A pipe or a device.
     Special(File),
-    /// A file, which is replaced as pictures are, with what is in it.
+    /// A file, which is replaced as images are, with what is in it.
     File(String),
 }
 

@@ -69,7 +69,7 @@ fn format(text: &str) -> Result<&'static Registered, String> {
     exchange::by_name(text).ok_or_else(|| format!("expected one of {}", known()))
 }
 
-/// Converts and tells what was lost.
+/// Converts and reports what was lost.
 ///
 /// # Errors
 /// One line that names the file, what is wrong and what to do. Of many files those that can be are converted.

@@ -73,7 +73,7 @@ pub struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \
-                          arguments; 3 some of several were done; 129, 130, 143 a signal (SIGHUP, SIGINT, SIGTERM) \
+                          arguments; 3 some of several were done. 129, 130, 143: a signal (SIGHUP, SIGINT, SIGTERM) \
                           ended a render, and what there was is written.";
 
 macro_rules! subcommands {

@@ -159,7 +159,7 @@ fn check_opens(path: &Path) -> anyhow::Result<()> {
         )
     })?;
     if !existed {
-        // Whatever is left is about to be overwritten.
+        // The rest is about to be overwritten.
         let _ = std::fs::remove_file(path);
     }
     Ok(())

@@ -63,10 +63,10 @@ pub struct SceneArguments {
     #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
-    /// (degrees), softness, color, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
+    /// (degrees), softness, colour, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
     #[arg(long = "spot", value_name = "WORD=VALUE,…", value_parser = lights::spot, allow_hyphen_values = true)]
     spots: Vec<LightArgument>,
-    /// A sun: yaw, pitch (degrees), angle across it (degrees), color, temperature (5600K), strength (irradiance at the model)
+    /// A sun: yaw, pitch (degrees), angle across it (degrees), colour, temperature (5600K), strength (irradiance at the model)
     /// or power (lux, the same). May be repeated.
     #[arg(long = "sun", value_name = "WORD=VALUE,…", value_parser = lights::sun, allow_hyphen_values = true)]
     suns: Vec<LightArgument>,
@@ -77,7 +77,7 @@ pub struct SceneArguments {
     /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
     material: Option<String>,
-    /// Put an image on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
+    /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
     /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
     /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
     #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::texture)]
@@ -156,7 +156,7 @@ impl SceneArguments {
         Ok(document)
     }
 
-    /// Refuses pictures that are named here and can't be had; of those that files name the log tells. What is read stays with the
+    /// Refuses images that are named here and can't be had; those that files name are logged. What is read stays with the
     /// session.
     fn check_textures(&self, document: &Document, session: &mut Session) -> anyhow::Result<()> {
         let files = || self.textures.iter().flat_map(TextureArgument::files);

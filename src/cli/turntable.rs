@@ -1,4 +1,4 @@
-//! `glossmith turntable`: a document turned once, as numbered pictures or a video.
+//! `glossmith turntable`: a document turned once, as numbered images or a video.
 
 use std::path::PathBuf;
 use std::time::Instant;

@@ -63,7 +63,7 @@ pub fn spawn_environment_thumbnails(
             };
             // The error is reported when the environment is selected.
             let picture = picture.unwrap_or_else(|error| {
-                log::debug!("no small picture: {error}");
+                log::debug!("no thumbnail: {error}");
                 None
             });
             made.insert(wanted.source, (key, picture.map(Arc::new)));

@@ -20,7 +20,7 @@ const SOFTWARE_GPU_BYTES: u64 = 56;
 /// The render is too large.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a picture of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
+    "an image of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
      Make it smaller (at most about {side} x {side}), or close other programs{remedy}"
 )]
 pub struct TooLarge {

@@ -368,7 +368,7 @@ fn what_is_no_environment_is_refused() {
     std::fs::create_dir(folder.path().join("folder.hdr")).unwrap();
     assert_says(
         &refusal(&folder.path().join("folder.hdr")),
-        &["folder without six pictures", "px, nx"],
+        &["folder without six images", "px, nx"],
     );
 }
 

@@ -42,7 +42,7 @@ fn name(path: &Path) -> String {
         .into_owned()
 }
 
-/// The pictures in a folder, where their names say that they belong on a material.
+/// The images in a folder, where their names say that they belong on a material.
 pub(in crate::app) fn textures_in(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() || holds_model(path) {
         return Vec::new();
@@ -94,7 +94,7 @@ impl Sorted {
 
 impl App {
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
-    /// too. Pictures are for the selected material; one may have a document in it.
+    /// too. Images are for the selected material; one may have a document in it.
     pub(in crate::app) fn drop_files(&mut self, paths: Vec<PathBuf>) {
         if let Some(address) = paths
             .iter()
@@ -155,7 +155,7 @@ impl App {
                 .sum::<usize>()
     }
 
-    /// Pictures by themselves: for the selected material.
+    /// Images by themselves: for the selected material.
     fn drop_without_model(&mut self, pictures: Vec<PathBuf>, parts: &[PathBuf]) {
         for part in parts {
             let text = format!(
@@ -176,7 +176,7 @@ impl App {
         self.leave_out(&left);
     }
 
-    /// What was dropped with a model and is not part of it: pictures that say what they are for are put on its first material.
+    /// What was dropped with a model and is not part of it: images that say what they are for are assigned to its first material.
     pub(in crate::app) fn use_dropped_with(&mut self, model: &Model) {
         let names: Vec<String> = model.files.iter().map(|path| name(path)).collect();
         let mut left = std::mem::take(&mut self.files.dropped_with);
@@ -252,7 +252,7 @@ mod tests {
         let found = sorted(&names);
         assert_eq!(found.environments, [PathBuf::from("sky")]);
         assert!(found.pictures.is_empty());
-        // One more picture, and they are pictures like any other.
+        // One more image, and they are images like any other.
         assert_eq!(sorted(&[&names[..], &["other.png"]].concat()).pictures.len(), 7);
     }
 

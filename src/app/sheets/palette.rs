@@ -112,7 +112,7 @@ fn found(ui: &Ui, search: &str, document: &Document, edited: &MaterialSettings) 
             .unwrap_or_default(),
         action: Action::Do(*command),
     });
-    // A texture's switch stands beside its picture.
+    // A texture's switch stands beside its image.
     let parameters = PARAMETERS
         .iter()
         .filter(|parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(edited))

@@ -242,7 +242,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
             let text = RichText::new("compiling the kernel").weak();
             parts.push(spinner());
             parts.push(Part::text(ui, Rank::Activity, text, |ui| {
-                ui.label("The processor draws until the GPU's kernel for this scene is compiled.");
+                ui.label("The CPU renders until the GPU's kernel for this scene is compiled.");
             }));
         }
         let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
@@ -257,7 +257,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
     parts
 }
 
-/// How far the picture has come, in numbers.
+/// How far the image has come, in numbers.
 fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
     let progress = &snapshot.progress;
     let mut parts = Vec::new();
@@ -313,10 +313,7 @@ fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Pa
     Part::text(ui, Rank::Window, text, |ui| {
         meter.describe(ui);
         if let Some(first) = snapshot.first_picture {
-            ui.label(format!(
-                "From the last change to its first picture: {:.0} ms",
-                ms(first)
-            ));
+            ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
         }
     })
 }

@@ -10,13 +10,13 @@ const HINTS: [&str; 4] = [
     "Drag to orbit, scroll to zoom, Shift+drag to rotate the light.",
     "Click a preset to apply it; drag it onto a part to change only that part.",
     "Ctrl+K: search commands, panels and parameters.",
-    "Help › Examples has scenes to begin with. F1 lists shortcuts. Ctrl+E saves the image.",
+    "Help › Examples has scenes to begin with. F1 opens the manual. Ctrl+E saves the image.",
 ];
 /// Width of the hint, points.
 const WIDTH: f32 = 380.0;
 const HEIGHT: f32 = 64.0;
 
-/// Shows the hint that is next over the lower edge of the picture.
+/// Shows the hint that is next over the lower edge of the image.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     let number = desk.shared.hints_seen;
     let Some(hint) = HINTS.get(number) else { return };

@@ -152,7 +152,7 @@ impl Source<'_> {
                 text = path_text(&beside).into_owned();
             }
         }
-        // A project is what a picture begins with.
+        // A project is what an image begins with.
         Ok(if name == "project" {
             text
         } else {

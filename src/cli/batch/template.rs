@@ -1,6 +1,6 @@
 //! An Open Job Description template (jobtemplate-2023-09) of a batch: what render farms run.
 //!
-//! Its tasks are pictures, or parts of their samples; a step that depends on them joins the parts and writes the contact
+//! Its tasks are images, or parts of their samples; a step that depends on them joins the parts and writes the contact
 //! sheets. Both steps call this program, so that workers need nothing else.
 
 use std::path::Path;

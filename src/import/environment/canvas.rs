@@ -95,7 +95,7 @@ impl Canvas {
             Vec::new()
         } else {
             vec![format!(
-                "The picture is {width} × {height}; it is used at {} × {}.",
+                "The image is {width} × {height}; it is used at {} × {}.",
                 self.width, self.height
             )]
         };

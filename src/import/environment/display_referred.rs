@@ -44,7 +44,7 @@ impl Codes {
 
     /// Warning for images with this encoding.
     pub fn warning(&self) -> Option<String> {
-        let text = "A picture for screens: nothing in it is brighter than 1, so that lamps and the sun are too dark.";
+        let text = "An image for screens: nothing in it is brighter than 1, so lamps and the sun are too dark.";
         (self.encoding == EnvironmentEncoding::Display).then(|| text.to_owned())
     }
 }
@@ -65,7 +65,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         let size = [floats.width, floats.height];
         return of_light(source, size, |column, row| floats.rgb(column, row));
     }
-    source.loading.step("decoding the picture")?;
+    source.loading.step("decoding the image")?;
     let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
     let image = image.unwrap_or_else(|| Err(damaged("its pixels contradict each other".to_owned())))?;
     let light = match source.encoding {

@@ -19,8 +19,8 @@ pub enum EnvironmentError {
     },
     /// An ending that is not known.
     #[error(
-        "the environment {} is neither a .hdr nor an .exr, .ktx2 or .dds file, nor a PNG, JPEG, TIFF or WebP picture: convert it \
-         to one of them, or use studio, sky or furnace",
+        "the environment {} is neither a .hdr nor an .exr, .ktx2, .dds, PNG, JPEG, TIFF or WebP file: convert it to one of them, \
+         or use studio, sky or furnace",
         path.display()
     )]
     UnknownExtension {
@@ -29,7 +29,7 @@ pub enum EnvironmentError {
     },
     /// A folder without the faces of a cube.
     #[error(
-        "the environment {} is a folder without six pictures whose names end in px, nx, py, ny, pz, nz (or right, left, \
+        "the environment {} is a folder without six images whose names end in px, nx, py, ny, pz, nz (or right, left, \
          top, bottom, front, back): name a file in it",
         path.display()
     )]

@@ -110,7 +110,7 @@ impl Planes {
             };
             let first = i64::from(block.y_coordinate) - i64::from(header.own_attributes.layer_position.y());
             let first = usize::try_from(first).ok().filter(|first| *first < height);
-            let first = first.ok_or_else(|| ExrError::Invalid("scan lines out of the picture".into()))?;
+            let first = first.ok_or_else(|| ExrError::Invalid("scan lines outside the image".into()))?;
             let lines = header.compression.scan_lines_per_block().min(height - first);
             let bytes = decompress(header, block.compressed_pixels_le, first, lines)?;
             planes.take(header, &bytes, first, lines, [y, ry, by])?;

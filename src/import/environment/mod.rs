@@ -138,7 +138,7 @@ fn repair(picture: &mut Picture) {
     report(infinite, "infinite", &format!("the largest finite one, {largest}"));
     if picture.width != 2 * picture.height {
         warnings.push(format!(
-            "The picture is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",
+            "The image is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",
             picture.width, picture.height
         ));
     }

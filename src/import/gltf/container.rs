@@ -290,7 +290,7 @@ const DETAILS: [(&str, &str, &str, Check); 7] = [
         r#"{"type": "perspective"}"#,
         check::<json::Camera>,
     ),
-    ("images", "a picture", "{}", check::<json::Image>),
+    ("images", "an image", "{}", check::<json::Image>),
     ("materials", "a material", "{}", check::<json::Material>),
     ("samplers", "a sampler", "{}", check::<json::texture::Sampler>),
     ("skins", "a skin", r#"{"joints": []}"#, check::<json::Skin>),

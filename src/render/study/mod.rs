@@ -34,7 +34,7 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The image is (nearly) black, so that relative errors are undefined.
-    #[error("the picture is black: errors relative to its brightness mean nothing. Give the scene some light")]
+    #[error("the image is black: errors relative to its brightness mean nothing. Give the scene some light")]
     Black,
     /// The system's temporary folder cannot be written to.
     #[error("the temporary folder cannot be written to: {0}; make room in it, or name another one by TMPDIR")]

@@ -9,7 +9,9 @@ use crate::document::Document;
 use crate::named::named;
 use crate::optics::vector::Vec3;
 use crate::render::{EngineChoice, Session, SessionError};
-use crate::scene::environment::{Environment, EnvironmentSource, MapError, environment_direction, environment_radiance};
+use crate::scene::environment::{
+    Environment, EnvironmentSource, MapError, environment_direction, environment_radiance,
+};
 use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 
@@ -17,7 +19,7 @@ named! {
     /// The scaled quantity.
     Growing {
         Triangles, "triangles", "Triangles", "The triangles of the model.";
-        Pixels, "pixels", "Pixels", "The pixels of the picture.";
+        Pixels, "pixels", "Pixels", "The pixels of the image.";
         Bounces, "bounces", "Bounces at most", "The longest path.";
         Texels, "texels", "Texels of the environment", "The texels of the environment.";
     }

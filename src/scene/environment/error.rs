@@ -4,7 +4,7 @@
 #[derive(Debug, thiserror::Error)]
 pub enum MapError {
     /// An empty name.
-    #[error("no environment was named: give studio, sky, furnace, or a picture's file")]
+    #[error("no environment was named: give studio, sky, furnace, or an image file")]
     NoName,
     /// A file, which is not computed but read.
     #[error("the environment {0} is a file: read it")]

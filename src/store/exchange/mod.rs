@@ -235,7 +235,7 @@ pub enum ExchangeError {
         /// Their names.
         names: String,
     },
-    /// A material that cannot be told in this format.
+    /// A material that this format cannot hold.
     #[error("{}: {reason}", path.display())]
     Unsuitable {
         /// The file.
@@ -426,7 +426,7 @@ impl Prepared {
     }
 }
 
-/// Makes the file of a subject and tells what becomes of it. `input` is only named in the report.
+/// Makes the file of a subject and reports what becomes of it. `input` is only named in the report.
 ///
 /// # Errors
 /// Why it has no place there.

@@ -64,7 +64,7 @@ impl Residual {
         }
     }
 
-    /// The largest difference of a reflectance, over angles and colors.
+    /// The largest difference of a reflectance, over angles and colours.
     pub fn reflectance(residual: f64) -> Self {
         Self {
             residual,
@@ -130,7 +130,7 @@ pub struct MaterialReport {
     /// The material, and the one that the file shows; none where it shows no material.
     #[serde(skip)]
     pub looks: Option<Box<[MaterialSettings; 2]>>,
-    /// How far pictures of a ball with the one and the other are apart, where they were rendered: the root mean square of
+    /// How far images of a ball with the one and the other are apart, where they were rendered: the root mean square of
     /// the difference over the mean brightness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<f64>,

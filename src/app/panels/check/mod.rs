@@ -51,7 +51,7 @@ impl Panel for CheckPanel {
         let state = self;
         widgets::note(
             ui,
-            "Proves on this machine that the picture is right: samples against densities, energy, engines and strategies \
+            "Proves on this machine that the image is right: samples against densities, energy, engines and strategies \
              against each other. The viewport goes on meanwhile.",
         );
         if state.worker.is_none() {

@@ -35,7 +35,7 @@ impl Materials<'_> {
         let mut beside: Vec<(usize, Encoded<'_>)> = Vec::new();
         let mut cost = 0;
         for (place, image) in images.into_iter().enumerate() {
-            if loading.step(format!("picture {} of {count}", place + 1)).is_err() {
+            if loading.step(format!("texture {} of {count}", place + 1)).is_err() {
                 break;
             }
             match image::encoded(document, image) {
@@ -108,7 +108,7 @@ impl Materials<'_> {
         if found.is_none() {
             self.report.note(
                 Fate::Missing,
-                "a texture without a picture",
+                "a texture without an image",
                 &format!("texture {texture}"),
             );
         }

@@ -228,7 +228,7 @@ fn is_near(wanted: &Json, found: &Json) -> bool {
     }
 }
 
-/// A file that grows: its numbers and pictures, and what refers to them.
+/// A file that grows: its numbers and images, and what refers to them.
 #[derive(Default)]
 struct Builder {
     bytes: Vec<u8>,

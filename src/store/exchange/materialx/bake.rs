@@ -17,7 +17,7 @@ const PROGRAM: &str = "baketextures";
 const TOOLS_FOLDER: &str = "format-tools";
 /// The variable that names the folder of the formats' tools.
 const TOOLS_VARIABLE: &str = "GLOSSMITH_TOOLS";
-/// Side of the pictures whose means are taken, pixels.
+/// Side of the images whose means are taken, pixels.
 const SIDE: &str = "128";
 /// Longest time that it may take.
 const PATIENCE: Duration = Duration::from_secs(60);

@@ -1,4 +1,4 @@
-//! What inputs of a MaterialX document are worth: constants, pictures by their mean, and what the usual nodes compute of these.
+//! What inputs of a MaterialX document are worth: constants, images by their mean, and what the usual nodes compute of these.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
@@ -26,7 +26,7 @@ const LUMINANCE: [f32; 3] = [0.2722287, 0.6740818, 0.0536895];
 pub(super) struct Worth {
     /// The value; one number stands in all four places.
     pub(super) value: [f32; 4],
-    /// The pictures of whose means it is made.
+    /// The images of whose means it is made.
     pub(super) pictures: Vec<PathBuf>,
     /// Something was computed of these means.
     pub(super) is_computed: bool,
@@ -47,7 +47,7 @@ impl Worth {
     }
 }
 
-/// Why it cannot be told what an input is worth.
+/// Why the value of an input is unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Unknown {
     /// A node of this kind computes it.
@@ -166,7 +166,7 @@ impl<'p> Images<'p> {
 /// What an input is worth; nothing where it has no value of its own.
 ///
 /// # Errors
-/// Why that cannot be told.
+/// Why that is unknown.
 pub(super) fn worth(input: Node<'_, '_>, images: &Images<'_>) -> Result<Option<Worth>, Unknown> {
     let steps = Cell::new(0);
     Graph { images, steps }.input(input, 0)
@@ -240,10 +240,10 @@ impl Graph<'_> {
         Ok(Some(found))
     }
 
-    /// The mean of a picture.
+    /// The mean of an image.
     fn picture(&self, node: Node<'_, '_>) -> Result<Worth, Unknown> {
         let Some(input) = child(node, "file") else {
-            return Err(Unknown::missing("a picture without a file"));
+            return Err(Unknown::missing("an image without a file"));
         };
         let input = of_interface(input).unwrap_or(input);
         let name = input.attribute("value").unwrap_or_default();
@@ -453,7 +453,7 @@ mod tests {
 
     /// Name, type and value of an input.
     type Given<'a> = (&'a str, &'a str, &'a str);
-    /// A node's kind, its inputs, which output is taken, and the color that it has.
+    /// A node's kind, its inputs, which output is taken, and the colour that it has.
     type Case<'a> = (&'a str, &'a [Given<'a>], &'a str, [f32; 3]);
 
     /// A node with inputs, and a surface that takes one of its outputs.

@@ -1,4 +1,4 @@
-//! Documents of MaterialX, read: the surfaces of several models with one value for each input. Pictures are taken by their mean.
+//! Documents of MaterialX, read: the surfaces of several models with one value for each input. Images are taken by their mean.
 //! What a graph computes is computed ([`super::graph`]) or baked ([`super::bake`]), else named in the report.
 
 use std::path::Path;
@@ -171,7 +171,7 @@ fn others_of_material<'a>(material: Node<'a, 'a>) -> impl Iterator<Item = Entry>
     others.map(|name| Entry::dropped(name, "of a material its surface alone is read"))
 }
 
-/// Fills in the inputs that have a value, by whatever way, and gives the turn of the tangent in degrees. `baked` is asked for
+/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees. `baked` is asked for
 /// what is not computed here.
 fn read_inputs(
     shader: Node<'_, '_>,
