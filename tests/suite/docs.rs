@@ -3,9 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use clap::{Command, CommandFactory};
 use glossmith::app::book::anchor;
-use glossmith::cli::Arguments;
 use glossmith::document::{PARAMETERS, SETTINGS};
 
 use super::docs_tables::written;

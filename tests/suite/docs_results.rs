@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use glossmith::render::study::benchmark::report::{EngineReport, Report, number};
 
-use super::docs::{root, table};
+use super::docs::root;
+use super::docs_tables::table;
 
 /// A row for each engine of each result in `docs/results`.
 pub fn table_of_results() -> String {
