@@ -252,6 +252,8 @@ mod ui_study;
 mod ui_textures;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
+#[path = "suite/ui_workspaces.rs"]
+mod ui_workspaces;
 #[path = "suite/walk.rs"]
 mod walk;
 #[path = "suite/words.rs"]

@@ -230,7 +230,7 @@ impl Desk<'_> {
     /// The row of a setting.
     fn setting(&mut self, ui: &mut Ui, setting: &'static Parameter<Document>) {
         let mut value = setting.get(self.document);
-        if parameter_row::show(ui, setting, &mut value, |_| {}) && setting.set(self.document, value).is_ok() {
+        if parameter_row::show(ui, setting, &mut value) && setting.set(self.document, value).is_ok() {
             self.edits.note(setting.full_name(), setting.key);
         }
     }

@@ -16,6 +16,7 @@ mod settings;
 mod sheets;
 mod study;
 mod viewport;
+pub mod workspaces;
 
 use std::io;
 use std::path::PathBuf;
@@ -47,7 +48,9 @@ use sheets::status::{self, FrameMeter};
 use sheets::turntable::TurntableSheet;
 use sheets::unsaved::Unsaved;
 use viewport::Viewport;
+use workspaces::Workspaces;
 
+use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
@@ -56,7 +59,7 @@ use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
-use crate::store::examples::EXAMPLES;
+use crate::store::examples::still_life;
 
 /// A finished picture that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -108,6 +111,8 @@ pub struct Options {
     pub keep_pictures_from: Option<Duration>,
     /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
     pub typed_paths: Option<PathBuf>,
+    /// The name of the workspace instead of the one that was left.
+    pub workspace: Option<String>,
 }
 
 /// The editor.
@@ -128,6 +133,7 @@ pub struct App {
     awaited: usize,
     shared: Shared,
     panels: Panels,
+    workspaces: Workspaces,
     layout: Tree<Pane>,
     is_maximised: bool,
     viewport: Viewport,
@@ -149,18 +155,20 @@ pub struct App {
     theme: egui::ThemePreference,
 }
 
-/// What a new document is: the default one, but noise is taken out as before.
-fn new_document(denoise: Denoise) -> Document {
-    let mut document = Document::default();
-    document.view.denoise = denoise;
-    document
+/// What a new document is: the still life, or for files to come the default document.
+fn new_document(denoise: Denoise, is_for_files: bool) -> Document {
+    let document = if is_for_files {
+        Document::default()
+    } else {
+        still_life()
+    };
+    denoised_by(denoise, document)
 }
 
-/// An example, whose noise is taken out as before.
-fn example(number: usize, denoise: Denoise) -> Option<Document> {
-    let mut document = (EXAMPLES.get(number)?.document)();
+/// The document, whose noise is taken out as before.
+fn denoised_by(denoise: Denoise, mut document: Document) -> Document {
     document.view.denoise = denoise;
-    Some(document)
+    document
 }
 
 impl App {
@@ -186,13 +194,11 @@ impl App {
         let queue = Queue::new(worker.assets().clone(), move || ctx.request_repaint())?;
         let document = options
             .document
-            .unwrap_or_else(|| match kept.is_first && options.files.is_empty() {
-                true => example(0, kept.denoise).unwrap_or_default(),
-                false => new_document(kept.denoise),
-            });
+            .unwrap_or_else(|| new_document(kept.denoise, !options.files.is_empty()));
         let materials = options.data.as_ref().map(|data| data.join("materials"));
         let library = library::Library::new(materials, options.cache.clone());
         let environments = environments::Environments::new(options.cache.clone(), library.holder());
+        let (workspaces, layout) = Workspaces::new(kept.workspaces, kept.layout, options.workspace);
         let mut app = Self {
             edits: Edits::new(document.clone()),
             document,
@@ -235,7 +241,8 @@ impl App {
                 queue,
             },
             panels: Panels::default(),
-            layout: kept.layout.unwrap_or_else(layout::default_layout),
+            workspaces,
+            layout,
             is_maximised: false,
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
@@ -331,6 +338,8 @@ impl App {
                         self.say(Level::Info, format!("opened {}", path.display()));
                         self.shared.recent.add(path);
                     }
+                    let report = import_report(&model, self.shared.import_lobe);
+                    messages::add_import(&mut self.shared.messages, &model.name, &report);
                     self.adopt_model(source, options, &model);
                     self.use_dropped_with(&model);
                     self.count_as_start(is_start);
@@ -398,13 +407,17 @@ impl App {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
                 let chosen = (self.shared.import_lobe, self.shared.engine);
-                menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, is_open, actions);
+                let panels = (&self.workspaces, is_open);
+                menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, panels, actions);
             });
         egui::Panel::bottom("status")
             .frame(bar)
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
-            .show(ui, |ui| status::show(ui, &snapshot, &self.meter, actions));
+            .show(ui, |ui| {
+                let tells_numbers = self.workspaces.current() == workspaces::MEASURE;
+                status::show(ui, &snapshot, &self.meter, tells_numbers, actions);
+            });
         let ground = egui::Frame::new()
             .fill(theme::ground(is_dark))
             .inner_margin(egui::Margin::symmetric(0, 3));
@@ -539,7 +552,8 @@ impl eframe::App for App {
         let kept = settings::Kept {
             allowed: crate::scene::resource::allowed(),
             theme: self.theme,
-            layout: Some(layout),
+            layout: None,
+            workspaces: self.workspaces.kept(layout),
             resolution: self.shared.resolution,
             import_lobe: self.shared.import_lobe,
             engine: self.shared.kept_engine,
@@ -548,7 +562,6 @@ impl eframe::App for App {
             recent: self.shared.recent.paths().to_vec(),
             hints_seen: self.shared.hints_seen,
             shelves: self.shared.shelves.kept.clone(),
-            is_first: false,
         };
         kept.save(storage);
     }

@@ -36,6 +36,7 @@ pub mod resource;
 mod rle_bmp;
 pub mod shapes;
 mod stage;
+mod still_life;
 mod stl;
 pub mod surface;
 mod tangents;

@@ -11,7 +11,7 @@ use super::loading::{Cancelled, Loading};
 use super::mesh::Mesh;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
-use super::{import, shapes, teapot};
+use super::{import, shapes, still_life, teapot};
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
 /// such a name is written with its folder (`./teapot`).
@@ -27,15 +27,18 @@ pub enum ModelSource {
     Plane,
     /// A ball with an inset band that shows its core, on a stand.
     Shaderball,
+    /// A teapot, a bowl, a ball and a bead, each in a slot of its own.
+    StillLife,
     /// A file with one of [`MODELS`](super::endings::MODELS), or a folder with such files.
     File(PathBuf),
 }
 
-const BUILT_IN: [(&str, ModelSource); 4] = [
+const BUILT_IN: [(&str, ModelSource); 5] = [
     ("teapot", ModelSource::Teapot),
     ("sphere", ModelSource::Sphere),
     ("plane", ModelSource::Plane),
     ("shaderball", ModelSource::Shaderball),
+    ("still-life", ModelSource::StillLife),
 ];
 
 impl From<&str> for ModelSource {
@@ -566,6 +569,20 @@ pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Load
         ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
         ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
         ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
+        ModelSource::StillLife => {
+            let (mesh, parts) = still_life::mesh();
+            let objects = still_life::PARTS
+                .iter()
+                .zip(parts)
+                .map(|(name, triangles)| ModelObject {
+                    name: (*name).to_owned(),
+                    triangles,
+                });
+            Model {
+                objects: objects.collect(),
+                ..built_in(mesh, &still_life::PARTS)
+            }
+        }
         ModelSource::File(path) => import::load(path, options, loading)?,
     };
     if model.objects.is_empty() {

@@ -187,7 +187,7 @@ impl App {
         for file in files {
             let text = format!(
                 "{}: not used: nothing here names it, nor does its name say what it is for, as wood_roughness.png does; \
-                 choose it in Material › Textures",
+                 choose it in Material, beside its parameter",
                 name(file)
             );
             self.say(Level::Warning, text);

@@ -409,11 +409,17 @@ fn step_by_keys<T: PartialEq + Clone>(
 
 /// The heading of a group of rows, which opens and closes it.
 pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
+    group_open(ui, title, None, body);
+}
+
+/// The same, opened or closed by the program in this frame.
+pub(in crate::app) fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
+    let wished = wish(ui).is_some_and(|wish| wish.group == title).then_some(true);
     let header = RichText::new(title).strong();
     let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
-        .default_open(true)
-        .open(wish(ui).is_some_and(|wish| wish.group == title).then_some(true))
+        .default_open(opens.unwrap_or(true))
+        .open(wished.or(opens))
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);

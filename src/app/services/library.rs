@@ -55,6 +55,8 @@ pub(in crate::app) struct Library {
     hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
     worker: Option<ThumbnailWorker>,
+    /// Those of the document with the keys of their pictures, as they were when the user last paused.
+    in_document: Vec<(MaterialSettings, u64)>,
     /// Materials that lie in watched folders.
     pub(in crate::app) watched: Vec<MaterialSettings>,
     pub(in crate::app) is_asked: bool,
@@ -102,6 +104,27 @@ impl Library {
         self.is_asked = false;
     }
 
+    /// Has pictures made of the document's materials, and gives that of each; `is_in_flow`: they are being edited.
+    pub(in crate::app) fn pictures_of(
+        &mut self,
+        ctx: &egui::Context,
+        materials: &[MaterialSettings],
+        is_in_flow: bool,
+    ) -> Vec<Option<TextureHandle>> {
+        let is_known = |(known, material): (&(MaterialSettings, u64), &MaterialSettings)| known.0 == *material;
+        let is_same =
+            self.in_document.len() == materials.len() && std::iter::zip(&self.in_document, materials).all(is_known);
+        if !is_in_flow && !is_same {
+            let keyed = |material: &MaterialSettings| (material.clone(), thumbnails::key(material));
+            self.in_document = materials.iter().map(keyed).collect();
+            self.is_asked = false;
+        }
+        self.make_pictures(ctx);
+        // While a material is edited its picture is that from before.
+        let picture = |place: usize| self.textures.get(&self.in_document.get(place)?.1).cloned();
+        (0..materials.len()).map(picture).collect()
+    }
+
     /// Asks for pictures that are not there yet, and takes those that are. To be called while they are seen.
     pub(in crate::app) fn make_pictures(&mut self, ctx: &egui::Context) {
         let Some(cache) = &self.cache else {
@@ -126,7 +149,13 @@ impl Library {
         };
         if !std::mem::replace(&mut self.is_asked, true) {
             let own = self.own.iter().filter_map(|shown| shown.entry.material.as_ref().ok());
-            let all = PRESETS.iter().chain(own).chain(&self.watched);
+            let all = self
+                .in_document
+                .iter()
+                .map(|(material, _)| material)
+                .chain(PRESETS.iter())
+                .chain(own)
+                .chain(&self.watched);
             worker.ask(all.cloned().collect::<Vec<MaterialSettings>>());
         }
         let Some(made) = worker.latest() else {

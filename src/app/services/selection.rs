@@ -19,6 +19,8 @@ pub(in crate::app) struct Selection {
     /// The tree was shown in this frame, and in the one before: outlines are drawn.
     pub(in crate::app) is_shown: bool,
     pub(in crate::app) was_shown: bool,
+    /// The user has chosen something of this model: what is edited at first is not outlined.
+    pub(in crate::app) is_made: bool,
     /// The objects.
     pub(in crate::app) objects: BTreeSet<usize>,
     /// Slots that are edited together with the selected one.
@@ -53,6 +55,7 @@ impl Selection {
         self.objects.clear();
         self.also.clear();
         self.hovered = None;
+        self.is_made = false;
     }
 
     /// The slots that are edited: the selected one first.
@@ -63,6 +66,7 @@ impl Selection {
 
     /// Chooses an object alone, or takes it in or out beside the others.
     pub(in crate::app) fn choose_object(&mut self, object: usize, beside_others: bool) {
+        self.is_made = true;
         toggle(&mut self.objects, object, beside_others);
     }
 

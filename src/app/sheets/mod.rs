@@ -10,3 +10,4 @@ pub(super) mod recovery;
 pub mod status;
 pub(super) mod turntable;
 pub(super) mod unsaved;
+mod workspaces;

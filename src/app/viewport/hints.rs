@@ -6,11 +6,12 @@ use super::LOADING_MARGIN;
 use crate::app::desk::Desk;
 
 /// The hints, in order.
-const HINTS: [&str; 4] = [
+const HINTS: [&str; 5] = [
     "Drag to orbit, scroll to zoom, Shift+drag to rotate the light.",
     "Click a preset to apply it; drag it onto a part to change only that part.",
-    "Ctrl+K: search commands, panels and parameters.",
-    "Help › Examples has scenes to begin with. F1 lists shortcuts. Ctrl+E saves the image.",
+    "Ctrl+K finds commands, presets, environments and parameters. F1 lists keys; Help › Examples has scenes.",
+    "C: compare with what you had before the last change. Press it again to go on.",
+    "Ctrl+E: save the image. A .png holds the whole project and opens again.",
 ];
 /// Width of the hint, points.
 const WIDTH: f32 = 380.0;

@@ -3,6 +3,7 @@
 //! Both halves of the samples are denoised separately, each guided by the first-hit guides of its own samples. The result is
 //! their mean. The halves' common part and their difference give the error estimate ([`crate::analysis::denoised`]).
 
+pub mod fetch;
 mod filter;
 mod library;
 mod picture;

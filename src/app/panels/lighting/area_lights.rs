@@ -170,7 +170,7 @@ fn parameter_of(
     let mut value = parameter.get(light);
     let idle = (parameter.idle)(light);
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
-        parameter_row::show_as(ui, parameter, &full, &mut value, |_| {})
+        parameter_row::show_as(ui, parameter, &full, &mut value)
     });
     if let Some(why) = idle {
         row.response.on_hover_text(why);
