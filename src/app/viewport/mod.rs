@@ -29,14 +29,12 @@ use magnifier::Magnifier;
 use orbit::Orbit;
 use seen::{hit_at, pixel_at};
 
-use super::actions::{Action, Command};
+use super::actions::Action;
 use super::desk::{Desk, Resolution};
-use super::kit::icons::{self, Icon};
 use super::kit::theme;
 use super::services::compare::View;
 use crate::render::shown;
-use crate::render::worker::{Activity, Level, Picture, Scene};
-use crate::scene::ModelSource;
+use crate::render::worker::{Activity, Picture, Scene};
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;

@@ -39,8 +39,13 @@ pub enum FetchError {
     #[error("there is no folder for it: set HOME")]
     NoFolder,
     /// A file can't be written.
-    #[error("{}: {1}", .0.display())]
-    File(PathBuf, io::Error),
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        error: io::Error,
+    },
 }
 
 /// Whether the denoiser can be fetched on this system.
@@ -63,7 +68,7 @@ pub fn fetch() -> Result<(), FetchError> {
 fn fetch_by(installers: &[&[&str]], folder: &Path) -> Result<(), FetchError> {
     let failed = |path: &Path| {
         let path = path.to_owned();
-        move |error| FetchError::File(path, error)
+        move |error| FetchError::File { path, error }
     };
     std::fs::create_dir_all(folder).map_err(failed(folder))?;
     // Beside where it goes to: files are moved within one file system.
