@@ -224,3 +224,39 @@ fn the_palette_finds_what_can_be_used() {
     choose(&mut harness, "measure works", "Workspace Measure");
     assert!(has(&harness, "samples/s"));
 }
+
+/// A measured metal becomes one of two colours and back, each in one edit.
+#[test]
+fn a_metal_is_edited_by_colours_or_as_measured() {
+    let mut harness = at_first();
+    let gold = PRESETS
+        .iter()
+        .find(|preset| preset.name == "Gold")
+        .expect("it is shipped");
+    request(&mut harness, Action::UseMaterial(Box::new(gold.clone())));
+    harness.run_steps(3);
+    let material = |harness: &Editor| harness.state().document().materials[0].clone();
+    let before = material(&harness);
+    harness.get_by_label("Edit as colours").click_accesskit();
+    settle(&mut harness);
+    let colored = material(&harness);
+    assert_eq!(colored, before.by_colors());
+    assert!(
+        colored.base_color[0] > 2.0 * colored.base_color[2],
+        "{:?}",
+        colored.base_color
+    );
+    assert!(
+        harness.query_by_label("Specular edge tint").is_some(),
+        "the second colour"
+    );
+    harness.get_by_label("Measured metal…").click_accesskit();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, "copper").click_accesskit();
+    settle(&mut harness);
+    assert_ne!(material(&harness), colored);
+    undo(&mut harness);
+    assert_eq!(material(&harness), colored);
+    undo(&mut harness);
+    assert_eq!(material(&harness), before);
+}

@@ -13,7 +13,9 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::{keys, parameter_row, theme, widgets};
+use crate::document::material::Conductor;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
+use crate::optics::fresnel::Fresnel;
 
 /// Side of the ball before a slot's name, points.
 const BALL: f32 = 26.0;
@@ -24,6 +26,8 @@ const SLOTS_SHOWN: f32 = 6.0;
 
 /// From how many parameters on a change is not one by hand, but another material.
 const ANOTHER_FROM: usize = 3;
+/// The parameter after which a metal's two ways stand: by colours, or as measured.
+const METAL_KEY: &str = "specular.conductor";
 /// The groups that are open whatever is in them.
 const ALWAYS_OPEN: [&str; 2] = ["Base", "Specular"];
 
@@ -93,6 +97,9 @@ impl Panel for MaterialPanel {
                             show_parameter(ui, desk, parameter, &mut material);
                         }
                     });
+                    if parameter.key == METAL_KEY {
+                        widgets::comes_and_goes(ui, |ui| metal(ui, desk, &mut material));
+                    }
                     if let Some(target) = textures::target_of(parameter.key) {
                         widgets::comes_and_goes(ui, |ui| textures::show(ui, desk, target, &mut material));
                     }
@@ -180,6 +187,32 @@ fn slot_entry(
     if item.on_hover_text(label).clicked() {
         desk.actions.push(Action::SelectSlot(slot));
     }
+}
+
+/// The other way to say which metal it is: two colours in place of η and k, or those of a measured metal.
+fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+    if material.metalness < 1.0 {
+        return;
+    }
+    if material.fresnel == Fresnel::Conductor {
+        let help = "The same metal by two colours, seen head-on and towards the edge, to pick as you like.";
+        if ui.button("Edit as colours").on_hover_text(help).clicked() {
+            *material = material.by_colors();
+            desk.edits.note("Edit the metal as colours", "");
+        }
+        return;
+    }
+    let menu = ui.menu_button("Measured metal…", |ui| {
+        for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
+            if ui.button(conductor.name()).clicked() {
+                *material = material.by_measured(conductor);
+                desk.edits.note(format!("Use measured {}", conductor.name()), "");
+                ui.close();
+            }
+        }
+    });
+    menu.response
+        .on_hover_text("Replaces the colours by a metal's measured η and k.");
 }
 
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
