@@ -9,7 +9,7 @@ use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
 use crate::app::services::snapshots::PinChange;
-use crate::app::workspaces;
+use crate::app::services::workspaces;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::shown::Shown;

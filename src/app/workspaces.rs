@@ -4,26 +4,13 @@ use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
 use crate::app::layout::{self, Pane};
+use crate::app::services::workspaces::is_built_in;
+pub use crate::app::services::workspaces::{Change, LOOK, MEASURE};
 
-/// The workspace at the start: presets, material, light and camera around a large viewport.
-pub const LOOK: &str = "Look";
-/// The workspace of effects, races, checks, samples and errors.
-pub const MEASURE: &str = "Measure";
 /// The name of an arrangement that was left before there were workspaces.
 const FORMER: &str = "Mine";
 /// Longest name of a workspace, characters: a row of them fits beside the menus.
 const NAME_MAX: usize = 16;
-
-/// A change to the workspaces.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Change {
-    /// Shows the workspace of this name.
-    Use(String),
-    /// Keeps the panels as they are under this name, and shows that workspace.
-    Save(String),
-    /// Removes the user's workspace of this name.
-    Remove(String),
-}
 
 /// An arrangement of the panels with its name.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -124,11 +111,6 @@ impl Workspaces {
     pub(super) fn at_first(&self) -> Tree<Pane> {
         built_in(&self.current).layout
     }
-}
-
-/// Whether the workspace is one of the program's.
-pub(super) fn is_built_in(name: &str) -> bool {
-    [LOOK, MEASURE].contains(&name)
 }
 
 /// A workspace of the program's as it is at first; another name has the panels of *Look*.

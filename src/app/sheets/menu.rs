@@ -11,7 +11,6 @@ use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::import;
 use crate::app::sheets::{palette, workspaces};
-use crate::app::workspaces::Workspaces;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
@@ -47,7 +46,7 @@ pub(in crate::app) fn bar(
     edits: &Edits,
     recent: &mut Recent,
     (import_lobe, engine): (ImportLobe, EngineChoice),
-    (workspaces, is_open): (&Workspaces, impl Fn(Pane) -> bool),
+    (workspaces, is_open): ((&[&str], &str), impl Fn(Pane) -> bool),
     actions: &mut Vec<Action>,
 ) {
     egui::MenuBar::new().ui(ui, |ui| {

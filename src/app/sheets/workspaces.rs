@@ -5,18 +5,16 @@ use egui::{PopupCloseBehavior, RichText, Ui};
 
 use crate::app::actions::{Action, do_and_close};
 use crate::app::kit::widgets;
-use crate::app::workspaces::{Change, Workspaces, is_built_in};
+use crate::app::services::workspaces::{Change, LOOK, MEASURE, is_built_in};
 
 /// Width of the field of a name, points.
 const NAME_WIDTH: f32 = 160.0;
 
 /// Shows tabs and menu, from right to left.
-pub(super) fn show(ui: &mut Ui, workspaces: &Workspaces, actions: &mut Vec<Action>) {
-    menu(ui, workspaces, actions);
-    let current = workspaces.current();
-    let mut tabs: Vec<&str> = workspaces.names().collect();
-    tabs.retain(|name| is_built_in(name) || *name == current);
-    for name in tabs.into_iter().rev() {
+pub(super) fn show(ui: &mut Ui, (names, current): (&[&str], &str), actions: &mut Vec<Action>) {
+    menu(ui, (names, current), actions);
+    let is_tab = |name: &&&str| is_built_in(name) || **name == current;
+    for &name in names.iter().rev().filter(is_tab) {
         let is_shown = name == current;
         let text = if is_shown {
             RichText::new(name).strong()
@@ -33,20 +31,19 @@ pub(super) fn show(ui: &mut Ui, workspaces: &Workspaces, actions: &mut Vec<Actio
 
 fn help(name: &str) -> &'static str {
     match name {
-        crate::app::workspaces::LOOK => "Presets, material, light and camera around a large viewport",
-        crate::app::workspaces::MEASURE => "Effects, race, check, samples, lobe, inspector and convergence",
+        LOOK => "Presets, material, light and camera around a large viewport",
+        MEASURE => "Effects, race, check, samples, lobe, inspector and convergence",
         _ => "A workspace of your own",
     }
 }
 
 /// The user's own: shown, saved and removed.
-fn menu(ui: &mut Ui, workspaces: &Workspaces, actions: &mut Vec<Action>) {
+fn menu(ui: &mut Ui, (names, current): (&[&str], &str), actions: &mut Vec<Action>) {
     // A click into the field must not close it.
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let (button, _) = MenuButton::new(RichText::new("+").weak()).config(config).ui(ui, |ui| {
         ui.set_min_width(NAME_WIDTH);
-        let current = workspaces.current();
-        for name in workspaces.names().filter(|name| !is_built_in(name)) {
+        for &name in names.iter().filter(|name| !is_built_in(name)) {
             if ui.radio(name == current, name).clicked() {
                 do_and_close(ui, actions, Action::ChangeWorkspaces(Change::Use(name.to_owned())));
             }
