@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::app::actions::Action;
 use crate::render::worker::Level;
 use crate::scene::environment::{self, EnvironmentSource};
-use crate::scene::texture::set;
+use crate::scene::texture::{UserTexture, set};
 use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
 use crate::store::file_kind::{FileKind, may_hold_document};
 
@@ -160,6 +160,10 @@ impl App {
                 part.display()
             );
             self.say(Level::Error, text);
+        }
+        if let ([picture], Some(target)) = (pictures.as_slice(), self.shared.selection.texture) {
+            self.put_textures(&[(target, UserTexture::of(picture.clone()))]);
+            return;
         }
         if let [picture] = pictures.as_slice()
             && may_hold_document(picture)

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::document::MaterialSettings;
+use crate::scene::texture::TextureTarget;
 
 /// A part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -33,6 +34,8 @@ pub(in crate::app) struct Selection {
     /// The list of lights was shown in this frame, and in the one before: lights are marked in the viewport.
     pub(in crate::app) shows_lights: bool,
     pub(in crate::app) showed_lights: bool,
+    /// The place of a texture that the pointer is over in this frame: a picture that is dropped goes there.
+    pub(in crate::app) texture: Option<TextureTarget>,
     /// The material that was copied.
     pub(in crate::app) copied: Option<MaterialSettings>,
 }
@@ -43,6 +46,7 @@ impl Selection {
         self.was_shown = std::mem::take(&mut self.is_shown);
         self.showed_lights = std::mem::take(&mut self.shows_lights);
         self.lit = self.hovered.take();
+        self.texture = None;
     }
 
     /// Whether the next frame shows something else without anything else happening.

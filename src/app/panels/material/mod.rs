@@ -239,19 +239,25 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
 fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
     let mut value = parameter.get(material);
     let idle = (parameter.idle)(material);
-    let is_chosen = Cell::new(false);
+    let pressed = Cell::new(false);
+    let pointed = Cell::new(false);
     let target = textures::target_of(parameter.key).filter(|target| !textures::is_there(desk, *target));
     let mut slot = |ui: &mut Ui| {
         if let Some(target) = target {
-            is_chosen.set(textures::empty_slot(ui, target));
+            let response = textures::empty_slot(ui, target);
+            pressed.set(response.clicked());
+            pointed.set(response.contains_pointer());
         }
     };
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
         let beside = target.is_some().then_some(&mut slot as &mut dyn FnMut(&mut Ui));
         parameter_row::show_beside(ui, parameter, &parameter.full_name(), &mut value, beside)
     });
-    if let Some(target) = target.filter(|_| is_chosen.get()) {
+    if let Some(target) = target.filter(|_| pressed.get()) {
         desk.actions.push(Action::ChooseTexture(target));
+    }
+    if let Some(target) = target.filter(|_| pointed.get()) {
+        desk.shared.selection.texture = Some(target);
     }
     if let Some(why) = idle {
         row.response.on_hover_text(why);

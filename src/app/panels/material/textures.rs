@@ -63,14 +63,14 @@ pub(super) fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
     picture(desk, target).is_some()
 }
 
-/// The square beside a parameter that has no texture; true where one is asked for.
-pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> bool {
+/// The square beside a parameter that has no texture: pressed to choose one, and a place to drop one.
+pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
     let name = format!("Texture of the {}", target.label().to_lowercase());
     let help = format!(
         "{}\nPuts a picture of your own here; or drop one on the window.",
         target.help()
     );
-    icons::button(ui, Icon::Texture, &name, &help).clicked()
+    icons::button(ui, Icon::Texture, &name, &help)
 }
 
 /// The texture's row, with how a user's own one is put on. One that is not there has its place beside the parameter, but
@@ -78,6 +78,11 @@ pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> bool {
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
     if picture.is_some() || target == TextureTarget::Normal {
+        let top = ui.cursor().min;
+        let place = egui::Rect::from_min_size(top, egui::vec2(ui.available_width(), theme::ROW_HEIGHT));
+        if ui.rect_contains_pointer(place) {
+            desk.shared.selection.texture = Some(target);
+        }
         row(ui, desk, target, picture.as_ref(), material);
         placement(ui, desk, target, material);
     }
