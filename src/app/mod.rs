@@ -76,6 +76,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         engine,
         data: settings::data_folder(),
         cache: settings::cache_folder(),
+        offers_downloads: true,
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
@@ -111,6 +112,8 @@ pub struct Options {
     pub keep_pictures_from: Option<Duration>,
     /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
     pub typed_paths: Option<PathBuf>,
+    /// Whether the window may offer to download what it lacks.
+    pub offers_downloads: bool,
     /// The name of the workspace instead of the one that was left.
     pub workspace: Option<String>,
 }
@@ -225,6 +228,7 @@ impl App {
                 shown: Shown::default(),
                 look: services::look::Look::default(),
                 hints_seen: kept.hints_seen,
+                offers_downloads: options.offers_downloads,
                 view_angle_deg: desk::VIEW_ANGLE_DEG,
                 measured: None,
                 picks: None,

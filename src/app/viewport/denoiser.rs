@@ -28,7 +28,11 @@ pub(super) struct DenoiserOffer {
 impl DenoiserOffer {
     /// Shows the offer over the picture where the denoiser is missing; once it is there, pictures are denoised.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
-        if self.is_declined || !can_fetch() || (self.worker.is_none() && !Library::is_missing()) {
+        if self.is_declined
+            || !desk.shared.offers_downloads
+            || !can_fetch()
+            || (self.worker.is_none() && !Library::is_missing())
+        {
             return;
         }
         let is_busy = self.worker.as_ref().is_some_and(Background::is_busy);

@@ -241,9 +241,11 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
     let idle = (parameter.idle)(material);
     let pressed = Cell::new(false);
     let pointed = Cell::new(false);
-    let target = textures::target_of(parameter.key).filter(|target| !textures::is_there(desk, *target));
+    let target = textures::target_of(parameter.key);
+    // A texture that is there has a row of its own; its parameter's control stays the one that it is.
+    let is_empty = target.is_some_and(|target| !textures::is_there(desk, target));
     let mut slot = |ui: &mut Ui| {
-        if let Some(target) = target {
+        if let Some(target) = target.filter(|_| is_empty) {
             let response = textures::empty_slot(ui, target);
             pressed.set(response.clicked());
             pointed.set(response.contains_pointer());
