@@ -515,6 +515,9 @@ pub(in crate::app) fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> 
     if field.lost_focus() {
         return Some(true);
     }
+    if !field.has_focus() {
+        field.scroll_to_me(Some(Align::Center));
+    }
     field.request_focus();
     None
 }

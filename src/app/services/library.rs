@@ -27,10 +27,11 @@ pub enum Change {
     Restore,
 }
 
-/// What came of a change: what to say, which materials there are, and what was removed.
+/// What came of a change: what to say, which materials there are, what was added and is to be named, and what was removed.
 pub(in crate::app) struct Listed {
     pub(in crate::app) words: String,
     pub(in crate::app) entries: Vec<Entry>,
+    pub(in crate::app) added: Option<PathBuf>,
     pub(in crate::app) removed: Option<Removed>,
 }
 
@@ -93,6 +94,14 @@ impl Library {
     /// The picture of a material of the user's.
     pub(in crate::app) fn picture(&self, key: u64) -> Option<&TextureHandle> {
         self.textures.get(&key)
+    }
+
+    /// Has the name of a material of the user's typed, which begins as the one that it has.
+    pub(in crate::app) fn ask_name(&mut self, path: PathBuf) {
+        let own = self.own.iter().find(|shown| shown.entry.path == path);
+        if let Some(Ok(material)) = own.map(|shown| &shown.entry.material) {
+            self.renaming = Some((path, material.name.clone()));
+        }
     }
 
     pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {

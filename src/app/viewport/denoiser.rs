@@ -2,7 +2,7 @@
 
 use egui::{Rect, Ui, vec2};
 
-use super::LOADING_MARGIN;
+use super::{LOADING_MARGIN, hints};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::document::Denoise;
@@ -44,7 +44,8 @@ impl DenoiserOffer {
             }
             return;
         }
-        let corner = area.left_bottom() + vec2(LOADING_MARGIN, -LOADING_MARGIN - ABOVE - HEIGHT);
+        let up = LOADING_MARGIN + ABOVE + HEIGHT + hints::raised(area, desk);
+        let corner = area.left_bottom() + vec2(LOADING_MARGIN, -up);
         let builder = egui::UiBuilder::new()
             .scope_id(egui::Id::unique("denoiser offer"))
             .max_rect(Rect::from_min_size(corner, vec2(WIDTH, HEIGHT)))

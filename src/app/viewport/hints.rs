@@ -17,6 +17,20 @@ const HINTS: [&str; 5] = [
 const WIDTH: f32 = 380.0;
 const HEIGHT: f32 = 64.0;
 
+/// Width of what stands in the viewport's lower left corner, points.
+const CORNER: f32 = 160.0;
+
+/// How far what stands in the lower left corner is raised, so that no hint lies over it.
+pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
+    let is_shown = desk.shared.hints_seen < HINTS.len();
+    let is_narrow = area.width() < WIDTH + 2.0 * (CORNER + LOADING_MARGIN);
+    if is_shown && is_narrow {
+        HEIGHT + LOADING_MARGIN
+    } else {
+        0.0
+    }
+}
+
 /// Shows the hint that is next over the lower edge of the picture.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     let number = desk.shared.hints_seen;
