@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use fearless_simd::Level;
+use glossmith::import::environment::load;
 use glossmith::instructions::Instructions;
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
@@ -20,7 +21,7 @@ use glossmith::optics::random::{Sequence, random_pairs};
 use glossmith::optics::real::{Real, Scalar};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
-    Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample, load,
+    Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample,
 };
 
 /// Samples of a turn.

@@ -4,8 +4,9 @@
 use std::path::{Path, PathBuf};
 
 use glossmith::document::Document;
-use glossmith::scene::environment::{self, EnvironmentSource};
-use glossmith::scene::{Geometry, ModelSource, load};
+use glossmith::import::load;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Geometry, ModelSource};
 use glossmith::store::exchange::{self, ReadOptions};
 use glossmith::store::{load_document, load_material, opened};
 
@@ -80,7 +81,7 @@ fn try_path(format: &str, path: &Path) {
             }
         }
         "hdr" | "exr" | "png" | "jpg" | "tif" | "ktx2" | "dds" => {
-            if let Ok(map) = environment::load(&EnvironmentSource::File(path.to_owned())) {
+            if let Ok(map) = glossmith::import::environment::load(&EnvironmentSource::File(path.to_owned())) {
                 assert!(map.texels.iter().flatten().all(|x| x.is_finite() && *x >= 0.0));
                 let cells = &map.distribution(true).cells;
                 assert!(cells.iter().all(|cell| cell.density.is_finite() && cell.density >= 0.0));

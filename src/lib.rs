@@ -2,11 +2,12 @@
 //!
 //! The modules, in the order in which they may use each other:
 //! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`, and between [`job`] and
-//! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`].
+//! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`]; [`import`], after [`scene`], reads files.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, scene};
+pub use glossmith_import as import;
 
 pub mod say;
 

@@ -79,7 +79,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
     arguments.ray_queries.choose();
     if arguments.allow_outside {
-        glossmith::scene::resource::allow_everything();
+        glossmith::import::resource::allow_everything();
     }
     match arguments.command {
         Some(command) => command.run(),

@@ -555,7 +555,7 @@ impl eframe::App for App {
         let mut layout = self.layout.clone();
         layout::set_maximised(&mut layout, false);
         let kept = settings::Kept {
-            allowed: crate::scene::resource::allowed(),
+            allowed: crate::import::resource::allowed(),
             theme: self.theme,
             layout: None,
             workspaces: self.workspaces.kept(layout),

@@ -12,9 +12,9 @@ use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
 use crate::app::workspaces;
 use crate::document::{Denoise, ImportLobe};
+use crate::import::resource;
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, RayQueries};
-use crate::scene::resource;
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";

@@ -7,13 +7,13 @@ use anyhow::bail;
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
+use crate::import::endings::ending;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
 use crate::say::say;
-use crate::scene::endings::ending;
 use crate::store::replace::{save_atomically, save_by};
 
 use super::answer::{Answer, file_names};

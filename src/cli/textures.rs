@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 
 use crate::document::Document;
+use crate::import::endings;
 use crate::named::Named as _;
 use crate::scene::Model;
 use crate::scene::texture::{TextureTarget, UserTexture, set};
@@ -47,7 +48,7 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
     };
     let path = existing(path)?;
     let (textures, _) = match path.is_dir() {
-        true => set::recognised(&set::pictures_in(&path)),
+        true => set::recognised(&endings::pictures_in(&path)),
         false => set::recognised(std::slice::from_ref(&path)),
     };
     if textures.is_empty() {

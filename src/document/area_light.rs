@@ -12,7 +12,7 @@ use crate::named::named;
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::NearLight;
-use crate::scene::light::{AreaShape, Outline};
+use crate::scene::{AreaShape, Outline};
 
 /// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
 pub const SUN_DISTANCE: f64 = 1e4;

@@ -128,7 +128,7 @@ fn instance(blas: &wgpu::Blas, number: u32) -> wgpu::TlasInstance {
 mod tests {
     use super::*;
     use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
-    use crate::scene::{ModelSource, load};
+    use crate::scene::{Model, ModelSource};
 
     #[test]
     fn what_is_around_the_model_is_built_anew_alone() {
@@ -137,7 +137,7 @@ mod tests {
             assert!(!adapter.has_ray_queries(), "it has them and can't be opened");
             return;
         };
-        let alone = Geometry::build(&load(&ModelSource::Sphere).expect("it is built in"), false);
+        let alone = Geometry::build(&Model::built_in(&ModelSource::Sphere).expect("it is built in"), false);
         let on_ground = alone.surrounded(true, &[]);
         let bytes = (size_of::<Triangle>() * on_ground.triangle_count()) as u64;
         let triangles = gpu.buffer_of("triangles", bytes, wgpu::BufferUsages::BLAS_INPUT);

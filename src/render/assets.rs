@@ -6,12 +6,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::error::SessionError;
 use super::memory;
-use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
+use crate::import;
+use crate::import::picture::read_texture;
+use crate::import::{Budget, ModelError};
+use crate::scene::AreaShape;
+use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
-use crate::scene::light::AreaShape;
-use crate::scene::picture::read_texture;
 use crate::scene::texture::{Pack, TextureAssignment, Textures};
-use crate::scene::{self, Budget, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource, Texture};
+use crate::scene::{Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
 
 /// Key of a geometry: model, ground, area lights, hidden objects.
 type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
@@ -233,7 +235,7 @@ impl Kept {
         }
         let (source, options) = key;
         loading.allow(memory::of_import());
-        let model = Arc::new(scene::load_watched(source, options, loading)?);
+        let model = Arc::new(import::load_watched(source, options, loading)?);
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
         }
@@ -321,7 +323,7 @@ impl Kept {
         if let Some(environment) = self.environments.get(key, now) {
             return Ok(environment);
         }
-        let environment = Arc::new(environment::load_watched(&key.0, key.1, loading)?);
+        let environment = Arc::new(import::environment::load_watched(&key.0, key.1, loading)?);
         environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.environments.put(key.clone(), environment.clone(), now);
         Ok(environment)

@@ -9,7 +9,8 @@ use std::sync::atomic::AtomicBool;
 
 use super::background::Background;
 use super::picture_cache;
-use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource, load, thumbnail};
+use crate::import::environment::load;
+use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource, thumbnail};
 
 /// Columns and rows of a thumbnail.
 pub const SIZE: [u32; 2] = [256, 128];

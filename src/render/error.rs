@@ -2,7 +2,7 @@
 
 use super::memory;
 use crate::gpu::GpuError;
-use crate::scene::ModelError;
+use crate::import::ModelError;
 use crate::scene::environment::EnvironmentError;
 
 /// Why a session refuses a document or fails.

@@ -2,10 +2,10 @@
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
+pub use crate::import::LIMIT_VARIABLE;
 use crate::job::Job;
 use crate::job::effect::EffectId;
 use crate::job::film::Extras;
-pub use crate::scene::LIMIT_VARIABLE;
 
 /// Bytes per pixel besides the film: the mean image, the display image and the file's image.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;

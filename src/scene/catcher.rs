@@ -11,9 +11,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::area_shape::AreaShape;
 use super::environment::{Environment, environment_local_from_world, environment_radiance};
 use super::ground::HALF_SIDE;
-use super::light::AreaShape;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::NODE_LENGTH;
 use crate::optics::vector::{Vec3, vec3};
@@ -245,8 +245,8 @@ pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::environment::{self, EnvironmentSource};
-    use crate::scene::light::Outline;
+    use crate::scene::Outline;
+    use crate::scene::environment::EnvironmentSource;
 
     #[test]
     fn form_factors_of_triangles_are_those_of_quadrature() {
@@ -284,7 +284,7 @@ mod tests {
 
     #[test]
     fn a_plane_under_a_uniform_environment_shows_its_radiance() {
-        let environment = environment::load(&EnvironmentSource::Furnace).expect("loads");
+        let environment = EnvironmentSource::Furnace.computed().expect("loads");
         let light = CatcherLight {
             environment: &environment,
             rotation: [1.0, 0.0],
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_spot_lights_what_its_cone_holds() {
-        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let environment = EnvironmentSource::Studio.computed().expect("loads");
         let shape = AreaShape {
             yaw_deg: 0.0,
             pitch_deg: 90.0,
@@ -342,7 +342,7 @@ mod tests {
 
     #[test]
     fn a_sphere_lights_from_its_near_side() {
-        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let environment = EnvironmentSource::Studio.computed().expect("loads");
         let light = CatcherLight {
             environment: &environment,
             rotation: [1.0, 0.0],
@@ -371,7 +371,7 @@ mod tests {
 
     #[test]
     fn tables_with_lights_are_near_the_true_light() {
-        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let environment = EnvironmentSource::Studio.computed().expect("loads");
         let shape = AreaShape {
             yaw_deg: 30.0,
             pitch_deg: 35.0,

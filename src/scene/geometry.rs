@@ -7,12 +7,12 @@ use fearless_simd::Level;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::area_shape::AreaShape;
 use super::coarse::is_coarse;
 use super::convex::is_convex;
 use super::ground::Ground;
 use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Wide};
 use super::intersect::{Hit, RayFrame};
-use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
 use super::memory::prefetch;
 use super::mesh::Mesh;
@@ -46,6 +46,7 @@ pub struct Geometry {
     /// See [`Geometry::is_coarse`].
     model_is_coarse: bool,
     /// Centre of the model's bounding box, in world units.
+    /// Centre of the bounding box, in world space.
     pub center_world: DVec3,
     /// Bounding radius of the model in world units: from that centre to the farthest vertex of a triangle; 1 without
     /// triangles.
@@ -53,6 +54,7 @@ pub struct Geometry {
     /// Bounds of the model (without ground and area lights): lowest and highest corner, in world units.
     pub bounds_world: [DVec3; 2],
     /// Triangles left out because a corner is not finite.
+    /// Number of triangles with a corner that is not finite.
     pub dropped_not_finite: usize,
     /// Triangles left out because they have no area.
     pub dropped_no_area: usize,
@@ -381,17 +383,20 @@ impl Geometry {
 }
 
 /// The traceable triangles of a mesh and their bounding sphere.
-pub(super) struct Framing {
+pub struct Framing {
     /// Number of triangles with finite corners and an area.
     pub usable: usize,
+    /// Number of triangles with a corner that is not finite.
     pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
+    /// Centre of the bounding box, in world space.
     pub center_world: DVec3,
     /// See [`Geometry::world_units_per_unit`].
     pub world_units_per_unit: f64,
 }
 
 impl Framing {
+    /// The framing of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let corners = || {
             let triangles = (0..mesh.triangles.len()).into_par_iter();

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Default memory of one import, in bytes.
-pub(super) const USUAL: u64 = 8 << 30;
+pub const USUAL: u64 = 8 << 30;
 
 /// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]
@@ -88,7 +88,7 @@ impl Loading {
     }
 
     /// Keeps the name of a file that was not allowed, once.
-    pub(super) fn refuse(&self, file: &Path) {
+    pub fn refuse(&self, file: &Path) {
         let mut refused = self.0.refused.lock().unwrap_or_else(PoisonError::into_inner);
         if !refused.iter().any(|known| known == file) {
             refused.push(file.to_owned());
@@ -101,14 +101,14 @@ impl Loading {
     }
 
     /// The items until cancelled: for long loops whose result is discarded then.
-    pub(super) fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
+    pub fn while_wanted<I: Iterator>(&self, items: I) -> impl Iterator<Item = I::Item> {
         const BETWEEN: usize = 1 << 12;
         let is_wanted = |(place, _): &(usize, I::Item)| place % BETWEEN != 0 || self.check().is_ok();
         items.enumerate().take_while(is_wanted).map(|(_, item)| item)
     }
 
     /// The source, failing once cancelled: it ends long reads and parsers.
-    pub(super) fn watched<R: Read>(&self, source: R) -> Watched<'_, R> {
+    pub fn watched<R: Read>(&self, source: R) -> Watched<'_, R> {
         let loading = self;
         Watched { loading, source }
     }
@@ -119,7 +119,7 @@ impl Loading {
 }
 
 /// A source that fails once cancelled.
-pub(super) struct Watched<'a, R> {
+pub struct Watched<'a, R> {
     loading: &'a Loading,
     source: R,
 }

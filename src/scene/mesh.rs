@@ -61,7 +61,7 @@ impl Mesh {
     }
 
     /// Adds a vertex like another one and gives its index.
-    pub(super) fn copy_vertex(&mut self, from: usize) -> u32 {
+    pub fn copy_vertex(&mut self, from: usize) -> u32 {
         let index = self.push_vertex(
             self.positions[from],
             self.normals[from],

@@ -1,17 +1,15 @@
 //! Models: sources, and the loaded mesh with material slots and texture maps.
 
 use std::fmt;
-use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::loading::{Cancelled, Loading};
 use super::mesh::Mesh;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
-use super::{import, shapes, still_life, teapot};
+use super::{shapes, still_life, teapot};
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
 /// such a name is written with its folder (`./teapot`).
@@ -29,7 +27,7 @@ pub enum ModelSource {
     Shaderball,
     /// A teapot, a bowl, a ball and a bead, each in a slot of its own.
     StillLife,
-    /// A file with one of [`MODELS`](super::endings::MODELS), or a folder with such files.
+    /// A file of one of the formats that are read, or a folder with such files.
     File(PathBuf),
 }
 
@@ -127,6 +125,40 @@ pub struct ModelObject {
 }
 
 impl Model {
+    /// The built-in model of a source; `None` for a file.
+    pub fn built_in(source: &ModelSource) -> Option<Self> {
+        let (mesh, slots): (Mesh, &[&str]) = match source {
+            ModelSource::Teapot => (teapot::mesh(teapot::DEFAULT_SEGMENTS), &["teapot"]),
+            ModelSource::Sphere => (shapes::sphere(192, 96), &["sphere"]),
+            ModelSource::Plane => (shapes::plane(), &["plane"]),
+            ModelSource::Shaderball => (shapes::shaderball(), &["body", "stand"]),
+            ModelSource::StillLife => (still_life::mesh(), &still_life::PARTS),
+            ModelSource::File(_) => return None,
+        };
+        let mut model = Self {
+            name: source.to_string(),
+            mesh,
+            slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
+            ..Self::default()
+        };
+        if *source == ModelSource::StillLife {
+            // Each part is an object, beside its slot.
+            model.objects = still_life::objects(&model.mesh);
+        }
+        model.name_its_whole();
+        Some(model)
+    }
+
+    /// Makes the whole mesh one object if the file names none.
+    pub fn name_its_whole(&mut self) {
+        if self.objects.is_empty() {
+            self.objects = vec![ModelObject {
+                name: self.name.clone(),
+                triangles: 0..self.mesh.triangles.len(),
+            }];
+        }
+    }
+
     /// The number of the object that a triangle of the mesh belongs to.
     pub fn object_of(&self, triangle: usize) -> Option<usize> {
         let object = self.objects.partition_point(|object| object.triangles.end <= triangle);
@@ -145,7 +177,7 @@ impl Model {
     }
 
     /// Appends another model, in its own file's space.
-    pub(super) fn join(&mut self, mut other: Self) {
+    pub fn join(&mut self, mut other: Self) {
         let (slots, textures) = (self.slots.len() as u32, self.textures.len());
         other.mesh.slots.iter_mut().for_each(|slot| *slot += slots);
         for slot in &mut other.slots {
@@ -153,13 +185,7 @@ impl Model {
                 .for_each(|reference| reference.texture += textures);
         }
         let first = self.mesh.triangles.len();
-        let triangles = other.mesh.triangles.len();
-        if other.objects.is_empty() {
-            other.objects = vec![ModelObject {
-                name: other.name.clone(),
-                triangles: 0..triangles,
-            }];
-        }
+        other.name_its_whole();
         self.objects.extend(other.objects.into_iter().map(|object| ModelObject {
             triangles: first + object.triangles.start..first + object.triangles.end,
             ..object
@@ -450,146 +476,4 @@ impl fmt::Debug for Texture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Texture({:?}, {} × {})", self.name, self.width, self.height)
     }
-}
-
-/// Why a model could not be loaded.
-#[derive(Debug, thiserror::Error)]
-pub enum ModelError {
-    /// The file itself cannot be read.
-    #[error("{}: cannot read this model: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The model file.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
-    /// Neither GLB nor JSON.
-    #[error("{}: not a glTF 2.0 file ({reason}); export the model as .glb or .gltf", path.display())]
-    NotGltf {
-        /// The model file.
-        path: PathBuf,
-        /// Reason of the reader, in words.
-        reason: String,
-    },
-    /// The file ends too early.
-    #[error("{}: cut short: {actual} bytes of {expected}; copy or download the file again", path.display())]
-    Truncated {
-        /// The model file.
-        path: PathBuf,
-        /// Bytes that its header promises.
-        expected: u64,
-        /// Bytes that are there.
-        actual: u64,
-    },
-    /// Contents that break the rules of the format.
-    #[error("{}: damaged: {reason}; export the model again", path.display())]
-    Invalid {
-        /// The model file.
-        path: PathBuf,
-        /// The violated rule.
-        reason: String,
-    },
-    /// Nothing to render, because a referenced file is missing.
-    #[error("{}: nothing to show; {reason}; put what is missing beside the model, or export as .glb", path.display())]
-    Incomplete {
-        /// The model file.
-        path: PathBuf,
-        /// The missing part.
-        reason: String,
-    },
-    /// The file needs an unsupported extension.
-    #[error("{}: needs the glTF extension {name}, which is not supported; {remedy}", path.display())]
-    Extension {
-        /// The model file.
-        path: PathBuf,
-        /// The extension.
-        name: String,
-        /// Remedy, as an instruction to the user.
-        remedy: &'static str,
-    },
-    /// A referenced buffer or image is missing or unreadable.
-    #[error("{}: cannot use {resource}: {reason}; put it beside the model or export as .glb", path.display())]
-    Resource {
-        /// The model file.
-        path: PathBuf,
-        /// The file or image referred to.
-        resource: String,
-        /// Fault of the resource.
-        reason: String,
-    },
-    /// A folder or an archive without a model.
-    #[error("{}: no model in it; models are {}", path.display(), super::endings::MODELS.join(", "))]
-    NoModelInside {
-        /// The folder or archive.
-        path: PathBuf,
-    },
-    /// Loading was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// The scene has no triangles to render.
-    #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
-    NoTriangles {
-        /// The model file.
-        path: PathBuf,
-    },
-}
-
-/// Loads a model. Blocks while reading and decoding; never panics on a damaged file.
-///
-/// # Errors
-///
-/// One line with the file, the fault and the remedy, if there is nothing to show.
-pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
-    load_with(source, &ModelOptions::default())
-}
-
-/// The same with options.
-///
-/// # Errors
-///
-/// As [`load`].
-pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, ModelError> {
-    load_watched(source, options, &Loading::default())
-}
-
-/// The same with progress and cancellation.
-///
-/// # Errors
-///
-/// As [`load`], and if cancelled.
-pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
-    let built_in = |mesh: Mesh, slots: &[&str]| Model {
-        name: source.to_string(),
-        mesh,
-        slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
-        ..Model::default()
-    };
-    let mut model = match source {
-        ModelSource::Teapot => built_in(teapot::mesh(teapot::DEFAULT_SEGMENTS), &["teapot"]),
-        ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
-        ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
-        ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
-        ModelSource::StillLife => {
-            let (mesh, parts) = still_life::mesh();
-            let objects = still_life::PARTS
-                .iter()
-                .zip(parts)
-                .map(|(name, triangles)| ModelObject {
-                    name: (*name).to_owned(),
-                    triangles,
-                });
-            Model {
-                objects: objects.collect(),
-                ..built_in(mesh, &still_life::PARTS)
-            }
-        }
-        ModelSource::File(path) => import::load(path, options, loading)?,
-    };
-    if model.objects.is_empty() {
-        model.objects = vec![ModelObject {
-            name: model.name.clone(),
-            triangles: 0..model.mesh.triangles.len(),
-        }];
-    }
-    Ok(model)
 }

@@ -1,10 +1,9 @@
 //! The still life that the editor begins with: the teapot with a bowl, a ball and a bead, each of a material of its own.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
 use super::mesh::Mesh;
+use super::model::ModelObject;
 use super::{shapes, teapot};
 
 /// The slots, which are the objects as well, from the largest on.
@@ -15,8 +14,8 @@ const BOWL: DVec3 = DVec3::new(2.05, 0.0, 2.4);
 const BALL: (DVec3, f64) = (DVec3::new(-1.25, 0.68, 2.45), 0.68);
 const BEAD: (DVec3, f64) = (DVec3::new(0.2, 0.36, 2.95), 0.36);
 
-/// The mesh, and each part's triangles.
-pub(super) fn mesh() -> (Mesh, [Range<usize>; 4]) {
+/// The mesh: part after part.
+pub(super) fn mesh() -> Mesh {
     let parts = [
         teapot::mesh(teapot::DEFAULT_SEGMENTS),
         moved(shapes::bowl(1), BOWL, 1.0),
@@ -24,12 +23,18 @@ pub(super) fn mesh() -> (Mesh, [Range<usize>; 4]) {
         of_slot(moved(shapes::sphere(64, 32), BEAD.0, BEAD.1), 3),
     ];
     let mut whole = Mesh::default();
-    let ranges = parts.map(|part| {
-        let begin = whole.triangles.len();
-        whole.append(part);
-        begin..whole.triangles.len()
-    });
-    (whole, ranges)
+    parts.into_iter().for_each(|part| whole.append(part));
+    whole
+}
+
+/// The parts as objects of the mesh.
+pub(super) fn objects(mesh: &Mesh) -> Vec<ModelObject> {
+    let begin = |slot: usize| mesh.slots.partition_point(|of| (*of as usize) < slot);
+    let object = |(slot, name): (usize, &&str)| ModelObject {
+        name: (*name).to_owned(),
+        triangles: begin(slot)..begin(slot + 1),
+    };
+    PARTS.iter().enumerate().map(object).collect()
 }
 
 fn moved(mut mesh: Mesh, to: DVec3, scale: f64) -> Mesh {
@@ -44,12 +49,15 @@ fn of_slot(mut mesh: Mesh, slot: u32) -> Mesh {
 
 #[cfg(test)]
 mod tests {
+    use std::ops::Range;
+
     use super::*;
 
     /// Every part stands on the ground, is closed, has a slot of its own, and touches no other.
     #[test]
     fn the_parts_stand_beside_each_other() {
-        let (mesh, ranges) = mesh();
+        let mesh = mesh();
+        let ranges: Vec<Range<usize>> = objects(&mesh).into_iter().map(|object| object.triangles).collect();
         let places = |range: &Range<usize>| {
             range
                 .clone()

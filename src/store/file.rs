@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
-use crate::scene::resource;
+use crate::import::resource;
 
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use super::exchange::FORMATS;
+use crate::import::endings::{LIGHT, MODELS, PARTS, PICTURES, has_ending};
 use crate::named::named;
-use crate::scene::endings::{LIGHT, MODELS, PARTS, PICTURES, has_ending};
 
 named! {
     /// What a file holds, as its ending says.

@@ -11,7 +11,7 @@ use super::error::SIZE_MAX;
 use super::project;
 use super::{FileError, Loaded};
 use crate::document::Document;
-use crate::scene::resource;
+use crate::import::resource;
 
 /// The keyword of the chunk.
 pub const KEYWORD: &str = "glossmith";

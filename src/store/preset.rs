@@ -16,7 +16,7 @@ use crate::document::parameter::nearest_key;
 use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
 };
-use crate::scene::kept_keys;
+use crate::import::kept_keys;
 use crate::scene::texture::TextureTarget;
 
 /// The version of the format.

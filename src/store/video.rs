@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::FileError;
 use super::mp4::{self, Mp4};
 use super::replace::save_atomically;
-use crate::scene::endings::ending;
+use crate::import::endings::ending;
 
 /// Frames a second that a video may have.
 pub const FPS: std::ops::RangeInclusive<f64> = 1.0..=120.0;

@@ -565,7 +565,7 @@ fn tilts() -> Vec<Case> {
         [(1.5 + x) as f32, 1.5, 1.5, 1.0]
     };
     let map = Environment::from_texels("slope", 512, 256, (0..512 * 256).map(texel).collect()).unwrap();
-    let mut model = glossmith::scene::load(&ModelSource::Plane).unwrap();
+    let mut model = glossmith::import::load(&ModelSource::Plane).unwrap();
     let codes = [204_u8, 128, 230];
     model.textures = vec![Texture {
         name: "tilt".to_owned(),

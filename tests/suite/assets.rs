@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glossmith::render::Assets;
 use glossmith::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
-use glossmith::scene::light::{AreaShape, Outline};
+use glossmith::scene::{AreaShape, Outline};
 use glossmith::scene::{Geometry, Model, ModelOptions, ModelSource};
 
 const SOURCES: [ModelSource; 3] = [ModelSource::Sphere, ModelSource::Plane, ModelSource::Shaderball];

@@ -36,7 +36,7 @@ fn brushed(folder: &Folder, side: f32) -> ModelSource {
 /// The mean radiance of the square, seen along the z axis from in front of it (1) or behind it (−1), under a light 40 degrees
 /// from that axis, above and to the side `x` of it.
 fn shine(engine: EngineChoice, model: &ModelSource, front: f64, x: f64) -> f64 {
-    let opened = glossmith::scene::load(model).unwrap();
+    let opened = glossmith::import::load(model).unwrap();
     let mut lit = Document {
         materials: materials_of(&opened, ImportLobe::Ggx),
         ..document(model.clone(), Default::default(), &[])
@@ -93,7 +93,7 @@ fn the_rotation_is_towards_the_bitangent_on_both_faces() {
 fn both_sides_are_brushed_along_the_same_line() {
     let folder = Folder::new();
     for side in [1.0, -1.0] {
-        let model = glossmith::scene::load(&brushed(&folder, side)).unwrap();
+        let model = glossmith::import::load(&brushed(&folder, side)).unwrap();
         let (materials, _) = compile(&materials_of(&model, ImportLobe::Ggx));
         let materials: Vec<_> = materials.iter().map(|material| material.cast::<f64>()).collect();
         let (geometry, textures) = (Geometry::build(&model, false), Textures::new(&model));

@@ -16,8 +16,6 @@ const STANDING: &[&str] = &[
     "src/optics: elementary real",
     "src/optics: fresnel lobe microfacet refraction",
     "src/render/denoise: filter library",
-    "src/scene: environment geometry gltf import light model obj picture ply stl surface texture",
-    "src/scene/gltf: accessor compressed container draco",
     "src/scene/hierarchy: interval packet",
 ];
 
@@ -141,7 +139,12 @@ fn declared_in<'a>(modules: &'a Modules, from: &[String], path: &[String], depth
     let imported = |module: &[String], name: &String| modules[module].imports.get(name).filter(|_| depth > 0);
     let (first, mut rest) = path.split_first()?;
     let mut at = match first.as_str() {
-        "crate" | "glossmith_engine" => modules.get_key_value(&[][..])?.0,
+        "glossmith_engine" => modules.get_key_value(&[][..])?.0,
+        "crate" => {
+            // A package of its own.
+            let root = from.get(..1).filter(|folder| folder[0] == "import").unwrap_or_default();
+            modules.get_key_value(root)?.0
+        }
         "self" => from,
         "super" => {
             let parent = modules.get_key_value(from.split_last()?.1)?.0;

@@ -7,7 +7,8 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
 };
-use glossmith::scene::environment::{Environment, EnvironmentError, EnvironmentSource, load};
+use glossmith::import::environment::load;
+use glossmith::scene::environment::{Environment, EnvironmentError, EnvironmentSource};
 use image::codecs::hdr::HdrEncoder;
 use proptest::prelude::{ProptestConfig, any, proptest};
 use tempfile::TempDir;
@@ -523,7 +524,7 @@ fn colours_of_wider_spaces_are_converted() {
         if name == "plain.exr" {
             exr_file(&folder, name, &RGB, "float", Compression::Uncompressed);
         }
-        glossmith::scene::texture::mean_of_file(&path).expect("loads").linear
+        glossmith::import::picture::mean_of_file(&path).expect("loads").linear
     });
     assert!(plain != wide, "{plain:?}");
 }

@@ -4,10 +4,9 @@
 use std::path::Path;
 
 use exr::prelude::{Blocks, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Vec2, WritableImage};
+use glossmith::import::environment::{load, load_encoded};
 use glossmith::optics::vector::vec3;
-use glossmith::scene::environment::{
-    Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance, load, load_encoded,
-};
+use glossmith::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance};
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, Luma, Rgb};
 use tempfile::TempDir;

@@ -1,9 +1,10 @@
 //! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
 
 use glossmith::document::MaterialSettings;
+use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
-use glossmith::scene::{ModelSource, gltf_from_widths, load};
+use glossmith::scene::ModelSource;
 use glossmith::store::exchange::report::Outcome;
 use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
 use glossmith::store::{save_document, save_material};

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use glossmith::scene::environment::{Environment, EnvironmentSource, load};
+use glossmith::import::environment::load;
+use glossmith::scene::environment::{Environment, EnvironmentSource};
 use tempfile::TempDir;
 
 const SIZE: [usize; 2] = [4, 2];

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 use glossmith::cli::Arguments;
+use glossmith::import::picture::mean_of_file;
 use glossmith::render::output;
-use glossmith::scene::environment::{self, EnvironmentSource};
-use glossmith::scene::texture::mean_of_file;
+use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
 use glossmith::store::file_kind::{FileKind, MATERIAL_KINDS, OPENED, PICTURE_KINDS, endings, may_hold_document};
@@ -45,7 +45,7 @@ fn every_picture_is_read_as_an_environment_and_as_a_texture() {
     for ending in endings(PICTURE_KINDS) {
         let path = folder.path().join(format!("picture.{ending}"));
         std::fs::write(&path, picture(ending)).unwrap();
-        let environment = environment::load(&EnvironmentSource::File(path.clone()));
+        let environment = glossmith::import::environment::load(&EnvironmentSource::File(path.clone()));
         assert!(
             environment.is_ok(),
             ".{ending} as an environment: {}",

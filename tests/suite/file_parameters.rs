@@ -1,7 +1,8 @@
 //! Tables of what becomes of a file's parameters: none of them is dropped in silence.
 
 use glossmith::document::{ImportLobe, MaterialSettings};
-use glossmith::scene::{Fate, FileParameter, Goes, MTL_PARAMETERS, Model};
+use glossmith::import::{FileParameter, Goes, MTL_PARAMETERS};
+use glossmith::scene::{Fate, Model};
 use glossmith::store::exchange::report::Entry;
 use glossmith::store::exchange::{ReadOptions, SURFACES, read};
 

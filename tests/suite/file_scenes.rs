@@ -5,10 +5,11 @@ use std::f64::consts::PI;
 
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{AreaLightShape, Document, ImportLobe};
+use glossmith::import::load;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Fate, LIGHTS_MAX, Model, ModelSource, load};
+use glossmith::scene::{Fate, LIGHTS_MAX, Model, ModelSource};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, glb, square};

@@ -181,7 +181,7 @@ fn flat_triangles_need_no_vertices_of_their_own() {
     let place = Workplace::new();
     place.write("shared.glb", &std::fs::read(folder.path("shared.glb")).unwrap());
     place.done("convert shared.glb written.glb");
-    let written = glossmith::scene::load(&ModelSource::File(place.path("written.glb")))
+    let written = glossmith::import::load(&ModelSource::File(place.path("written.glb")))
         .expect("loads")
         .mesh;
     for triangle in 0..written.triangles.len() {

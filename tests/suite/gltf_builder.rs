@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::PathBuf;
 
+use glossmith::import::{ModelError, load};
 use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Model, ModelError, ModelSource, load};
+use glossmith::scene::{Model, ModelSource};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

@@ -1,6 +1,7 @@
 //! What is said about files that cannot be loaded; that no file makes the loader panic.
 
-use glossmith::scene::{Fate, Geometry, Model, ModelError, ModelSource, load};
+use glossmith::import::{ModelError, load};
+use glossmith::scene::{Fate, Geometry, Model, ModelSource};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Folder, glb, png, square};

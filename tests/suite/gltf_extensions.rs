@@ -8,7 +8,8 @@ use draco_gltf::{
 };
 use glam::DVec3;
 use glossmith::document::{AreaLightShape, Document};
-use glossmith::scene::{Fate, LightKind, Model, ModelOptions, ModelSource, load_with};
+use glossmith::import::load_with;
+use glossmith::scene::{Fate, LightKind, Model, ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, SQUARE, glb, square};

@@ -2,8 +2,9 @@
 
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{ImportLobe, MaterialSettings};
+use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
-use glossmith::scene::{Fate, Model, ModelOptions, gltf_from_widths, widths_from_gltf};
+use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Folder, assert_mirrored_tangents, mirrored_squares, png, square};

@@ -2,9 +2,10 @@
 
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{Background, Document, ImportLobe};
+use glossmith::import::{GLTF_PARAMETERS, Goes, load};
 use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Fate, GLTF_PARAMETERS, Goes, ModelOptions, ModelSource, load};
+use glossmith::scene::{Fate, ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
 use super::cli_support::Workplace;

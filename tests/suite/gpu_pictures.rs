@@ -1,10 +1,12 @@
 //! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, TIFF of halves, floats and
 //! doubles, textures of 16 bits and of light.
 
+use glossmith::import::environment::{load, load_encoded};
+use glossmith::import::{load as load_model, load_with};
 use glossmith::optics::material::NO_TEXTURE;
-use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource, load, load_encoded};
+use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use glossmith::scene::texture::{Textures, texture_lookup};
-use glossmith::scene::{Fate, Model, ModelOptions, ModelSource, load as load_model, load_with};
+use glossmith::scene::{Fate, Model, ModelOptions, ModelSource};
 use half::f16;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::{Value, json};
@@ -384,7 +386,7 @@ fn old_layouts_of_dds_are_read() {
     let path = folder.path("old.dds");
     let read = |bytes: Vec<u8>| {
         std::fs::write(&path, bytes).unwrap();
-        glossmith::scene::texture::mean_of_file(&path).map(|mean| mean.codes.map(|code| (255.0 * code).round() as u8))
+        glossmith::import::picture::mean_of_file(&path).map(|mean| mean.codes.map(|code| (255.0 * code).round() as u8))
     };
     let (with_opacity, alone, code, colors, grey) = (1, 2, 4, 0x40, 0x2_0000);
     let by_masks = |flags, bits, masks, texels: &[u8]| read(dds_of_masks(flags, [0; 4], bits, masks, texels));

@@ -3,9 +3,10 @@
 
 use fearless_simd::Level;
 use glam::{DVec3, Vec3, Vec4};
+use glossmith::import::load;
 use glossmith::instructions::Instructions;
 use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, load, ray_octant, shapes, teapot};
+use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, ray_octant, shapes, teapot};
 use rayon::prelude::*;
 
 use super::cli_support::Workplace;

@@ -7,9 +7,10 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{Document, ImportLobe};
+use glossmith::import::load;
 use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Model, ModelOptions, ModelSource, load};
+use glossmith::scene::{Model, ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
 use super::cli_support::Workplace;

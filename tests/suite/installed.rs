@@ -56,7 +56,7 @@ fn it_is_installed_for_the_user_and_taken_away_again() {
     for kind in opened {
         assert!(kinds.contains(&format!("type=\"{kind}\"")), "{kind} is not declared");
     }
-    for ending in glossmith::scene::endings::MODELS
+    for ending in glossmith::import::endings::MODELS
         .iter()
         .filter(|ending| !ending.ends_with("zip"))
     {

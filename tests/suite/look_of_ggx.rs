@@ -149,7 +149,7 @@ fn slab_before_stripe(folder: &Folder, ior: f32) -> ModelSource {
 /// Radiance in the middle, and the root mean square distance of the light from it in pixels, of 65 columns.
 fn stripe(engine: EngineChoice, model: &ModelSource, lobe: ImportLobe) -> [f64; 2] {
     const SIDE: usize = 65;
-    let opened = glossmith::scene::load(model).unwrap();
+    let opened = glossmith::import::load(model).unwrap();
     let mut seen = Document {
         materials: materials_of(&opened, lobe),
         ..document(model.clone(), Default::default(), &[])

@@ -3,7 +3,8 @@
 use std::io::Write;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::scene::{Fate, Model, ModelSource, Wrap, load};
+use glossmith::import::load;
+use glossmith::scene::{Fate, Model, ModelSource, Wrap};
 
 use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
+use glossmith::import::{ModelError, load_watched, load_with};
 use glossmith::render::Assets;
-use glossmith::scene::environment::{self, EnvironmentEncoding, EnvironmentSource};
-use glossmith::scene::{Fate, Geometry, Loading, ModelError, ModelOptions, ModelSource, load_watched, load_with};
+use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use glossmith::scene::{Fate, Geometry, Loading, ModelOptions, ModelSource};
 use glossmith::store::{load_document, save_document};
 use serde_json::json;
 
@@ -113,7 +114,8 @@ fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
     write_exr(&exr, 8, 4, |_, _| [1.0; 3]);
     for path in [hdr, exr] {
         let source = EnvironmentSource::File(path);
-        let load = |loading| environment::load_watched(&source, EnvironmentEncoding::Display, loading);
+        let load =
+            |loading| glossmith::import::environment::load_watched(&source, EnvironmentEncoding::Display, loading);
         loading.begin();
         assert!(load(&loading).is_ok());
         assert!(loading.doing().contains("distribution"), "{}", loading.doing());

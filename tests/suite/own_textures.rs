@@ -13,7 +13,7 @@ use glossmith::scene::texture::{
     Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture,
     mapped_normal, texture_lookup, uvs_at,
 };
-use glossmith::scene::{self, Geometry, Model, ModelSource, Texture};
+use glossmith::scene::{Geometry, Model, ModelSource, Texture};
 use glossmith::store::{PRESETS, load_document, load_material, save_document, save_material};
 use image::{Rgba, RgbaImage};
 use serde_json::json;
@@ -257,7 +257,7 @@ fn normals_turn_with_their_picture() {
 /// Seen from each of six sides a picture is upright and not mirrored.
 #[test]
 fn on_a_box_a_picture_is_upright_from_every_side() {
-    let model = scene::load(&ModelSource::Sphere).unwrap();
+    let model = glossmith::import::load(&ModelSource::Sphere).unwrap();
     let geometry = Geometry::build(&model, false);
     // Outwards, to the right and up as seen from outside.
     let sides = [
@@ -576,7 +576,7 @@ fn pictures_of_ones_own_travel_in_gltf() {
     assert!(told.contains("no projection from the sides of a box"), "{told}");
     let mut there = document.clone();
     there.model = ModelSource::File(place.path("scene.glb"));
-    let model = scene::load(&there.model).unwrap();
+    let model = glossmith::import::load(&there.model).unwrap();
     assert_eq!(model.textures.len(), 3, "{:?}", model.slots[0]);
     there.materials = glossmith::document::of_model::materials_of(&model, glossmith::document::ImportLobe::Ggx);
     there.materials[0].fresnel = document.materials[0].fresnel;

@@ -2,11 +2,12 @@
 //! values, on both engines; the cyclorama's wall stands where it should.
 
 use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
+use glossmith::import::load;
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Geometry, ModelSource, load};
+use glossmith::scene::{Geometry, ModelSource};
 
 use crate::cli_support::Workplace;
 use crate::renders::{assert_same_picture, document, render};

@@ -1,7 +1,8 @@
 //! Files from strangers: what they may name, and what becomes of what they may not.
 
 use glossmith::document::Document;
-use glossmith::scene::{Loading, ModelOptions, ModelSource, load_watched};
+use glossmith::import::load_watched;
+use glossmith::scene::{Loading, ModelOptions, ModelSource};
 use glossmith::store::save_document;
 use serde_json::{Value as Json, json};
 

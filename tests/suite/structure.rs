@@ -12,17 +12,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("say", &[]),
     ("optics", &["named"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
+    ("import", &["panics", "optics", "scene"]),
     ("job", &["named", "optics", "scene"]),
     ("cpu", &["named", "instructions", "optics", "scene", "job"]),
     ("gpu", &["named", "optics", "scene", "job"]),
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
-    ("document", &["named", "optics", "scene", "job", "analysis", "plot"]),
-    ("store", &["named", "optics", "scene", "analysis", "document"]),
+    (
+        "document",
+        &["named", "optics", "scene", "import", "job", "analysis", "plot"],
+    ),
+    ("store", &["named", "optics", "scene", "import", "analysis", "document"]),
     (
         "render",
         &[
             "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "store",
+            "import",
         ],
     ),
     (
@@ -33,6 +38,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "instructions",
             "optics",
             "scene",
+            "import",
             "job",
             "analysis",
             "plot",
@@ -44,7 +50,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "app",
         &[
-            "named", "panics", "optics", "scene", "job", "analysis", "plot", "document", "store", "render",
+            "named", "panics", "optics", "scene", "import", "job", "analysis", "plot", "document", "store", "render",
         ],
     ),
 ];

@@ -233,7 +233,7 @@ fn pictures_that_are_too_large_are_halved() {
 fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
     let path = folder.path("square.glb");
     std::fs::write(&path, glb(json, &buffer.bytes)).unwrap();
-    let model = glossmith::scene::load(&ModelSource::File(path.clone())).unwrap();
+    let model = glossmith::import::load(&ModelSource::File(path.clone())).unwrap();
     let mut document = Document {
         model: ModelSource::File(path),
         materials: model

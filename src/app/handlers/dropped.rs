@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use crate::app::App;
 use crate::app::actions::Action;
+use crate::import::{endings, environment};
+use crate::import::{holds_model, is_model};
 use crate::render::worker::Level;
-use crate::scene::environment::{self, EnvironmentSource};
+use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::{UserTexture, set};
-use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
+use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::file_kind::{FileKind, may_hold_document};
 
 /// What was dropped on the window in this frame and, where text may be taken, pasted.
@@ -44,7 +46,7 @@ pub(in crate::app) fn textures_in(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() || holds_model(path) {
         return Vec::new();
     }
-    let pictures = set::pictures_in(path);
+    let pictures = endings::pictures_in(path);
     let (found, _) = set::recognised(&pictures);
     if found.is_empty() { Vec::new() } else { pictures }
 }

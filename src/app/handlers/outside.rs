@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
-use crate::scene::resource;
+use crate::import::resource;
 
 impl App {
     /// Asks about files that a file names, which is opened again once they are allowed.

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::import::endings::is_picture;
 use crate::render::background::Background;
-use crate::scene::endings::is_picture;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::file_kind::may_hold_document;
 

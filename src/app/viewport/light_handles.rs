@@ -12,7 +12,7 @@ use crate::app::kit::widgets::srgb_of;
 use crate::document::AreaLight;
 use crate::document::light_handle::{LightHandle, Pull, View, handles, nudged, pulled};
 use crate::job::Job;
-use crate::scene::light::Outline;
+use crate::scene::Outline;
 
 /// Side of the square that takes the pointer, points.
 const TARGET: f32 = 20.0;

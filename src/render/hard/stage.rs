@@ -9,6 +9,7 @@ use std::{fs, io};
 use crate::document::effect::EffectSwitches;
 use crate::document::{Document, PixelFilter};
 use crate::gpu::GpuError;
+use crate::import::environment;
 use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
@@ -16,8 +17,8 @@ use crate::render::error::SessionError;
 use crate::render::output::{self, OutputError, Rendered};
 use crate::render::probe::Prober;
 use crate::render::session::Session;
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::{ModelSource, environment};
+use crate::scene::ModelSource;
+use crate::scene::environment::{Environment, EnvironmentSource};
 
 /// Time between two checks for a stop.
 pub(super) const SLICE: Duration = Duration::from_millis(100);
@@ -191,7 +192,7 @@ impl Stage {
     /// # Errors
     ///
     /// If it cannot be read.
-    pub fn load_environment(&self, source: &EnvironmentSource) -> Result<environment::Environment, HardError> {
+    pub fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, HardError> {
         Ok(environment::load(source).map_err(SessionError::from)?)
     }
 }

@@ -8,24 +8,13 @@
 //! The functions whose names start with `environment_` have WGSL twins in `shaders/scene/environment.wgsl`.
 
 mod brightest;
-mod canvas;
-mod container;
-mod cube;
-mod decoded;
-mod display_referred;
 mod distribution;
 mod error;
-pub(in crate::scene) mod exr_header;
-mod file;
-mod gain_map;
-mod luminance_chroma;
-mod open_exr;
 mod procedural;
-mod radiance_hdr;
 mod thumbnail;
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::OnceLock;
 
@@ -35,10 +24,8 @@ use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
-use crate::scene::loading::Loading;
 use crate::scene::memory::{in_large_pages, prefetch};
 
-pub use cube::are_faces;
 pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};
 pub use error::EnvironmentError;
@@ -167,6 +154,25 @@ impl EnvironmentSource {
     pub fn built_in(&self) -> Option<&'static BuiltIn> {
         BUILT_IN.iter().find(|built_in| built_in.source == *self)
     }
+
+    /// The map of a built-in environment.
+    ///
+    /// # Errors
+    ///
+    /// One line, if it cannot be computed; [`EnvironmentError::NoName`] for a file.
+    pub fn computed(&self) -> Result<Environment, EnvironmentError> {
+        match self {
+            Self::Product => product(),
+            Self::Studio => studio(),
+            Self::Portrait => portrait(),
+            Self::Rim => rim(),
+            Self::Warehouse => warehouse(),
+            Self::Overcast => overcast(),
+            Self::Sky => sky(&SkyParams::default()),
+            Self::Furnace => furnace(),
+            Self::File(_) => Err(EnvironmentError::NoName),
+        }
+    }
 }
 
 impl FromStr for EnvironmentSource {
@@ -280,50 +286,6 @@ impl Environment {
             };
             Distribution::new(&Luminances::of(&map), 0.0)
         })
-    }
-}
-
-/// Loads or computes an environment. Takes seconds for an 8k file: do not call it on the window's thread.
-///
-/// # Errors
-///
-/// One line with the file's name, the fault and the remedy, for files that cannot be read or shown.
-pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError> {
-    load_encoded(source, EnvironmentEncoding::default())
-}
-
-/// The same with an `encoding` for integer images.
-///
-/// # Errors
-///
-/// As [`load`].
-pub fn load_encoded(
-    source: &EnvironmentSource,
-    encoding: EnvironmentEncoding,
-) -> Result<Environment, EnvironmentError> {
-    load_watched(source, encoding, &Loading::default())
-}
-
-/// The same with progress and cancellation.
-///
-/// # Errors
-///
-/// As [`load`], and if cancelled.
-pub fn load_watched(
-    source: &EnvironmentSource,
-    encoding: EnvironmentEncoding,
-    loading: &Loading,
-) -> Result<Environment, EnvironmentError> {
-    match source {
-        EnvironmentSource::Product => product(),
-        EnvironmentSource::Studio => studio(),
-        EnvironmentSource::Portrait => portrait(),
-        EnvironmentSource::Rim => rim(),
-        EnvironmentSource::Warehouse => warehouse(),
-        EnvironmentSource::Overcast => overcast(),
-        EnvironmentSource::Sky => sky(&SkyParams::default()),
-        EnvironmentSource::Furnace => furnace(),
-        EnvironmentSource::File(path) => file::load(Path::new(path), encoding, loading),
     }
 }
 

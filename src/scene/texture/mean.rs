@@ -1,12 +1,8 @@
 //! Means of texture maps.
 
-use std::path::Path;
-
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
-use crate::scene::budget::Budget;
 use crate::scene::model::Texture;
-use crate::scene::picture::read_texture;
 
 /// Codes of 8 bits.
 const CODES: usize = 256;
@@ -33,15 +29,6 @@ pub fn texture_mean(picture: &Texture) -> TextureMean {
         codes: sums.map(|sum| (sum as f64 / (255.0 * texels)) as f32),
         linear: mean_linear(picture),
     }
-}
-
-/// Mean of a texture map in a file.
-///
-/// # Errors
-///
-/// The fault of the file.
-pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
-    Ok(texture_mean(&read_texture(path, true, u32::MAX, &Budget::default())?))
 }
 
 /// Mean of sRGB codes, linear.

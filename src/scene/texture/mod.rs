@@ -6,7 +6,7 @@
 
 mod mean;
 mod pack;
-pub(super) mod scale;
+pub mod scale;
 pub mod set;
 mod user;
 mod uses;
@@ -23,7 +23,7 @@ use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
-pub use mean::{TextureMean, mean_of_file, texture_mean};
+pub use mean::{TextureMean, texture_mean};
 pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
 pub use user::{TextureChannel, TextureProjection, TextureSpace, TextureTarget, UserTexture};
 pub use uses::TextureAssignment;

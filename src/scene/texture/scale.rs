@@ -71,7 +71,7 @@ fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<
 }
 
 /// A map halved until its sides are at most `side_max`, and the original size if it was larger.
-pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
+pub fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
     let whole = [picture.width, picture.height];
     let mut scaled = picture;
     while scaled.width.max(scaled.height) > side_max.max(1) {

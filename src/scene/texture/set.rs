@@ -4,7 +4,6 @@
 use std::path::{Path, PathBuf};
 
 use super::user::{TextureChannel, TextureTarget, UserTexture};
-use crate::scene::endings::is_picture;
 
 /// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]
@@ -146,17 +145,6 @@ pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, UserTexture)>, V
     let is_used = |path: &PathBuf| found.iter().any(|(_, texture)| texture.file == *path);
     let left = pictures.iter().filter(|path| !is_used(path)).cloned().collect();
     (found, left)
-}
-
-/// The image files directly in a folder, by name.
-pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(folder) else {
-        return Vec::new();
-    };
-    let paths = entries.flatten().map(|entry| entry.path());
-    let mut pictures: Vec<PathBuf> = paths.filter(|path| is_picture(path) && path.is_file()).collect();
-    pictures.sort();
-    pictures
 }
 
 #[cfg(test)]

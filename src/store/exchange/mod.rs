@@ -27,8 +27,9 @@ use super::preset;
 use super::replace::save_atomically;
 use super::{FileError, Loaded};
 use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::scene::endings::ending;
-use crate::scene::{Loading, ModelError};
+use crate::import::ModelError;
+use crate::import::endings::ending;
+use crate::scene::Loading;
 
 pub use self::materialx::{SURFACES, SurfaceKind};
 pub use self::snippet::Language;

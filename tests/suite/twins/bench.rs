@@ -23,7 +23,7 @@ use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
 use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
-use glossmith::scene::{self, Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
+use glossmith::scene::{Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use super::harness::Rng;
@@ -48,7 +48,7 @@ pub struct Scene {
 
 /// The teapot on its ground in the studio, with a material for each combination of lobe, curve and Fresnel model.
 pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-    let mut model = scene::load(&ModelSource::Teapot).unwrap();
+    let mut model = glossmith::import::load(&ModelSource::Teapot).unwrap();
     let mut rng = Rng::new(7);
     let mut coordinates = Rng::new(8);
     let mut coordinate = || coordinates.range(-1.0, 2.0);

@@ -3,7 +3,8 @@
 use serde_json::{Map, Value as Json, json};
 
 use crate::document::MaterialSettings;
-use crate::scene::{AlphaMode, TextureRef, gltf_from_widths};
+use crate::import::gltf_from_widths;
+use crate::scene::{AlphaMode, TextureRef};
 use crate::store::exchange::carried;
 use crate::store::exchange::surface::Surface;
 

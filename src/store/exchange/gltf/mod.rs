@@ -14,9 +14,10 @@ use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown
 use crate::document::ImportLobe;
 use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, MaterialSettings};
-use crate::scene::resource;
+use crate::import::resource;
+use crate::import::{gltf_from_widths, load, load_with};
 use crate::scene::texture::texture_mean;
-use crate::scene::{Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
+use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
 use crate::store::picture::png_bytes;
 
 /// `.glb` and `.gltf`.

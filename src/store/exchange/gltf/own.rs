@@ -1,10 +1,10 @@
 //! Textures of the user's own as pictures of a glTF file, as far as the format can say how they are put on.
 
 use crate::document::MaterialSettings;
+use crate::import::Budget;
+use crate::import::picture::read_texture;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
-use crate::scene::Budget;
-use crate::scene::picture::read_texture;
 use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture, slots_with_coordinates};
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
 use crate::store::exchange::report::Entry;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::Node;
 
+use crate::import::picture::mean_of_file;
+use crate::import::resource::Reach;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::scene::Loading;
-use crate::scene::resource::Reach;
-use crate::scene::texture::mean_of_file;
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;

@@ -5,8 +5,8 @@ use std::path::{Component, Path, PathBuf};
 use roxmltree::Node;
 
 use super::strict::strict;
+use crate::import::resource::Reach;
 use crate::scene::Loading;
-use crate::scene::resource::Reach;
 use crate::store::exchange::xml::{self, escaped};
 
 /// Most files that one document includes, those that these include among them.

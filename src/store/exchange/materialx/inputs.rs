@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::scene::{FileParameter, Goes};
+use crate::import::{FileParameter, Goes};
 use crate::store::exchange::report::Entry;
 
 /// The inputs of a surface that a file sets, and what is lost of them.

@@ -3,9 +3,9 @@
 use super::artistic::edge_tint;
 use super::inputs::Inputs;
 use super::table;
+use crate::import::{FileParameter, widths_from_gltf};
 use crate::optics::fresnel::fresnel_f0;
 use crate::optics::lobe::anisotropy_from_ratio;
-use crate::scene::{FileParameter, widths_from_gltf};
 use crate::store::exchange::open_pbr::{NITS, widening};
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;

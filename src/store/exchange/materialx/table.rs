@@ -1,8 +1,8 @@
 //! What becomes of each input of the surfaces that are read: the tables in docs/FORMATS.md, by which the report tells what
 //! is left out or out of range.
 
-use crate::scene::FileParameter;
-use crate::scene::Goes::{self, Nowhere, To};
+use crate::import::FileParameter;
+use crate::import::Goes::{self, Nowhere, To};
 
 const DISPERSION: Goes = Nowhere("dispersion is not shown yet");
 const FILM: Goes = Nowhere("thin films are not shown yet");

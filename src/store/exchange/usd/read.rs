@@ -1,7 +1,7 @@
 //! Materials of USD's text: each UsdPreviewSurface with its inputs, and the exact parameters where they are carried.
 
 use crate::document::MaterialSettings;
-use crate::scene::Goes;
+use crate::import::Goes;
 use crate::store::exchange::carried;
 use crate::store::exchange::materialx::{Inputs, SurfaceKind};
 use crate::store::exchange::report::Entry;

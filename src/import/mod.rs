@@ -1,0 +1,25 @@
+//! Import of models, textures and environments from files, a package of its own (`src/import/Cargo.toml`): its decoders are
+//! compiled once, and not again when the engine's formulas or the window change.
+
+use glossmith_engine::{optics, panics, scene};
+
+mod budget;
+pub mod endings;
+pub mod environment;
+mod file_parameter;
+mod files;
+mod gltf;
+mod model;
+mod model_error;
+mod obj;
+pub mod picture;
+mod ply;
+pub mod resource;
+mod stl;
+
+pub use budget::{Budget, LIMIT_VARIABLE, OverBudget};
+pub use file_parameter::{FileParameter, Goes};
+pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
+pub use model::{holds_model, is_model, load, load_watched, load_with};
+pub use model_error::ModelError;
+pub use obj::MTL_PARAMETERS;

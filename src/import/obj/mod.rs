@@ -1,0 +1,383 @@
+//! Wavefront OBJ files with their materials (.mtl), by the tobj crate.
+//!
+//! The format is Y up, like ours, with texture coordinates upwards. Its materials are of the 1990s: their exponent becomes
+//! a roughness, and the additions of later exporters (`Pr`, `Pm`, `norm`, …) are taken where they are.
+
+mod lines;
+mod map;
+mod table;
+
+use std::cell::RefCell;
+use std::io::BufReader;
+use std::path::Path;
+
+pub use self::table::MTL_PARAMETERS;
+
+use self::map::Map;
+use glam::{DVec3, Vec2, Vec3, Vec4};
+use tobj::{LoadError, LoadOptions, Material};
+
+use crate::files::Files;
+use crate::model_error::ModelError;
+use crate::panics::contained;
+use crate::picture::Encoded;
+use crate::scene::Loading;
+use crate::scene::mesh::Mesh;
+use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::scale::scaled_to;
+use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
+
+/// Loads the contents of an OBJ file.
+pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+    let report = RefCell::new(ImportReport::default());
+    let load_options = LoadOptions {
+        single_index: true,
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+    };
+    // Some malformed faces make the crate panic.
+    let loaded = contained(|| {
+        tobj::load_obj_buf(
+            &mut BufReader::new(files.import.loading.watched(&*lines::of_model(bytes))),
+            &load_options,
+            |library| read_library(files, library, &report),
+        )
+    });
+    let invalid = |reason: String| ModelError::Invalid {
+        path: path.to_owned(),
+        reason,
+    };
+    files.import.loading.check()?;
+    let (parts, materials) = loaded
+        .ok_or_else(|| invalid("its faces contradict each other".to_owned()))?
+        .map_err(|error: LoadError| invalid(error.to_string()))?;
+    let materials = materials.unwrap_or_default();
+    let mut report = report.into_inner();
+    let mut slots = Slots::new(files, options, &materials);
+    let mut mesh = Mesh::default();
+    let mut objects: Vec<ModelObject> = Vec::new();
+    for (place, part) in parts.iter().enumerate() {
+        files
+            .import
+            .loading
+            .step(format!("mesh {} of {}", place + 1, parts.len()))?;
+        let slot = slots.slot(part.mesh.material_id, &mut report);
+        let normal_texture = slots.slots[slot as usize].normal_texture;
+        let read = read_part(&part.mesh, slot, normal_texture, &files.import.loading);
+        if !read.colors.is_empty() {
+            slots.slots[slot as usize].has_vertex_colors = true;
+            report.note(Fate::Used, "vertex colours", &part.name);
+        }
+        let first = mesh.triangles.len();
+        mesh.append(read);
+        let triangles = first..mesh.triangles.len();
+        match objects.last_mut() {
+            // A part for each of its materials.
+            Some(last) if last.name == part.name => last.triangles.end = triangles.end,
+            _ => objects.push(ModelObject {
+                name: part.name.clone(),
+                triangles,
+            }),
+        }
+    }
+    report.count(Fate::Used, "meshes", "", parts.len());
+    Ok(Model {
+        mesh,
+        slots: slots.slots,
+        textures: slots.textures,
+        objects,
+        report,
+        ..Model::default()
+    })
+}
+
+/// Materials of a library; empty if it is missing.
+fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -> tobj::MTLLoadResult {
+    let name = library.to_string_lossy();
+    match files.read(&name) {
+        Ok(bytes) => {
+            let lines = lines::of_library(&bytes, &name, &mut report.borrow_mut());
+            tobj::load_mtl_buf(&mut lines.as_slice())
+        }
+        Err(error) => {
+            let mut report = report.borrow_mut();
+            report.note(
+                Fate::Missing,
+                format!("a library of materials, grey instead ({error})"),
+                &name,
+            );
+            Ok(Default::default())
+        }
+    }
+}
+
+/// The triangles of one part.
+fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>, loading: &Loading) -> Mesh {
+    let positions = source.positions.as_chunks::<3>().0;
+    let count = positions.len();
+    let normals = source.normals.as_chunks::<3>().0;
+    let uvs = source.texcoords.as_chunks::<2>().0;
+    let colors = source.vertex_color.as_chunks::<3>().0;
+    let in_range = |triangle: &&[u32; 3]| triangle.iter().all(|&vertex| (vertex as usize) < count);
+    let triangles: Vec<[u32; 3]> = source
+        .indices
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .filter(in_range)
+        .copied()
+        .collect();
+    let has_uvs = uvs.len() == count;
+    let mut mesh = Mesh {
+        positions: positions.iter().map(|p| DVec3::from_array(p.map(f64::from))).collect(),
+        normals: vec![Vec3::ZERO; count],
+        uvs: (0..count)
+            .map(|vertex| {
+                if has_uvs {
+                    Vec2::new(uvs[vertex][0], 1.0 - uvs[vertex][1])
+                } else {
+                    Vec2::ZERO
+                }
+            })
+            .collect(),
+        tangents: vec![Vec4::W; count],
+        slots: vec![slot; triangles.len()],
+        triangles,
+        ..Mesh::default()
+    };
+    if colors.len() == count {
+        mesh.colors = colors.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect();
+    }
+    if normals.len() == count {
+        mesh.normals = normals.iter().map(|normal| Vec3::from_array(*normal)).collect();
+        mesh.repair_normals();
+    }
+    let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
+    mesh.make_tangents(texture_from_uv, normal_texture.is_some(), loading);
+    mesh
+}
+
+/// Texture coordinates as they are.
+const IDENTITY: [f32; 6] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+/// Converter of materials to slots with textures.
+struct Slots<'a> {
+    files: &'a Files,
+    side_max: u32,
+    materials: &'a [Material],
+    /// Slot of each material; the last one is for faces without a material.
+    slot_of: Vec<Option<u32>>,
+    slots: Vec<Slot>,
+    textures: Vec<Texture>,
+}
+
+impl<'a> Slots<'a> {
+    fn new(files: &'a Files, options: &ModelOptions, materials: &'a [Material]) -> Self {
+        Self {
+            files,
+            side_max: options.texture_side_max,
+            materials,
+            slot_of: vec![None; materials.len() + 1],
+            slots: Vec::new(),
+            textures: Vec::new(),
+        }
+    }
+
+    fn slot(&mut self, material: Option<usize>, report: &mut ImportReport) -> u32 {
+        let place = material
+            .filter(|&m| m < self.materials.len())
+            .unwrap_or(self.materials.len());
+        if let Some(slot) = self.slot_of[place] {
+            return slot;
+        }
+        let slot = match self.materials.get(place) {
+            Some(material) => self.read(material, report),
+            None => Slot::neutral("default"),
+        };
+        self.slots.push(slot);
+        let index = self.slots.len() as u32 - 1;
+        self.slot_of[place] = Some(index);
+        index
+    }
+
+    fn read(&mut self, material: &Material, report: &mut ImportReport) -> Slot {
+        report.note(Fate::Used, "materials", &material.name);
+        // NaN counts as 0.
+        let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
+        let unit = |x: f32| within(x, 1.0);
+        let number = |key: &str| {
+            material
+                .unknown_param
+                .get(key)?
+                .split_whitespace()
+                .next()?
+                .parse::<f32>()
+                .ok()
+        };
+        let shininess = material.shininess.unwrap_or(0.0).max(0.0);
+        // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
+        let alpha = (2.0 / (shininess + 2.0)).sqrt();
+        let is_matte = matches!(material.illumination_model, Some(0 | 1));
+        let is_shiny = material.specular.is_some_and(|color| color.iter().any(|x| *x > 0.0)) || number("Pr").is_some();
+        let opacity = material.dissolve.or_else(|| Some(1.0 - number("Tr")?));
+        let opacity = opacity.map_or(1.0, unit);
+        let mut slot = Slot {
+            name: material.name.clone(),
+            base_color: material.diffuse.unwrap_or([0.6; 3]).map(unit),
+            metalness: number("Pm").map_or(0.0, unit),
+            roughness: unit(number("Pr").unwrap_or(alpha.sqrt())),
+            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
+            opacity,
+            alpha_mode: if opacity < 1.0 {
+                AlphaMode::Blend
+            } else {
+                AlphaMode::Opaque
+            },
+            double_sided: true,
+            ior: material.optical_density.filter(|ior| *ior >= 1.0).unwrap_or(1.5),
+            specular: f32::from(u8::from(is_shiny && !is_matte)),
+            coat: number("Pc").map_or(0.0, unit),
+            coat_roughness: number("Pcr").map_or(0.0, unit),
+            ..Slot::default()
+        };
+        self.read_color(material, &mut slot, report);
+        let normal = material.unknown_param.get("norm").or(material.normal_texture.as_ref());
+        let normal = normal.map(|line| Map::parse(line));
+        slot.normal_texture = self.texture(normal.as_ref(), false, report).found();
+        slot.normal_scale = normal.map_or(1.0, |map| map.strength);
+        if let Some(reference) = slot.normal_texture
+            && is_height(&self.textures[reference.texture])
+        {
+            report.note(Fate::Ignored, "a bump texture, which holds heights", &material.name);
+            slot.normal_texture = None;
+        }
+        let emissive = material.unknown_param.get("map_Ke").map(|line| Map::parse(line));
+        match self.texture(emissive.as_ref(), true, report) {
+            Picture::Found(texture) => {
+                slot.emissive_texture = Some(texture);
+                if slot.emission == [0.0; 3] {
+                    slot.emission = [1.0; 3];
+                }
+            }
+            Picture::Missing => slot.emission = [0.0; 3],
+            Picture::Unnamed => {}
+        }
+        table::report_unread(material, report);
+        report.note(
+            Fate::Approximated,
+            "a .mtl material, as metalness and roughness",
+            &material.name,
+        );
+        slot
+    }
+
+    /// The base colour map, and whether it has opacity.
+    fn read_color(&mut self, material: &Material, slot: &mut Slot, report: &mut ImportReport) {
+        let [color, opacity] =
+            [&material.diffuse_texture, &material.dissolve_texture].map(|line| line.as_deref().map(Map::parse));
+        let texture = self.texture(color.as_ref(), true, report);
+        if texture != Picture::Unnamed && slot.base_color == [0.0; 3] {
+            // Many exporters write black beside a texture and mean white.
+            slot.base_color = [1.0; 3];
+        }
+        if texture == Picture::Missing {
+            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
+        }
+        slot.base_color_texture = texture.found();
+        let Some(opacity) = opacity else { return };
+        if color.is_some_and(|color| color.name == opacity.name) {
+            slot.alpha_mode = AlphaMode::Blend;
+        } else {
+            report.note(Fate::Ignored, "a texture of opacity of its own", &material.name);
+        }
+    }
+
+    /// The texture of a line of the library.
+    fn texture(&mut self, map: Option<&Map<'_>>, is_color: bool, report: &mut ImportReport) -> Picture {
+        let Some(map) = map else { return Picture::Unnamed };
+        for option in &map.ignored {
+            report.note(Fate::Ignored, format!("the option {option} of a texture"), map.name);
+        }
+        let known = self.textures.iter().position(|texture| texture.name == map.name);
+        let Some(texture) = known.or_else(|| self.read_picture(map.name, is_color, report)) else {
+            return Picture::Missing;
+        };
+        Picture::Found(TextureRef {
+            texture,
+            uv_set: 0,
+            texture_from_mesh_uv: map.texture_from_mesh_uv(),
+            wrap: [if map.is_clamped {
+                Wrap::ClampToEdge
+            } else {
+                Wrap::Repeat
+            }; 2],
+            filter: Filter::Linear,
+        })
+    }
+
+    /// Adds a texture file to the model and returns its index.
+    fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
+        let budget = &self.files.import.budget;
+        let decoded = self
+            .files
+            .read(name)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| {
+                Encoded {
+                    name: name.to_owned(),
+                    bytes: bytes.into(),
+                }
+                .decode(budget)
+            });
+        let scaled = decoded.and_then(|decoded| {
+            let note = decoded.note.filter(|_| is_color);
+            let (texture, scaled_from) = scaled_to(decoded.texture(is_color), self.side_max, is_color);
+            budget.take(texture.bytes() as u64).map_err(|over| over.to_string())?;
+            Ok((texture, scaled_from, note))
+        });
+        let (texture, scaled_from, note) = match scaled {
+            Ok(scaled) => scaled,
+            Err(reason) => {
+                report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name);
+                return None;
+            }
+        };
+        report.note(Fate::Used, "textures", name);
+        if let Some(note) = note {
+            report.note(Fate::Approximated, note, name);
+        }
+        if let Some([width, height]) = scaled_from {
+            let what = format!(
+                "a picture of {width} × {height}, used at {} × {}",
+                texture.width, texture.height
+            );
+            report.note(Fate::Approximated, what, name);
+        }
+        self.textures.push(texture);
+        Some(self.textures.len() - 1)
+    }
+}
+
+/// Result of reading a texture.
+#[derive(Clone, Copy, PartialEq)]
+enum Picture {
+    Unnamed,
+    Missing,
+    Found(TextureRef),
+}
+
+impl Picture {
+    fn found(self) -> Option<TextureRef> {
+        match self {
+            Self::Found(texture) => Some(texture),
+            _ => None,
+        }
+    }
+}
+
+/// Whether a map is grey everywhere: a height map, not a normal map.
+fn is_height(texture: &Texture) -> bool {
+    let grey = |texel: &[u8; 4]| texel[0].abs_diff(texel[2]) < 8 && texel[1].abs_diff(texel[2]) < 8;
+    texture.rgba8.as_chunks::<4>().0.iter().all(grey)
+}

@@ -1,0 +1,559 @@
+//! Images in GPU containers, KTX2 and DDS: flat ones, and the six faces of cubes. Texels are decoded by the basisu, bcdec_rs
+//! and half crates.
+
+mod masks;
+
+use std::borrow::Cow;
+use std::io::Read;
+
+use ddsfile::{Caps2, D3DFormat, Dds, MiscFlag};
+use half::f16;
+use ruzstd::StreamingDecoder;
+
+use self::masks::Masks;
+use super::basis;
+use crate::panics::contained;
+
+/// The first bytes of a KTX2 file.
+const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
+/// The first bytes of a DDS file.
+const DDS: [u8; 4] = *b"DDS ";
+/// DDS code for BC3 blocks with red in the opacity channel.
+const RXGB: u32 = u32::from_le_bytes(*b"RXGB");
+/// Largest Zstandard expansion: factor, and additional bytes.
+const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
+/// The most columns or rows.
+const SIDE_MAX: u32 = 1 << 16;
+
+/// One image, or one face of a cube.
+#[derive(Clone, Debug)]
+pub(crate) struct Face {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Row by row from the top.
+    pub texels: Texels,
+}
+
+/// Red, green, blue and opacity of each texel.
+#[derive(Clone, Debug)]
+pub(crate) enum Texels {
+    /// Codes of 8 bits.
+    Codes(Vec<u8>),
+    /// Numbers with a point: linear.
+    Light(Vec<f32>),
+}
+
+/// Layout of texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Layout {
+    /// Bytes per texel, and positions of red, green, blue and opacity in it; 255 for a missing one.
+    Bytes(usize, [u8; 4]),
+    /// Some bits of a texel's bytes for each channel.
+    Masks(Masks),
+    /// 16-bit integers per texel: 65535 is 1.
+    Shorts(usize),
+    /// 16-bit floats per texel.
+    Halves(usize),
+    /// 32-bit floats per texel.
+    Floats(usize),
+    /// 9 bits each with an exponent that they share.
+    SharedExponent,
+    /// 11, 11 and 10 bits with a point.
+    SmallFloats,
+    /// Blocks of 4 × 4 texels in so many bytes.
+    Blocks(Block, usize),
+}
+
+/// Block compression formats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Block {
+    Bc1,
+    Bc2,
+    Bc3,
+    /// BC3 with red in the opacity channel.
+    Rxgb,
+    /// BC4; true for signed values.
+    Bc4(bool),
+    Bc5(bool),
+    Bc6h(bool),
+    Bc7,
+}
+
+const GREY: Layout = Layout::Bytes(1, [0, 0, 0, 255]);
+const RED_GREEN: Layout = Layout::Bytes(2, [0, 1, 255, 255]);
+const RGB: Layout = Layout::Bytes(3, [0, 1, 2, 255]);
+const BGR: Layout = Layout::Bytes(3, [2, 1, 0, 255]);
+const RGBA: Layout = Layout::Bytes(4, [0, 1, 2, 3]);
+const RGBX: Layout = Layout::Bytes(4, [0, 1, 2, 255]);
+const BGRA: Layout = Layout::Bytes(4, [2, 1, 0, 3]);
+const BGRX: Layout = Layout::Bytes(4, [2, 1, 0, 255]);
+const BC1: Layout = Layout::Blocks(Block::Bc1, 8);
+const BC2: Layout = Layout::Blocks(Block::Bc2, 16);
+const BC3: Layout = Layout::Blocks(Block::Bc3, 16);
+const BC7: Layout = Layout::Blocks(Block::Bc7, 16);
+
+const fn masks(bytes: usize, channels: [u32; 4]) -> Layout {
+    Layout::Masks(Masks { bytes, channels })
+}
+
+const fn bc4(is_signed: bool) -> Layout {
+    Layout::Blocks(Block::Bc4(is_signed), 8)
+}
+
+const fn bc5(is_signed: bool) -> Layout {
+    Layout::Blocks(Block::Bc5(is_signed), 16)
+}
+
+const fn bc6h(is_signed: bool) -> Layout {
+    Layout::Blocks(Block::Bc6h(is_signed), 16)
+}
+
+/// The layout of a KTX2 file, by Vulkan's number of its format.
+fn of_vulkan(format: u32) -> Option<Layout> {
+    Some(match format {
+        9 | 15 => GREY,
+        16 | 22 => RED_GREEN,
+        23 | 29 => RGB,
+        30 | 36 => BGR,
+        37 | 43 => RGBA,
+        44 | 50 => BGRA,
+        70 => Layout::Shorts(1),
+        77 => Layout::Shorts(2),
+        84 => Layout::Shorts(3),
+        91 => Layout::Shorts(4),
+        76 => Layout::Halves(1),
+        83 => Layout::Halves(2),
+        90 => Layout::Halves(3),
+        97 => Layout::Halves(4),
+        100 => Layout::Floats(1),
+        103 => Layout::Floats(2),
+        106 => Layout::Floats(3),
+        109 => Layout::Floats(4),
+        122 => Layout::SmallFloats,
+        123 => Layout::SharedExponent,
+        131..=134 => BC1,
+        135 | 136 => BC2,
+        137 | 138 => BC3,
+        139 | 140 => bc4(format == 140),
+        141 | 142 => bc5(format == 142),
+        143 | 144 => bc6h(format == 144),
+        145 | 146 => BC7,
+        _ => return None,
+    })
+}
+
+/// Errors of decoding.
+#[derive(Debug)]
+pub(crate) enum Refusal {
+    /// Valid, but unsupported.
+    NotRead(String),
+    /// Its bytes contradict each other.
+    Damaged(String),
+}
+
+impl From<&str> for Refusal {
+    fn from(reason: &str) -> Self {
+        Self::Damaged(reason.to_owned())
+    }
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self::Damaged(reason)
+    }
+}
+
+impl From<Refusal> for String {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::NotRead(what) => format!("{what}, which is not read"),
+            Refusal::Damaged(reason) => reason,
+        }
+    }
+}
+
+/// The layout of a DDS file: by DXGI's number of its format, or by that of Direct3D 9.
+fn of_dds(dds: &Dds) -> Option<Layout> {
+    if dds.header.spf.fourcc.as_ref().is_some_and(|code| code.0 == RXGB) {
+        return Some(Layout::Blocks(Block::Rxgb, 16));
+    }
+    if let Some(format) = dds.get_d3d_format() {
+        return Some(match format {
+            D3DFormat::L8 => GREY,
+            D3DFormat::R8G8B8 => BGR,
+            D3DFormat::A8R8G8B8 => BGRA,
+            D3DFormat::X8R8G8B8 => BGRX,
+            D3DFormat::A8B8G8R8 => RGBA,
+            D3DFormat::X8B8G8R8 => RGBX,
+            D3DFormat::L16 => Layout::Shorts(1),
+            D3DFormat::G16R16 => Layout::Shorts(2),
+            D3DFormat::A16B16G16R16 => Layout::Shorts(4),
+            D3DFormat::R16F => Layout::Halves(1),
+            D3DFormat::G16R16F => Layout::Halves(2),
+            D3DFormat::A16B16G16R16F => Layout::Halves(4),
+            D3DFormat::R32F => Layout::Floats(1),
+            D3DFormat::G32R32F => Layout::Floats(2),
+            D3DFormat::A32B32G32R32F => Layout::Floats(4),
+            D3DFormat::DXT1 => BC1,
+            D3DFormat::DXT2 | D3DFormat::DXT3 => BC2,
+            D3DFormat::DXT4 | D3DFormat::DXT5 => BC3,
+            _ => return None,
+        });
+    }
+    Some(match dds.get_dxgi_format()? as u32 {
+        2 => Layout::Floats(4),
+        6 => Layout::Floats(3),
+        10 => Layout::Halves(4),
+        11 => Layout::Shorts(4),
+        24 => masks(4, [0x3ff, 0x3ff << 10, 0x3ff << 20, 0x3 << 30]),
+        16 => Layout::Floats(2),
+        26 => Layout::SmallFloats,
+        28 | 29 => RGBA,
+        34 => Layout::Halves(2),
+        35 => Layout::Shorts(2),
+        41 => Layout::Floats(1),
+        49 => RED_GREEN,
+        54 => Layout::Halves(1),
+        56 => Layout::Shorts(1),
+        61 => GREY,
+        65 => masks(1, [0, 0, 0, 0xff]),
+        67 => Layout::SharedExponent,
+        71 | 72 => BC1,
+        74 | 75 => BC2,
+        77 | 78 => BC3,
+        80 => bc4(false),
+        81 => bc4(true),
+        83 => bc5(false),
+        84 => bc5(true),
+        85 => masks(2, [0xf800, 0x7e0, 0x1f, 0]),
+        86 => masks(2, [0x7c00, 0x3e0, 0x1f, 0x8000]),
+        87 | 91 => BGRA,
+        88 | 93 => BGRX,
+        95 => bc6h(false),
+        96 => bc6h(true),
+        98 | 99 => BC7,
+        115 => masks(2, [0xf00, 0xf0, 0xf, 0xf000]),
+        _ => return None,
+    })
+}
+
+/// Whether bytes start like such a container.
+pub(crate) fn is_container(bytes: &[u8]) -> bool {
+    bytes.starts_with(&KTX2) || bytes.starts_with(&DDS)
+}
+
+/// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
+/// a face), or the smallest level.
+///
+/// # Errors
+///
+/// The reason.
+pub(crate) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
+    // Damaged files may fail assertions inside the crates instead of giving errors.
+    let decoded = contained(|| {
+        if bytes.starts_with(&DDS) {
+            decode_dds(bytes, side_max)
+        } else {
+            Ktx2::read(bytes).ok_or("its header is cut short")?.decode(side_max)
+        }
+    });
+    decoded.ok_or("it is damaged")?
+}
+
+/// The level at which both sides are at most so long; else the last.
+fn level_within(width: u32, height: u32, levels: u32, side_max: u32) -> u32 {
+    let fits = |level: &u32| width.max(height).checked_shr(*level).unwrap_or(0) <= side_max;
+    let last = levels.clamp(1, 32) - 1;
+    (0..=last).find(fits).unwrap_or(last)
+}
+
+/// A KTX2 file's header, in so far as it matters here.
+struct Ktx2<'a> {
+    bytes: &'a [u8],
+    format: u32,
+    width: u32,
+    height: u32,
+    faces: u32,
+    levels: u32,
+    compression: u32,
+}
+
+impl<'a> Ktx2<'a> {
+    fn read(bytes: &'a [u8]) -> Option<Self> {
+        let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+        Some(Self {
+            bytes,
+            format: number(12)?,
+            width: number(20)?,
+            height: number(24)?.max(1),
+            faces: number(36)?,
+            levels: number(40)?.max(1),
+            compression: number(44)?,
+        })
+    }
+
+    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
+        let faces = if self.faces == 6 { 6 } else { 1 };
+        let side_max = side_max[usize::from(faces == 6)];
+        if self.width == 0 || self.width.max(self.height) > SIDE_MAX {
+            return Err(format!("{} × {} texels are no size", self.width, self.height).into());
+        }
+        if self.format == 0 {
+            let level = |[width, height]: [u32; 2], levels| level_within(width, height, levels, side_max);
+            let faces = basis::decode(self.bytes, faces, level)?.into_iter();
+            return Ok(faces
+                .map(|([width, height], codes)| Face {
+                    width,
+                    height,
+                    texels: Texels::Codes(codes),
+                })
+                .collect());
+        }
+        let Some(layout) = of_vulkan(self.format) else {
+            return Err(Refusal::NotRead(format!("number {} of Vulkan's formats", self.format)));
+        };
+        let level = level_within(self.width, self.height, self.levels, side_max);
+        let [width, height] = [self.width, self.height].map(|side| (side >> level).max(1));
+        let size = layout.bytes(width, height).ok_or("it is too large")?;
+        let level = self.level(level, size * faces).ok_or("it is damaged")?;
+        let faces = level.chunks_exact(size).take(faces);
+        Ok(faces.map(|bytes| layout.face(width, height, bytes)).collect())
+    }
+
+    /// The first `size` bytes of a level, decompressed.
+    fn level(&self, level: u32, size: usize) -> Option<Cow<'a, [u8]>> {
+        let entry = self.bytes.get(80 + 24 * level as usize..)?;
+        let number = |at: usize| usize::try_from(u64::from_le_bytes(entry.get(at..at + 8)?.try_into().ok()?)).ok();
+        let packed = self.bytes.get(number(0)?..)?.get(..number(8)?)?;
+        match self.compression {
+            0 => Some(Cow::Borrowed(packed.get(..size)?)),
+            2 => {
+                let [growth, floor] = ZSTD_GROWTH;
+                if size as u64 > growth * packed.len() as u64 + floor {
+                    return None;
+                }
+                let mut unpacked = Vec::new();
+                let mut decoder = StreamingDecoder::new(packed).ok()?.take(size as u64);
+                decoder.read_to_end(&mut unpacked).ok()?;
+                (unpacked.len() == size).then_some(Cow::Owned(unpacked))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
+    let dds = Dds::read(bytes).map_err(|error| error.to_string())?;
+    let (width, height, levels) = (dds.get_width(), dds.get_height(), dds.get_num_mipmap_levels());
+    if width == 0 || height == 0 || width.max(height) > SIDE_MAX {
+        return Err(format!("{width} × {height} texels are no size").into());
+    }
+    let layout = of_dds(&dds)
+        .or_else(|| Masks::of_dds(bytes).map(Layout::Masks))
+        .ok_or_else(|| {
+            let format = dds.get_dxgi_format();
+            let what = format.map_or("this layout of DDS".to_owned(), |format| {
+                format!("DXGI's format {format:?}")
+            });
+            Refusal::NotRead(what)
+        })?;
+    let is_new_cube = |header: &ddsfile::Header10| header.misc_flag.contains(MiscFlag::TEXTURECUBE);
+    let is_cube = dds.header.caps2.contains(Caps2::CUBEMAP) || dds.header10.as_ref().is_some_and(is_new_cube);
+    let level = level_within(width, height, levels, side_max[usize::from(is_cube)]);
+    let size_of = |level: u32| layout.bytes((width >> level).max(1), (height >> level).max(1));
+    let sizes: Option<Vec<usize>> = (0..levels.clamp(1, 32)).map(size_of).collect();
+    let sizes = sizes.ok_or("it is too large")?;
+    // Each face has its levels behind it.
+    let (before, whole) = (
+        sizes[..level as usize].iter().sum::<usize>(),
+        sizes.iter().sum::<usize>(),
+    );
+    let size = sizes[level as usize];
+    let [width, height] = [width, height].map(|side| (side >> level).max(1));
+    let face = |face: usize| {
+        let bytes = dds.data.get(face * whole + before..)?.get(..size)?;
+        Some(layout.face(width, height, bytes))
+    };
+    let faces: Option<Vec<Face>> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
+    faces.ok_or_else(|| "it is cut short".into())
+}
+
+impl Layout {
+    /// Bytes of so many texels.
+    fn bytes(self, width: u32, height: u32) -> Option<usize> {
+        let (side, size) = match self {
+            Self::Bytes(bytes, _) | Self::Masks(Masks { bytes, .. }) => (1, bytes),
+            Self::Shorts(channels) | Self::Halves(channels) => (1, 2 * channels),
+            Self::Floats(channels) => (1, 4 * channels),
+            Self::SharedExponent | Self::SmallFloats => (1, 4),
+            Self::Blocks(_, size) => (4, size),
+        };
+        let [columns, rows] = [width, height].map(|texels| texels.div_ceil(side) as usize);
+        columns.checked_mul(rows)?.checked_mul(size)
+    }
+
+    /// Decodes an image from exactly the bytes that it needs.
+    fn face(self, width: u32, height: u32, bytes: &[u8]) -> Face {
+        let texels = match self {
+            Self::Bytes(size, places) => {
+                let channel = |texel: &[u8], place: u8| texel.get(usize::from(place)).copied().unwrap_or(255);
+                let rgba = |texel: &[u8]| places.map(|place| channel(texel, place));
+                Texels::Codes(bytes.chunks_exact(size).flat_map(rgba).collect())
+            }
+            Self::Masks(masks) => Texels::Codes(masks.codes(bytes)),
+            Self::Shorts(channels) => {
+                let fraction = |[low, high]: &[u8; 2]| f32::from(u16::from_le_bytes([*low, *high])) / 65535.0;
+                Texels::Light(rgba(bytes.as_chunks().0.iter().map(fraction), channels))
+            }
+            Self::Halves(channels) => {
+                let number = |[low, high]: &[u8; 2]| f16::from_le_bytes([*low, *high]).to_f32();
+                Texels::Light(rgba(bytes.as_chunks().0.iter().map(number), channels))
+            }
+            Self::Floats(channels) => {
+                let number = |bytes: &[u8; 4]| f32::from_le_bytes(*bytes);
+                Texels::Light(rgba(bytes.as_chunks().0.iter().map(number), channels))
+            }
+            Self::SharedExponent => Texels::Light(rgba(words(bytes).flat_map(shared_exponent), 3)),
+            Self::SmallFloats => Texels::Light(rgba(words(bytes).flat_map(small_floats), 3)),
+            Self::Blocks(Block::Bc6h(is_signed), size) => {
+                let mut blocks = Blocks::new(width, height, 3);
+                blocks.fill(bytes.chunks_exact(size), |block, texels, pitch| {
+                    bcdec_rs::bc6h_float(block, texels, pitch, is_signed);
+                });
+                Texels::Light(rgba(blocks.texels.into_iter(), 3))
+            }
+            Self::Blocks(block, size) => Texels::Codes(block.codes(width, height, bytes.chunks_exact(size))),
+        };
+        Face { width, height, texels }
+    }
+}
+
+impl Block {
+    /// Codes of 8 bits, four a texel.
+    fn codes<'a>(self, width: u32, height: u32, bytes: impl Iterator<Item = &'a [u8]>) -> Vec<u8> {
+        let channels = match self {
+            Self::Bc4(_) => 1,
+            Self::Bc5(_) => 2,
+            _ => 4,
+        };
+        let mut blocks = Blocks::new(width, height, channels);
+        blocks.fill(bytes, |block, texels, pitch| match self {
+            Self::Bc1 => bcdec_rs::bc1(block, texels, pitch),
+            Self::Bc2 => bcdec_rs::bc2(block, texels, pitch),
+            Self::Bc3 | Self::Rxgb => bcdec_rs::bc3(block, texels, pitch),
+            Self::Bc4(is_signed) => bcdec_rs::bc4(block, texels, pitch, is_signed),
+            Self::Bc5(is_signed) => bcdec_rs::bc5(block, texels, pitch, is_signed),
+            Self::Bc6h(_) | Self::Bc7 => bcdec_rs::bc7(block, texels, pitch),
+        });
+        let texels = blocks.texels.chunks_exact(channels);
+        let rgba = |texel: &[u8]| match *texel {
+            [grey] => [grey, grey, grey, 255],
+            [red, green] => [red, green, 255, 255],
+            [_, g, b, red] if self == Self::Rxgb => [red, g, b, 255],
+            [r, g, b, a] => [r, g, b, a],
+            _ => [0; 4],
+        };
+        texels.flat_map(rgba).collect()
+    }
+}
+
+/// Texels that are filled block by block.
+struct Blocks<T> {
+    width: usize,
+    height: usize,
+    channels: usize,
+    /// Row by row, the channels of a texel together.
+    texels: Vec<T>,
+}
+
+impl<T: Copy + Default> Blocks<T> {
+    fn new(width: u32, height: u32, channels: usize) -> Self {
+        let (width, height) = (width as usize, height as usize);
+        Self {
+            width,
+            height,
+            channels,
+            texels: vec![T::default(); width * height * channels],
+        }
+    }
+
+    /// Decodes blocks, row by row; texels beyond the image are skipped.
+    fn fill<'a>(&mut self, blocks: impl Iterator<Item = &'a [u8]>, decode: impl Fn(&[u8], &mut [T], usize)) {
+        let (across, pitch) = (self.width.div_ceil(4), 4 * self.channels);
+        let mut decoded = vec![T::default(); 4 * pitch];
+        for (number, block) in blocks.enumerate() {
+            decode(block, &mut decoded, pitch);
+            let (left, top) = (number % across * 4, number / across * 4);
+            let columns = (self.width - left).min(4) * self.channels;
+            for (row, line) in decoded.chunks_exact(pitch).enumerate().take(self.height - top) {
+                let start = ((top + row) * self.width + left) * self.channels;
+                self.texels[start..start + columns].copy_from_slice(&line[..columns]);
+            }
+        }
+    }
+}
+
+/// RGBA per texel from `channels` numbers: one is grey, two are red and green; opacity defaults to 1.
+fn rgba(numbers: impl Iterator<Item = f32>, channels: usize) -> Vec<f32> {
+    let mut texels = Vec::new();
+    let mut texel = [0.0; 4];
+    for (place, number) in numbers.enumerate() {
+        texel[place % channels] = number;
+        if place % channels + 1 == channels {
+            let [first, second, third, fourth] = texel;
+            texels.extend(match channels {
+                1 => [first, first, first, 1.0],
+                2 => [first, second, 1.0, 1.0],
+                3 => [first, second, third, 1.0],
+                _ => [first, second, third, fourth],
+            });
+        }
+    }
+    texels
+}
+
+fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
+    bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word))
+}
+
+/// E5B9G9R9 (Vulkan specification, shared exponent to RGB).
+fn shared_exponent(word: u32) -> [f32; 3] {
+    let scale = f32::exp2((word >> 27) as f32 - 24.0);
+    [0, 9, 18].map(|shift| (word >> shift & 0x1ff) as f32 * scale)
+}
+
+/// B10G11R11: halves without sign and with fewer digits (Vulkan specification, unsigned 11-bit and 10-bit numbers).
+fn small_floats(word: u32) -> [f32; 3] {
+    let halves = [(word & 0x7ff) << 4, (word >> 11 & 0x7ff) << 4, (word >> 22) << 5];
+    halves.map(|half| f16::from_bits(half as u16).to_f32())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packed_numbers_are_those_of_the_specification() {
+        // One: exponent 15 (bias 15) of 1; as a fraction 2^8 · 2^(16 − 24).
+        assert_eq!(
+            shared_exponent(16 << 27 | 256 | 128 << 9 | 511 << 18),
+            [1.0, 0.5, 511.0 / 256.0]
+        );
+        let one_and_a_half = 15 << 6 | 32;
+        let a_quarter = (13_u32 << 5) << 22;
+        assert_eq!(
+            small_floats(one_and_a_half | (16 << 6) << 11 | a_quarter),
+            [1.5, 2.0, 0.25]
+        );
+    }
+
+    #[test]
+    fn levels_are_chosen_by_their_size() {
+        assert_eq!(level_within(4096, 4096, 13, 2048), 1);
+        assert_eq!(level_within(4096, 4096, 1, 2048), 0);
+        assert_eq!(level_within(64, 4, 3, 8), 2);
+        assert_eq!(level_within(64, 4, 0, 100), 0);
+    }
+}
