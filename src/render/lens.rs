@@ -145,7 +145,7 @@ mod tests {
             light(&glowing)
         );
         let at = |x: usize, y: usize| glowing.pixels[y * 64 + x][0];
-        let [middle, near, far] = [at(21, 24), at(24, 24), at(40, 24)];
+        let [middle, near, far] = [at(21, 24), at(24, 24), at(30, 24)];
         assert!(middle > 0.7 * 90.0 && middle < 0.8 * 90.0, "{middle}");
         assert!(near > far && far > 0.0, "{near} and {far}");
         assert!(

@@ -143,7 +143,12 @@ impl Model {
         };
         if *source == ModelSource::StillLife {
             // Each part is an object, beside its slot.
-            model.objects = still_life::objects(&model.mesh);
+            let parts = still_life::PARTS.iter().zip(still_life::triangles(&model.mesh));
+            let object = |(name, triangles): (&&str, Range<usize>)| ModelObject {
+                name: (*name).to_owned(),
+                triangles,
+            };
+            model.objects = parts.map(object).collect();
         }
         model.name_its_whole();
         Some(model)

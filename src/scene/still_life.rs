@@ -1,9 +1,10 @@
 //! The still life that the editor begins with: the teapot with a bowl, a ball and a bead, each of a material of its own.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::mesh::Mesh;
-use super::model::ModelObject;
 use super::{shapes, teapot};
 
 /// The slots, which are the objects as well, from the largest on.
@@ -27,14 +28,10 @@ pub(super) fn mesh() -> Mesh {
     whole
 }
 
-/// The parts as objects of the mesh.
-pub(super) fn objects(mesh: &Mesh) -> Vec<ModelObject> {
+/// The triangles of each part.
+pub(super) fn triangles(mesh: &Mesh) -> impl Iterator<Item = Range<usize>> {
     let begin = |slot: usize| mesh.slots.partition_point(|of| (*of as usize) < slot);
-    let object = |(slot, name): (usize, &&str)| ModelObject {
-        name: (*name).to_owned(),
-        triangles: begin(slot)..begin(slot + 1),
-    };
-    PARTS.iter().enumerate().map(object).collect()
+    (0..PARTS.len()).map(move |slot| begin(slot)..begin(slot + 1))
 }
 
 fn moved(mut mesh: Mesh, to: DVec3, scale: f64) -> Mesh {
@@ -49,15 +46,13 @@ fn of_slot(mut mesh: Mesh, slot: u32) -> Mesh {
 
 #[cfg(test)]
 mod tests {
-    use std::ops::Range;
-
     use super::*;
 
     /// Every part stands on the ground, is closed, has a slot of its own, and touches no other.
     #[test]
     fn the_parts_stand_beside_each_other() {
         let mesh = mesh();
-        let ranges: Vec<Range<usize>> = objects(&mesh).into_iter().map(|object| object.triangles).collect();
+        let ranges: Vec<Range<usize>> = triangles(&mesh).collect();
         let places = |range: &Range<usize>| {
             range
                 .clone()
