@@ -44,7 +44,7 @@ test-thorough: test ## The same, for an hour more: what is random or repeats oth
 	cargo check --no-default-features
 	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
-	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install cargo-deny)"; fi
+	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install --locked cargo-deny)"; fi
 
 docs: ## Build the book into target/book (mdBook, without a network)
 	@command -v mdbook >/dev/null 2>&1 || { echo "error: mdBook is not installed: run cargo install mdbook" >&2; exit 1; }

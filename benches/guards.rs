@@ -265,7 +265,7 @@ fn sums(scene: &Scene) {
     row("the last guard: finite and not negative", "one sample", times);
 }
 
-/// A whole picture with and without the limit.
+/// A whole image with and without the limit.
 fn fireflies() -> Result<(), SessionError> {
     let mut sessions = [Session::open(EngineChoice::Cpu)?, Session::open(EngineChoice::Cpu)?];
     let mut times = [const { Vec::new() }; 2];

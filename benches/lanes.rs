@@ -36,7 +36,7 @@ trait Stage {
     fn run<T: Real>(&self, xi: [T; 3]) -> T;
 }
 
-/// Two pairs of Sobol's points.
+/// Two pairs of points of a Sobol sequence.
 struct Numbers;
 
 impl Stage for Numbers {

@@ -8,15 +8,15 @@ use std::time::{Duration, Instant};
 
 use glossmith::document::{AreaLight, Document};
 use glossmith::render::EngineChoice;
-use glossmith::render::worker::{Activity, Pace, Worker};
-use glossmith::scene::environment::EnvironmentSource;
+use glossmith::render::study::benchmark::latency::{INTERVAL, VIEWPORT, await_kernel, first_image, viewport};
+use glossmith::render::worker::Worker;
 use glossmith::scene::shapes::bumpy_sphere;
 use glossmith::scene::{Model, ModelSource, Slot};
 
 /// Steps of a drag.
 const STEPS: u32 = 60;
-/// How long a person's hand needs for one, at least.
-const INTERVAL: Duration = Duration::from_millis(16);
+/// Longer than any kernel is compiled.
+const PATIENCE: Duration = Duration::from_secs(600);
 
 fn main() -> std::io::Result<()> {
     println!("| engine | edit | median ms | 95 % ms | longest ms |");
@@ -27,9 +27,9 @@ fn main() -> std::io::Result<()> {
             continue;
         }
         let worker = Worker::spawn(engine, || {})?;
-        let mut document = viewport();
+        let mut document = viewport(VIEWPORT);
         first_picture(&worker, &document);
-        await_kernel(&worker);
+        await_kernel(&worker, PATIENCE);
         let name = name(&worker);
         let drag = (0..STEPS).map(|step| {
             document.materials[0].roughness = 0.1 + 0.8 * step as f32 / STEPS as f32;
@@ -54,7 +54,7 @@ fn main() -> std::io::Result<()> {
             cross(&mut document);
             let milliseconds = first_picture(&worker, &document);
             let begun = Instant::now();
-            await_kernel(&worker);
+            await_kernel(&worker, PATIENCE);
             eprintln!(
                 "  {milliseconds:.0} ms, kernel after {:.1} s",
                 begun.elapsed().as_secs_f64()
@@ -69,7 +69,7 @@ fn main() -> std::io::Result<()> {
 /// Drags an area light over a large model.
 fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     let worker = Worker::spawn(engine, || {})?;
-    let mut document = viewport();
+    let mut document = viewport(VIEWPORT);
     document.model = ModelSource::File("bumpy sphere of 600 000 triangles".into());
     let model = Model {
         mesh: bumpy_sphere(600_000),
@@ -79,7 +79,7 @@ fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     worker.assets().keep_model(document.model.clone(), model);
     document.lighting.area_lights = vec![AreaLight::default()];
     first_picture(&worker, &document);
-    await_kernel(&worker);
+    await_kernel(&worker, PATIENCE);
     let drag = (0..STEPS).map(|step| {
         document.lighting.area_lights[0].yaw_deg = f64::from(step);
         let milliseconds = first_picture(&worker, &document);
@@ -90,15 +90,6 @@ fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The default scene under the studio in the viewport of a window of 1440 × 900.
-fn viewport() -> Document {
-    let mut document = Document::default();
-    document.lighting.environment = EnvironmentSource::Studio;
-    (document.render.width, document.render.height) = (806, 780);
-    document.render.samples = 1 << 20;
-    document
-}
-
 fn name(worker: &Worker) -> String {
     let snapshot = worker.snapshot();
     snapshot.engine.as_ref().map_or_else(String::new, ToString::to_string)
@@ -106,29 +97,7 @@ fn name(worker: &Worker) -> String {
 
 /// Milliseconds from submitting a document to its first picture.
 fn first_picture(worker: &Worker, document: &Document) -> f64 {
-    let revision = worker.submit(document, Pace::Moving);
-    loop {
-        let snapshot = worker.snapshot();
-        let is_shown = snapshot
-            .picture
-            .as_ref()
-            .is_some_and(|picture| picture.revision == revision);
-        if let Some(time) = snapshot.first_picture.filter(|_| is_shown) {
-            return 1e3 * time.as_secs_f64();
-        }
-        std::thread::sleep(Duration::from_millis(1));
-    }
-}
-
-/// Until the engine itself draws.
-fn await_kernel(worker: &Worker) {
-    loop {
-        std::thread::sleep(Duration::from_millis(100));
-        let snapshot = worker.snapshot();
-        if snapshot.activity == Activity::Rendering && !snapshot.progress.is_fallback {
-            return;
-        }
-    }
+    first_image(worker, document, PATIENCE).unwrap_or(f64::INFINITY)
 }
 
 fn report(engine: &str, edit: &str, mut milliseconds: Vec<f64>) {

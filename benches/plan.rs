@@ -137,7 +137,7 @@ fn random(sessions: &mut [Session; 2]) -> Result<(), Failure> {
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     println!(
         "{DOCUMENTS} random documents, {} kernels: {same} pictures are the same to the last bit; pixels off by more than \
-         1e-3: at most {:.2} %, {:.3} % in the mean; whole pictures off by at most {:.1e}\n",
+         1e-3: at most {:.2} %, {:.3} % in the mean; whole images off by at most {:.1e}\n",
         kernels.len(),
         100.0 * most(&pixels_off),
         100.0 * pixels_off.iter().sum::<f64>() / DOCUMENTS as f64,

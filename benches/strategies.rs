@@ -1,7 +1,7 @@
 //! What light sampling gains: error after equal time, quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench strategies [-- FILE.hdr…]`: the teapot under the sky with its sun and under each file given, for
-//! each strategy the relative mean squared error against a long render, after the same time on the processor engine.
+//! each strategy the relative mean squared error against a long render, after the same time on the CPU engine.
 //! Strategies take turns, so that whatever else the machine does meets all of them.
 
 use std::path::PathBuf;

@@ -62,6 +62,15 @@ pub fn level() -> Level {
     *ASKED_FOR.get_or_init(best)
 }
 
+/// Name of the instruction set in use.
+pub fn level_name() -> &'static str {
+    let is_it = |choice: &&Instructions| {
+        let found = choice.level().filter(|_| **choice != Instructions::Auto);
+        found.is_some_and(|found| std::mem::discriminant(&found) == std::mem::discriminant(&level()))
+    };
+    Instructions::ALL.iter().find(is_it).map_or("", |choice| choice.name())
+}
+
 /// The best instruction set of this processor that the build has. Builds for tests leave AVX-512 out unless the feature
 /// `every-level` is on: it takes a compilation of the whole engine more.
 fn best() -> Level {

@@ -78,6 +78,7 @@ fn message(error: &anyhow::Error) -> String {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
     arguments.ray_queries.choose();
+    arguments.denoise_device.choose();
     if arguments.allow_outside {
         glossmith::import::resource::allow_everything();
     }
@@ -102,7 +103,7 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
         return glossmith::app::run(arguments.files, arguments.engine);
     }
     say::line(format_args!(
-        "There is no display to open a window on: rendering a quick picture to glossmith.png instead."
+        "There is no display to open a window on: rendering a quick image to glossmith.png instead."
     ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
     say::line(format_args!(

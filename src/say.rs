@@ -1,7 +1,7 @@
 //! Words for people, and answers on standard output: the only place that prints.
 //!
-//! Words never decide what becomes of a picture. Where nobody listens any more, or the disk that they go to is full, the
-//! work goes on; [`finish`] tells at the end.
+//! Words never decide what becomes of an image. Where nobody listens any more, or the disk that they go to is full, the
+//! work goes on; [`finish`] reports at the end.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
@@ -32,7 +32,7 @@ pub fn line(words: fmt::Arguments<'_>) {
     let _ = io::stderr().write_all(format!("{words}\n").as_bytes());
 }
 
-/// Prints on standard output. What can't be printed is lost, and told by [`finish`].
+/// Prints on standard output. What can't be printed is lost, and reported by [`finish`].
 pub(crate) fn print(words: fmt::Arguments<'_>) {
     print_bytes(words.to_string().as_bytes());
 }

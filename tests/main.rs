@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/benchmark.rs"]
+mod benchmark;
 #[cfg(unix)]
 #[path = "suite/bounded.rs"]
 mod bounded;
@@ -48,6 +50,8 @@ mod default_look;
 mod denoise;
 #[path = "suite/denoise_cases.rs"]
 mod denoise_cases;
+#[path = "suite/denoise_libraries.rs"]
+mod denoise_libraries;
 #[path = "suite/denoise_told.rs"]
 mod denoise_told;
 #[path = "suite/density.rs"]
@@ -60,6 +64,10 @@ mod device_loss;
 mod docs;
 #[path = "suite/docs_commands.rs"]
 mod docs_commands;
+#[path = "suite/docs_results.rs"]
+mod docs_results;
+#[path = "suite/docs_tables.rs"]
+mod docs_tables;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/elementary.rs"]
@@ -138,6 +146,8 @@ mod lobe_views;
 mod look_of_ggx;
 #[path = "suite/lut.rs"]
 mod lut;
+#[path = "suite/manual.rs"]
+mod manual;
 #[path = "suite/many_materials.rs"]
 mod many_materials;
 #[path = "suite/memory.rs"]
@@ -214,6 +224,8 @@ mod textures;
 mod tone;
 #[path = "suite/transmission.rs"]
 mod transmission;
+#[path = "suite/tutorials.rs"]
+mod tutorials;
 #[path = "suite/twin_names.rs"]
 mod twin_names;
 #[path = "suite/ui.rs"]
@@ -250,6 +262,8 @@ mod ui_strangers;
 mod ui_study;
 #[path = "suite/ui_textures.rs"]
 mod ui_textures;
+#[path = "suite/ui_windows.rs"]
+mod ui_windows;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
 #[path = "suite/ui_workspaces.rs"]

@@ -25,12 +25,12 @@ pub enum Action {
     Do(Command),
     /// Opens a file by its ending.
     Open(PathBuf),
-    /// Takes files that were dropped on the window together: pictures are put on the selected material, anything else is
+    /// Takes files that were dropped on the window together: images are assigned to the selected material, anything else is
     /// opened.
     Drop(Vec<PathBuf>),
     /// Takes text that was pasted into the window: names of files.
     Paste(String),
-    /// Says what to do with a picture that was pasted.
+    /// Says what to do with an image that was pasted.
     PastePicture,
     /// Cancels what is being loaded or prepared.
     CancelLoading,
@@ -42,9 +42,9 @@ pub enum Action {
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
-    /// Asks for a table of colours for the picture.
+    /// Asks for a table of colours for the image.
     ChooseLut,
-    /// Asks for a picture to put on the selected material.
+    /// Asks for an image to assign to the selected material.
     ChooseTexture(TextureTarget),
     /// Asks where to write a material for another program.
     Export(Box<MaterialSettings>),
@@ -52,7 +52,7 @@ pub enum Action {
     CopyAs(Box<MaterialSettings>, &'static str),
     /// Selects a material slot.
     SelectSlot(usize),
-    /// Shows everything that made a sample (from 0) of a pixel of the picture.
+    /// Shows everything that made a sample (from 0) of a pixel of the image.
     Explain([u32; 2], u32),
     /// Changes the user's folder of materials.
     ChangeLibrary(Change),
@@ -68,7 +68,7 @@ pub enum Action {
     UseEngine(EngineChoice),
     /// Changes whether the GPU's engine uses ray queries.
     UseRayQueries(RayQueries),
-    /// Shows the picture or a map of its error or samples.
+    /// Shows the image or a map of its error or samples.
     Show(Shown),
     /// Looks from a bookmark of the camera, by number.
     UseBookmark(usize),
@@ -198,29 +198,31 @@ commands! {
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
     TakeCompared, View, "Replace A with B", "Applies B's materials and stops comparing.", None, 2;
     Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 3;
-    ZoomIn, View, "Magnify the picture", "Shows the picture's own pixels larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 3;
-    ZoomOut, View, "Less magnified", "Shows the picture's own pixels smaller, as far as the whole picture.", key(Key::Minus), 3;
-    ZoomFit, View, "Whole picture", "Shows the whole picture again, as large as it fits.", key(Key::Num0), 3;
+    ZoomIn, View, "Magnify the image", "Shows the pixels of the image larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 3;
+    ZoomOut, View, "Less magnified", "Shows the pixels of the image smaller, down to the whole image.", key(Key::Minus), 3;
+    ZoomFit, View, "Whole image", "Shows the whole image again, as large as it fits.", key(Key::Num0), 3;
     Denoise, View, "Denoise on or off", "Toggles denoising. How and when: Camera & image.", key(Key::D), 2;
     PreviewTurn, View, "Turntable preview", "Previews a turntable. Esc stops.", key(Key::T), 2;
-    Pin, View, "Pin a snapshot", "Keeps material, light and camera with the picture, to come back to.", key(Key::P), 2;
+    Pin, View, "Pin a snapshot", "Saves material, light and camera with a thumbnail, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts the panels of this workspace back to where they were at first.", None, 1;
     Pause, Render, "Pause / resume", "Stops rendering, or goes on with it.", key(Key::Space), 0;
     Restart, Render, "Restart render", "Restarts the render.", None, 0;
     Region, Render, "Render region", "Drag a rectangle to render only that part.", key(Key::B), 1;
-    ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
+    ClearRegion, Render, "Clear the render region", "Renders the whole image again. In the viewport: Esc.", None, 1;
     Measure, Render, "Profile features", "Renders with and without each feature and setting, and reports what each costs.", None, 2;
     Race, Render, "Run the race", "Compares techniques on this view: time to a given noise, and bias.", None, 2;
-    QueuePicture, Render, "Render to a file…", "Renders the document as it is, at its own picture size and with all its samples, into a file (.png, .exr, .hdr), while one goes on editing.", None, 3;
-    Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered pictures, while one goes on editing.", None, 3;
+    QueuePicture, Render, "Render to a file…", "Renders the document as it is, at its own size and with all its samples, into a file (.png, .exr, .hdr), in the background.", None, 3;
+    Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered images, in the background.", None, 3;
     Palette, Help, "Find a command…", "Lists every command, panel, parameter, material, environment and recent file; type to search.", keys(CTRL, Key::K), 0;
-    Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", key(Key::F1), 0;
+    Manual, Help, "Manual", "Opens the manual at the page about the panel under the pointer.", key(Key::F1), 0;
+    Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", keys(Modifiers::SHIFT, Key::F1), 0;
+    Benchmark, Help, "Benchmark", "Measures every engine and adapter of this machine, below the checks.", None, 1;
     About, Help, "About Glossmith", "Version, licence and the paper to cite.", None, 1;
 }
 
-/// The command whose keys were pressed, taken out of the input. Keys without modifiers belong to what has the focus,
+/// The command whose keys were pressed, removed from the input. Keys without modifiers belong to what has the focus,
 /// unless that is the viewport.
 pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
     let focused = ctx.memory(|memory| memory.focused());
@@ -233,10 +235,15 @@ pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option
     commands.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
     let free = commands
         .into_iter()
-        .filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any());
+        .filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any() || is_function(shortcut.logical_key));
     let mut free = free.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
     ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)))
         .map(|(command, _)| command)
+}
+
+/// A key that types nothing.
+fn is_function(key: Key) -> bool {
+    matches!(key, Key::F1 | Key::F11)
 }
 
 /// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.

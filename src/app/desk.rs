@@ -47,7 +47,7 @@ pub(super) struct Shared {
     pub(super) slots_of: Vec<(ModelSource, usize)>,
     /// What was said, oldest first.
     pub(super) messages: Vec<Entry>,
-    /// Small pictures of environments.
+    /// Thumbnails of environments.
     pub(super) environments: Environments,
     /// The files opened and saved last.
     pub(super) recent: Recent,
@@ -58,7 +58,7 @@ pub(super) struct Shared {
     pub(super) kept_engine: EngineChoice,
     /// Whether the GPU's engine uses ray queries, as it is remembered.
     pub(super) kept_ray_queries: RayQueries,
-    /// How large the picture is.
+    /// How large the image is.
     pub(super) resolution: Resolution,
     /// What of the render the viewport shows.
     pub(super) shown: Shown,
@@ -80,7 +80,7 @@ pub(super) struct Shared {
     pub(super) is_paused: bool,
     /// A study measures, for which the viewport's renderer rests.
     pub(super) is_measuring: bool,
-    /// Converged pictures to measure against.
+    /// Converged images to measure against.
     pub(super) references: ReferenceCache,
     /// The materials to choose from.
     pub(super) library: Library,
@@ -106,7 +106,7 @@ pub(super) enum Pick {
 /// The angle between view and normal at first, degrees.
 pub(super) const VIEW_ANGLE_DEG: f32 = 45.0;
 
-/// How large the picture is.
+/// How large the image is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Resolution {
     /// It fills the viewport: with the screen's pixels on a hardware GPU, else with one a point.
@@ -120,12 +120,12 @@ pub enum Resolution {
     Document,
 }
 
-/// The sizes of the picture to choose from: (value, label, help).
+/// The sizes of the image to choose from: (value, label, help).
 pub(super) const RESOLUTIONS: [(Resolution, &str, &str); 4] = [
     (
         Resolution::Auto,
         "Fill",
-        "Fills the viewport: with the screen's pixels on a GPU, with fewer on the processor.",
+        "Fills the viewport: with the screen's pixels on a GPU, with fewer on the CPU.",
     ),
     (
         Resolution::Native,
@@ -139,13 +139,13 @@ pub(super) const RESOLUTIONS: [(Resolution, &str, &str); 4] = [
     ),
     (
         Resolution::Document,
-        "Picture size",
-        "Width and height as set below, whatever the viewport's shape.",
+        "Image size",
+        "Width and height as set below, for any shape of the viewport.",
     ),
 ];
 
-/// The group of the settings that only count where the viewport has the picture's size.
-pub(super) const PICTURE_SIZE: &str = "Picture size";
+/// The group of the settings that only count where the viewport has the image's size.
+pub(super) const PICTURE_SIZE: &str = "Image size";
 
 impl Desk<'_> {
     pub(super) fn act(&mut self, command: Command) {
@@ -162,7 +162,7 @@ impl Desk<'_> {
         response
     }
 
-    /// Asks for the pictures of the environments that a part of the window shows, and takes those that are there.
+    /// Asks for the images of the environments that a part of the window shows, and takes those that are there.
     pub(super) fn make_environment_pictures(
         &mut self,
         ctx: &egui::Context,

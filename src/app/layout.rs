@@ -11,6 +11,7 @@ use crate::app::kit::theme;
 use crate::app::pane::Home;
 pub use crate::app::pane::Pane;
 use crate::app::panels::Panels;
+use crate::app::sheets::book::help_button;
 use crate::app::viewport::Viewport;
 
 /// Shares of the window's width: at 1366 points all tabs fit.
@@ -29,7 +30,7 @@ const LOOK_PANES: [Pane; 8] = [
     Pane::Curve,
 ];
 
-/// The layout of *Look*: presets over light and camera on the left, the picture, the material on the right.
+/// The layout of *Look*: presets over light and camera on the left, the image, the material on the right.
 pub(super) fn to_look() -> Tree<Pane> {
     let mut tree = all_docked();
     let place = |tree: &Tree<Pane>, pane| tree.tiles.find_pane(&pane);
@@ -83,7 +84,7 @@ fn panes_of(home: Home) -> impl Iterator<Item = Pane> {
 }
 
 /// Puts the panels that a layout lacks beside those that they are docked with at first: one that was read from disk may
-/// be of a version that did not have them yet. `None` where the picture is missing.
+/// be of a version that did not have them yet. `None` where the image is missing.
 pub(super) fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
     viewport_tile(&tree)?;
     for pane in Pane::ALL {
@@ -175,6 +176,13 @@ impl Behavior<Pane> for Panes<'_, '_> {
         titles(tiles, tile_id).join(" | ").into()
     }
 
+    fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
+        let active = tabs.active.and_then(|tile| tiles.get(tile));
+        if let Some(Tile::Pane(pane)) = active {
+            help_button(ui, pane.title(), pane.manual());
+        }
+    }
+
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
         theme::BAR_HEIGHT
     }
@@ -224,12 +232,21 @@ impl Behavior<Pane> for Panes<'_, '_> {
     }
 }
 
-/// The tile that holds the picture.
+/// The tile that holds the image.
 pub(super) fn viewport_tile(tree: &Tree<Pane>) -> Option<TileId> {
     tree.tiles.find_pane(&Pane::Viewport)
 }
 
-/// Hides all panels but the picture, or shows them.
+/// The panel that is seen at a point of the window.
+pub(super) fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
+    let is_there = |tile: TileId| tree.tiles.rect(tile).is_some_and(|rect| rect.contains(at));
+    let panes = Pane::ALL.into_iter().filter(|pane| is_open(tree, *pane));
+    panes
+        .into_iter()
+        .find(|pane| tree.tiles.find_pane(pane).is_some_and(is_there))
+}
+
+/// Hides all panels but the image, or shows them.
 pub(super) fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
     let Some(root) = tree.root() else { return };
     let viewport = viewport_tile(tree);

@@ -5,6 +5,7 @@
 //! differs from the one last submitted is submitted.
 
 pub mod actions;
+pub mod book;
 mod desk;
 mod handlers;
 mod kit;
@@ -41,6 +42,7 @@ pub use services::heard::listen;
 use services::recent::Recent;
 pub use services::{compare, library, snapshots};
 use services::{environments, messages};
+use sheets::book::Manual;
 use sheets::dialogs::Dialogs;
 use sheets::export::ExportSheet;
 use sheets::menu::{self, Sheet};
@@ -61,7 +63,7 @@ use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::still_life;
 
-/// A finished picture that has cost this much time keeps its size while nothing but the viewport's size changes.
+/// A finished image that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
 /// Changes that follow each other within this are rendered as moving.
 const MOVING: Duration = Duration::from_millis(150);
@@ -99,16 +101,16 @@ pub struct Options {
     pub engine: EngineChoice,
     /// The document instead of the default one.
     pub document: Option<Document>,
-    /// The size of the picture instead of the one remembered.
+    /// The size of the image instead of the one remembered.
     pub resolution: Option<Resolution>,
     /// The folder for what belongs to the user: materials, and unsaved edits for after a crash. Without one neither is
     /// kept.
     pub data: Option<PathBuf>,
-    /// The folder for what can be made again: small pictures of materials. Without one none are made.
+    /// The folder for what can be made again: thumbnails of materials. Without one none are made.
     pub cache: Option<PathBuf>,
     /// At least so long between two copies of unsaved edits, instead of 5 s.
     pub autosave_interval: Option<Duration>,
-    /// The render time from which a finished picture keeps its size when the viewport gets another, instead of 10 s.
+    /// The render time from which a finished image keeps its size when the viewport gets another, instead of 10 s.
     pub keep_pictures_from: Option<Duration>,
     /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
     pub typed_paths: Option<PathBuf>,
@@ -142,6 +144,7 @@ pub struct App {
     viewport: Viewport,
     dialogs: Dialogs,
     sheet: Sheet,
+    manual: Manual,
     turntable: TurntableSheet,
     export: ExportSheet,
     files: handlers::files::Files,
@@ -149,7 +152,7 @@ pub struct App {
     /// What crashes left and the user has not decided about.
     leftovers: Vec<Leftover>,
     unsaved: Unsaved,
-    /// The file that a picture of the window is wanted for.
+    /// The file that a screenshot is wanted for.
     window_picture: Option<PathBuf>,
     /// What to say once the clipboard has taken a copy.
     copied: Option<String>,
@@ -168,7 +171,7 @@ fn new_document(denoise: Denoise, is_for_files: bool) -> Document {
     denoised_by(denoise, document)
 }
 
-/// The document, whose noise is taken out as before.
+/// The document, denoised as before.
 fn denoised_by(denoise: Denoise, mut document: Document) -> Document {
     document.view.denoise = denoise;
     document
@@ -251,6 +254,7 @@ impl App {
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
+            manual: Manual::default(),
             turntable: TurntableSheet::default(),
             export: ExportSheet::default(),
             files: handlers::files::Files::new(creation.egui_ctx.clone())?,
@@ -285,7 +289,7 @@ impl App {
         self.worker.snapshot()
     }
 
-    /// Whether the picture shown is the finished one of the document as it is.
+    /// Whether the image shown is the finished one of the document as it is.
     pub fn is_settled(&self) -> bool {
         let snapshot = self.worker.snapshot();
         let is_current = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
@@ -382,12 +386,12 @@ impl App {
     /// Records what was edited since this was last done.
     fn record(&mut self, is_dragging: bool) {
         if self.edits.record(&self.document, is_dragging) {
-            let label = self.edits.undo_label().unwrap_or("an edit taken back");
+            let label = self.edits.undo_label().unwrap_or("an edit undone");
             self.autosave.witness.note(label);
         }
     }
 
-    /// Small pictures of materials wait until the picture is there, and while something is being changed; so do renders.
+    /// Thumbnails of materials wait until the image is there, and while something is being changed; so do renders.
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
         let is_changing = is_dragging(ctx) || self.edits.is_in_flow();
@@ -466,6 +470,8 @@ impl App {
         self.show_recovery(ui.ctx());
         self.show_question(ui.ctx());
         self.show_queue_question(ui.ctx());
+        let is_covered = self.is_covered();
+        self.manual.show(ui.ctx(), is_covered);
     }
 
     /// Whether something lies over the window that takes the keys.
@@ -518,6 +524,8 @@ impl eframe::App for App {
         keys::hold_typing(&ctx);
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
+        } else if ctx.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::F1)) {
+            actions.push(Action::Do(actions::Command::Manual));
         }
         self.shared.selection.begin_frame();
         self.shared.look.begin_frame();

@@ -11,54 +11,55 @@ pub(super) enum Home {
     LowerRight,
 }
 
-/// Hands the list of the panels to a macro: name in saved layouts, title of the tab, where it is docked at first, and the
-/// module in `src/app/panels/` with the type that it is. A line here is all that a new file there needs.
+/// Hands the list of the panels to a macro: name in saved layouts, title of the tab, where it is docked at first, the
+/// module in `src/app/panels/` with the type that it is, and the address of its page in the book. A line here is all that a
+/// new file there needs.
 macro_rules! list {
     ($make:ident) => {
         $make! {
             /// Materials to start from.
-            Presets, "Presets", UpperLeft, presets::PresetsPanel;
+            Presets, "Presets", UpperLeft, presets::PresetsPanel, "reference/window.md#presets";
             /// Objects, materials, lights and cameras.
-            Scene, "Scene", UpperLeft, scene::ScenePanel;
+            Scene, "Scene", UpperLeft, scene::ScenePanel, "reference/window.md#scene";
             /// Pinned states.
-            Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel;
+            Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel, "how-to/compare.md#snapshots";
             /// Renders that go on beside.
-            Queue, "Queue", UpperLeft, queue::QueuePanel;
+            Queue, "Queue", UpperLeft, queue::QueuePanel, "reference/window.md#saving-and-queueing";
             /// Environment, background, ground.
-            Lighting, "Light", LowerLeft, lighting::LightingPanel;
+            Lighting, "Light", LowerLeft, lighting::LightingPanel, "how-to/lights.md";
             /// Camera, view and render settings.
-            Camera, "Camera & image", LowerLeft, camera::CameraPanel;
+            Camera, "Camera & image", LowerLeft, camera::CameraPanel, "reference/settings.md";
             /// What is simulated, why, and what it costs.
-            Effects, "Effects", LowerLeft, effects::EffectsPanel;
+            Effects, "Effects", LowerLeft, effects::EffectsPanel, "how-to/profile.md";
             /// Techniques against each other.
-            Race, "Race", LowerLeft, race::RacePanel;
+            Race, "Race", LowerLeft, race::RacePanel, "how-to/profile.md#race-techniques";
             /// The material's parameters.
-            Material, "Material", UpperRight, material::MaterialPanel;
+            Material, "Material", UpperRight, material::MaterialPanel, "reference/materials.md";
             /// The proof on this machine.
-            Check, "Check", UpperRight, check::CheckPanel;
+            Check, "Check", UpperRight, check::CheckPanel, "STABILITY.md";
             /// What was said.
-            Log, "Log", UpperRight, log::LogPanel;
+            Log, "Log", UpperRight, log::LogPanel, "reference/window.md#messages";
             /// The geometric lobe's curve.
-            Curve, "Curve", LowerRight, curve::CurvePanel;
+            Curve, "Curve", LowerRight, curve::CurvePanel, "tutorials/geometric-lobe.md#what-dξ-does";
             /// What the lobe draws.
-            Samples, "Samples", LowerRight, samples::SamplesPanel;
+            Samples, "Samples", LowerRight, samples::SamplesPanel, "tutorials/geometric-lobe.md#three-formulas";
             /// The lobe itself.
-            Lobe, "Lobe", LowerRight, lobe::LobePanel;
-            /// What is known of a pixel, and how bright the picture is.
-            Inspector, "Inspector", LowerRight, inspector::InspectorPanel;
+            Lobe, "Lobe", LowerRight, lobe::LobePanel, "how-to/match.md";
+            /// What is known of a pixel, and how bright the image is.
+            Inspector, "Inspector", LowerRight, inspector::InspectorPanel, "reference/window.md#error-and-display";
             /// Error against time.
-            Convergence, "Convergence", LowerRight, convergence::ConvergencePanel;
+            Convergence, "Convergence", LowerRight, convergence::ConvergencePanel, "tutorials/accuracy.md#2-render-to-an-error";
         }
     };
 }
 pub(super) use list;
 
 macro_rules! panes {
-    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident;)*) => {
+    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident, $manual:literal;)*) => {
         /// A part of the window with a tab: the viewport or a panel.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Pane {
-            /// The picture.
+            /// The image.
             Viewport,
             $($(#[$doc])* $name,)*
         }
@@ -72,6 +73,14 @@ macro_rules! panes {
                 match self {
                     Self::Viewport => "Viewport",
                     $(Self::$name => $title,)*
+                }
+            }
+
+            /// Address in the book: a page, with an anchor or without.
+            pub fn manual(self) -> &'static str {
+                match self {
+                    Self::Viewport => "reference/window.md#viewport",
+                    $(Self::$name => $manual,)*
                 }
             }
 

@@ -42,7 +42,7 @@ fn app_id() -> String {
     std::env::var("FLATPAK_ID").unwrap_or_else(|_| "glossmith".to_owned())
 }
 
-/// The window's picture, which desktops show beside its name.
+/// The window's image, which desktops show beside its name.
 fn icon() -> Arc<egui::IconData> {
     let png = include_bytes!("../../assets/desktop/glossmith.png");
     let icon = eframe::icon_data::from_png_bytes(png);
@@ -52,7 +52,7 @@ fn icon() -> Arc<egui::IconData> {
     Arc::new(icon.unwrap_or_default())
 }
 
-/// Frames after the start in which the window is fitted to the screen: by then the system has told both sizes.
+/// Frames after the start in which the window is fitted to the screen: by then the system has reported both sizes.
 const FITTED_FRAMES: u64 = 30;
 
 /// Fills the screen with a window that was opened as large as it or larger: what is around a window would push its last
@@ -132,7 +132,7 @@ pub(super) struct Kept {
     pub(super) engine: EngineChoice,
     /// Whether the GPU's engine uses ray queries, as it was chosen by hand.
     pub(super) ray_queries: RayQueries,
-    /// How noise was taken out last: new documents begin with that.
+    /// How images were denoised last: new documents begin with that.
     #[serde(default = "first_denoise")]
     pub(super) denoise: Denoise,
     /// Files opened and saved, the latest first.

@@ -42,7 +42,7 @@ pub(super) struct StudyWorker<R> {
     /// The viewport's renderer was stopped for it.
     holds_renderer: bool,
     /// It is to be started as soon as it is shown.
-    is_wished: bool,
+    is_requested: bool,
     /// The document that it was asked about last, and what its outcome made of it.
     asked: Vec<Document>,
 }
@@ -55,7 +55,7 @@ impl<R> Default for StudyWorker<R> {
             begun: None,
             is_stopped: false,
             holds_renderer: false,
-            is_wished: false,
+            is_requested: false,
             asked: Vec::new(),
         }
     }
@@ -86,8 +86,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// Starts the study when its controls are shown next, unless it runs.
-    pub(super) fn wish(&mut self) {
-        self.is_wished = true;
+    pub(super) fn request(&mut self) {
+        self.is_requested = true;
     }
 
     /// A button that starts the study with what it will take, and while it runs what it does, what is left of it, and a
@@ -104,7 +104,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
         let is_free = !desk.shared.is_measuring && !self.is_at_work();
-        let is_wished = is_free && std::mem::take(&mut self.is_wished);
+        let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
                 let button = button.on_hover_text(help);
@@ -114,7 +114,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             if pressed == Pressed::Stop {
                 self.stop.store(true, Ordering::Relaxed);
                 self.is_stopped = true;
-            } else if pressed == Pressed::Start || (is_wished && !is_busy) {
+            } else if pressed == Pressed::Start || (is_requested && !is_busy) {
                 self.asked = vec![desk.document.clone()];
                 let work = begin(desk);
                 self.begin(ui, work);

@@ -12,6 +12,7 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::say::put;
+use crate::scene::path_text::path_text;
 use crate::store::replace::save_atomically;
 
 /// Where an answer goes.
@@ -99,7 +100,7 @@ enum LinesPlace {
     Output,
     /// A pipe or a device.
     Special(File),
-    /// A file, which is replaced as pictures are, with what is in it.
+    /// A file, which is replaced as images are, with what is in it.
     File(String),
 }
 
@@ -163,9 +164,9 @@ pub(super) fn write_json(destination: &Destination, value: &impl Serialize) -> a
     }
 }
 
-/// Names of files as JSON can have them: what is no Unicode is replaced.
+/// Names of files as JSON can have them.
 pub(super) fn file_names<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Vec<Cow<'a, str>> {
-    files.into_iter().map(|file| file.to_string_lossy()).collect()
+    files.into_iter().map(|file| path_text(file)).collect()
 }
 
 /// Whether this is a pipe or a device, into which is written.

@@ -12,6 +12,7 @@ use crate::document::ImportLobe;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
 use crate::say::say;
+use crate::scene::path_text::path_text;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
 use crate::store::preset;
@@ -68,7 +69,7 @@ fn format(text: &str) -> Result<&'static Registered, String> {
     exchange::by_name(text).ok_or_else(|| format!("expected one of {}", known()))
 }
 
-/// Converts and tells what was lost.
+/// Converts and reports what was lost.
 ///
 /// # Errors
 /// One line that names the file, what is wrong and what to do. Of many files those that can be are converted.
@@ -144,7 +145,7 @@ fn convert(input: &Path, output: &Path, arguments: &ConvertArguments) -> anyhow:
         is_plain: arguments.without_exact,
         ..ReadOptions::default()
     };
-    let name = input.to_string_lossy();
+    let name = path_text(input);
     let mut subject = match preset::material_by_name(&name) {
         Some(material) => Subject::of(material.clone()),
         None if input.extension().is_none() => Subject::of(preset::find(&name)?.value),

@@ -39,14 +39,14 @@ pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
 }
 
 fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {
-    // Only the processor tells what happens on a path.
+    // Only the CPU reports what happens on a path.
     let mut session = Session::open(EngineChoice::Cpu)?;
     let document = arguments.scene.document(&mut session)?;
     let size = [document.render.width, document.render.height];
     let [x, y] = arguments.pixel;
     if x >= size[0] || y >= size[1] {
         bail!(
-            "--pixel {x},{y}: the picture has {} x {} pixels; give a place in it, or another --size",
+            "--pixel {x},{y}: the image has {} x {} pixels; give a place in it, or another --size",
             size[0],
             size[1]
         );

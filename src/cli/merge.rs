@@ -1,4 +1,4 @@
-//! `glossmith merge`: films of the same picture, joined.
+//! `glossmith merge`: films of the same image, joined.
 
 use std::path::PathBuf;
 
@@ -95,7 +95,7 @@ fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
 /// The image of a film without its noise, where its document asks for that.
 ///
 /// # Errors
-/// Where the denoiser is not there or fails, or the film lacks what it is led by.
+/// Where the denoiser is not there or fails, or the film lacks what it is guided by.
 pub(super) fn denoised(film: &KeptFilm) -> anyhow::Result<Option<Denoised>> {
     let how = film.document.view.denoise;
     if how == Denoise::Off {

@@ -6,6 +6,7 @@
 
 mod answer;
 mod batch;
+mod benchmark;
 mod check;
 mod convert;
 mod explain;
@@ -33,6 +34,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::instructions::Instructions;
+use crate::render::denoise::DenoiseDevice;
 use crate::render::{EngineChoice, RayQueries};
 use crate::store::file_kind::what_is_opened;
 
@@ -62,13 +64,16 @@ pub struct Arguments {
     /// Whether the GPU engine uses hardware ray tracing: if measured to be faster; if available; never.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
     pub ray_queries: RayQueries,
+    /// The device that denoises: the fastest; a GPU (CUDA, HIP, SYCL, Metal), or the CPU where none works; the CPU.
+    #[arg(long, global = true, default_value = "auto", value_name = "auto|gpu|cpu")]
+    pub denoise_device: DenoiseDevice,
     /// Read what files name wherever it lies. Without it they may name what is in the folder above their own, and below.
     #[arg(long, global = true)]
     pub allow_outside: bool,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \
-                          arguments; 3 some of several were done; 129, 130, 143 a signal (SIGHUP, SIGINT, SIGTERM) \
+                          arguments; 3 some of several were done. 129, 130, 143: a signal (SIGHUP, SIGINT, SIGTERM) \
                           ended a render, and what there was is written.";
 
 macro_rules! subcommands {
@@ -105,6 +110,8 @@ subcommands! {
     Turntable(Box<turntable::TurntableArguments>) => turntable::run;
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments) => check::run;
+    /// Measure every engine and adapter of this machine in three minutes, or compare two such measurements.
+    Benchmark(benchmark::BenchmarkArguments) => benchmark::run;
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments) => scatter::run;
     /// Match the look of another lobe or of a measured material.

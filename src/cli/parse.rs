@@ -1,17 +1,20 @@
 //! What stands behind an option on the command line: text to value, or a sentence that says what is expected.
 
+use std::convert::Infallible;
 use std::fs::OpenOptions;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PathBufValueParser, TypedValueParser};
 
 use crate::document::parameter::parse_color;
 use crate::document::{Background, Document, ParameterError, range};
 use crate::instructions::{Instructions, Missing};
 use crate::render::output::{OutputError, format_of};
+use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentEncoding;
+use crate::scene::path_text::path_text;
 use crate::store::replace::check_saving;
 
 /// An instruction set that this processor has.
@@ -106,6 +109,27 @@ pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
     }
 }
 
+/// The name of a file or of something built in: files whose names are not Unicode go by their addresses.
+pub(super) fn name_of_file<T, E>(
+    read: impl Fn(&str) -> Result<T, E> + Clone + Send + Sync + 'static,
+) -> impl TypedValueParser<Value = T>
+where
+    T: Clone + Send + Sync + 'static,
+    E: Into<Box<dyn std::error::Error + Send + Sync>>,
+{
+    OsStringValueParser::new().try_map(move |name| read(&path_text(Path::new(&name))))
+}
+
+/// A model.
+pub(super) fn model(text: &str) -> Result<ModelSource, Infallible> {
+    Ok(text.into())
+}
+
+/// A material's name or file.
+pub(super) fn material(text: &str) -> Result<String, Infallible> {
+    Ok(text.to_owned())
+}
+
 /// The name of an image; its ending is one of those that are written.
 pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };
@@ -135,7 +159,7 @@ fn check_opens(path: &Path) -> anyhow::Result<()> {
         )
     })?;
     if !existed {
-        // Whatever is left is about to be overwritten.
+        // The rest is about to be overwritten.
         let _ = std::fs::remove_file(path);
     }
     Ok(())

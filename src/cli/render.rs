@@ -1,4 +1,4 @@
-//! `glossmith render`: a document from arguments, a picture in a file.
+//! `glossmith render`: a document from arguments, an image in a file.
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
@@ -138,9 +138,9 @@ fn render(
     targets: &Targets<'_>,
 ) -> anyhow::Result<()> {
     if targets.has_layers {
-        session.keep_guides("layers of the picture are written");
+        session.keep_guides("layers of the image are written");
     } else if targets.has_sums {
-        session.keep_guides("sums of the picture are kept");
+        session.keep_guides("sums of the image are kept");
     }
     let waiting = Waiting::on(session.assets().loading());
     to_end::submit(&mut session, engine, document)?;
@@ -163,7 +163,7 @@ fn render(
         ..Rendered::from(&image)
     };
     write_pictures(targets.outputs, rendered, document)?;
-    // Words come after the picture: who does not read them must not hold it up.
+    // Words come after the image: who does not read them must not hold it up.
     say!("{}", summary(&progress));
     say_written(targets.outputs);
     if let Some(destination) = targets.report {
@@ -201,7 +201,7 @@ pub(super) fn say_written(outputs: &[PathBuf]) {
 pub(super) fn check_takes(option: &str, outputs: &[PathBuf]) -> anyhow::Result<()> {
     let is_exr = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
     if !outputs.iter().any(is_exr) {
-        bail!("{option} writes into .exr pictures; give --output FILE.exr");
+        bail!("{option} writes into .exr images; give --output FILE.exr");
     }
     Ok(())
 }
@@ -261,7 +261,7 @@ fn step_to_end(
     if ended.progress.is_done {
         return Ok((ended.progress, ended.denoised));
     }
-    // What there is of a picture that was stopped is denoised as well.
+    // What there is of an image that was stopped is denoised as well.
     let denoised = attendant.finish(session)?;
     Ok((session.progress(), denoised))
 }

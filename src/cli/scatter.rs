@@ -1,4 +1,4 @@
-//! `glossmith scatter`: samples of a lobe as numbers or as a picture.
+//! `glossmith scatter`: samples of a lobe as numbers or as an image.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -1,6 +1,7 @@
 //! What is rendered, and how: a document from files and options.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr as _;
 
 use anyhow::bail;
 use clap::Args;
@@ -31,7 +32,7 @@ pub struct SceneArguments {
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
-    #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball|still-life")]
+    #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball|still-life", value_parser = parse::name_of_file(parse::model))]
     model: Option<ModelSource>,
     /// Which scene of the model's file, counted from 0. Without it the file's default one.
     #[arg(long, value_name = "N")]
@@ -51,7 +52,7 @@ pub struct SceneArguments {
     /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky,
     /// furnace), an image of the whole sphere (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp; lat-long or cube map), or a
     /// folder with the six faces of a cube [default: product].
-    #[arg(long, value_name = "FILE|NAME")]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(EnvironmentSource::from_str))]
     environment: Option<EnvironmentSource>,
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
@@ -62,10 +63,10 @@ pub struct SceneArguments {
     #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
-    /// (degrees), softness, color, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
+    /// (degrees), softness, colour, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
     #[arg(long = "spot", value_name = "WORD=VALUE,…", value_parser = lights::spot, allow_hyphen_values = true)]
     spots: Vec<LightArgument>,
-    /// A sun: yaw, pitch (degrees), angle across it (degrees), color, temperature (5600K), strength (irradiance at the model)
+    /// A sun: yaw, pitch (degrees), angle across it (degrees), colour, temperature (5600K), strength (irradiance at the model)
     /// or power (lux, the same). May be repeated.
     #[arg(long = "sun", value_name = "WORD=VALUE,…", value_parser = lights::sun, allow_hyphen_values = true)]
     suns: Vec<LightArgument>,
@@ -74,9 +75,9 @@ pub struct SceneArguments {
     background: Option<Background>,
     /// The material of everything: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
     /// Without it a file's own materials stay.
-    #[arg(long, value_name = "FILE|NAME")]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
     material: Option<String>,
-    /// Put an image on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
+    /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
     /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
     /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
     #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::texture)]
@@ -155,7 +156,7 @@ impl SceneArguments {
         Ok(document)
     }
 
-    /// Refuses pictures that are named here and can't be had; of those that files name the log tells. What is read stays with the
+    /// Refuses images that are named here and can't be had; those that files name are logged. What is read stays with the
     /// session.
     fn check_textures(&self, document: &Document, session: &mut Session) -> anyhow::Result<()> {
         let files = || self.textures.iter().flat_map(TextureArgument::files);

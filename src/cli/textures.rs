@@ -1,4 +1,4 @@
-//! `--texture`: pictures of one's own on materials.
+//! `--texture`: images of one's own on materials.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::named::Named as _;
 use crate::scene::Model;
 use crate::scene::texture::{TextureTarget, UserTexture, set};
 
-/// Images, and the material that they are put on.
+/// Images, and the material that they are assigned to.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TextureArgument {
     /// Name or number of the slot; every material where none is given.
@@ -32,8 +32,8 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
             Some((slot, name)) => (Some(slot.to_owned()), name),
             None => (None, left),
         };
-        let target = TextureTarget::by_name(name)
-            .ok_or_else(|| format!("{name} is nothing that a texture is put on; give one of {}", uses()))?;
+        let target =
+            TextureTarget::by_name(name).ok_or_else(|| format!("{name} takes no texture; give one of {}", uses()))?;
         let file = existing(file)?;
         let named = set::targets_of(&file).into_iter().find(|(known, _)| *known == target);
         let texture = named.map_or_else(|| UserTexture::of(file), |(_, texture)| texture);
@@ -53,7 +53,7 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
     };
     if textures.is_empty() {
         return Err(format!(
-            "{}: no name here says what a picture is for, as wood_basecolor.png does; write USE={0}, with one of {}",
+            "{}: no name here says what a texture is for, as wood_basecolor.png does; write USE={0}, with one of {}",
             path.display(),
             uses()
         ));

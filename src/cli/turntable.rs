@@ -1,4 +1,4 @@
-//! `glossmith turntable`: a document turned once, as numbered pictures or a video.
+//! `glossmith turntable`: a document turned once, as numbered images or a video.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -15,6 +15,7 @@ use crate::document::turntable::Turn;
 use crate::render::Session;
 use crate::render::turntable::{FPS, Turntable, frame_path, render};
 use crate::say::say;
+use crate::scene::path_text::path_text;
 use crate::store::video::{self, VideoFormat};
 
 /// Arguments of `glossmith turntable`.
@@ -130,7 +131,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         "dropped_samples": outcome.dropped,
         "seed": render.seed,
         "files": file_names(pictures.iter().chain(video)),
-        "video": video.map(|video| video.to_string_lossy()),
+        "video": video.map(|video| path_text(video)),
         "fps": video.map(|_| table.fps),
         "stopped_by": ended_by.map(|_| "signal"),
     });

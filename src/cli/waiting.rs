@@ -1,4 +1,4 @@
-//! What is being loaded, told on a terminal while one waits.
+//! What is being loaded, shown on a terminal while one waits.
 
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::scene::Loading;
 /// From one look at what is being done to the next.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// A line that tells what is being loaded, until this value is dropped. Nothing where stderr is no terminal.
+/// A line that shows what is being loaded, until this value is dropped. Nothing where stderr is no terminal.
 pub(super) struct Waiting {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,

@@ -9,7 +9,7 @@ pub struct Change {
     pub display: bool,
     /// The camera.
     pub camera: bool,
-    /// Width or height of the picture.
+    /// Width or height of the image.
     pub size: bool,
     /// Another environment map.
     pub environment: bool,
@@ -21,13 +21,13 @@ pub struct Change {
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off, the part that is rendered.
     pub sampling: bool,
-    /// What is to be reached: samples, seconds, noise, of the samples or of the denoised picture, and how samples are
+    /// What is to be reached: samples, seconds, noise, of the samples or of the denoised image, and how samples are
     /// shared out on the way.
     pub target: bool,
 }
 
 impl Change {
-    /// What differs from `old` in `new`. Names and whatever else no picture depends on do not count.
+    /// What differs from `old` in `new`. Names and what else no image depends on do not count.
     pub fn between(old: &Document, new: &Document) -> Self {
         let mut change = Self::default();
         for setting in SETTINGS.iter() {
@@ -86,7 +86,7 @@ impl Change {
         }
     }
 
-    /// True where the picture and the way to it stay as they are.
+    /// True where the image and the way to it stay as they are.
     pub fn is_none(self) -> bool {
         self == Self::default()
     }

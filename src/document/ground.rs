@@ -6,7 +6,7 @@ use super::{Document, MaterialSettings};
 use crate::named::named;
 use crate::scene::ground::{Cyclorama, Ground};
 
-/// The least albedo of a shadow catcher, whose light is told by what it reflects.
+/// The least albedo of a shadow catcher, whose light is known by what it reflects.
 const CATCHER_ALBEDO_MIN: f32 = 1e-3;
 
 /// What the ground is, where there is one. Its colour stands beside it. Lengths are in bounding radii of the model.

@@ -12,9 +12,9 @@ pub struct History<T> {
     current: usize,
     /// Most steps that can be undone.
     limit: usize,
-    /// False where the next push starts a step of its own, whatever its key.
+    /// False where the next push starts a step of its own, with any key.
     is_open: bool,
-    /// Tells states apart.
+    /// Number that distinguishes states.
     next_id: u64,
     /// The state that was saved last, if it is still the one.
     saved_id: u64,

@@ -1,4 +1,4 @@
-//! Handles of area lights: where they are in the picture, and what pulling one makes of the light.
+//! Handles of area lights: where they are in the image, and what pulling one makes of the light.
 
 use glam::{DVec2, DVec3};
 
@@ -29,16 +29,16 @@ named! {
     }
 }
 
-/// How a scene is seen in a picture of this size.
+/// How a scene is seen in an image of this size.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// In the geometry's units.
     pub camera: Camera<f64>,
-    /// Width and height of the picture, points.
+    /// Width and height of the image, points.
     pub size: DVec2,
 }
 
-/// A pull of the pointer, in points from the picture's top left.
+/// A pull of the pointer, in points from the image's top left.
 #[derive(Clone, Copy, Debug)]
 pub struct Pull {
     /// Where it began.
@@ -59,13 +59,13 @@ impl View {
         (depth > 1e-6 && at.is_finite()).then(|| 0.5 * (at + 1.0) * self.size)
     }
 
-    /// The same within the picture.
+    /// The same within the image.
     pub fn seen_inside(&self, place: DVec3) -> Option<DVec2> {
         self.seen(place)
             .filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmple(self.size).all())
     }
 
-    /// The point of the picture's edge beyond which a place lies that is not in it.
+    /// The point of the image's edge beyond which a place lies that is not in it.
     pub fn edge_towards(&self, place: DVec3, margin: f64) -> DVec2 {
         let away = place - vector(self.camera.origin.to_f64());
         let side = |axis: [f64; 3]| away.dot(vector(axis).normalize());
@@ -85,7 +85,7 @@ impl View {
     }
 }
 
-/// The handles of a light and where they are: one alone, at the picture's edge, where the light is not in the picture.
+/// The handles of a light and where they are: one alone, at the image's edge, where the light is not in the image.
 pub fn handles(light: &AreaLight, view: &View, margin: f64) -> Vec<(LightHandle, DVec2)> {
     let shape = light.shape();
     let frame = shape.frame();
@@ -189,7 +189,7 @@ pub fn nudged(light: &AreaLight, handle: LightHandle, steps: DVec2) -> AreaLight
 }
 
 /// Moves a light so that it is under the pointer: over the sphere around its target, on the side that it was on, or where
-/// the pointer is beside that sphere, farther away from the target. One that was not in the picture comes into it.
+/// the pointer is beside that sphere, farther away from the target. One that was not in the image comes into it.
 fn move_around(light: &mut AreaLight, view: &View, middle: Option<DVec2>, pull: &Pull) {
     let shape = light.shape();
     let (frame, distance) = (shape.frame(), shape.distance);
@@ -286,7 +286,7 @@ mod tests {
                 pitch_deg: 20.0,
                 ..AreaLight::default()
             };
-            let at = middle(&light).expect("it is in the picture");
+            let at = middle(&light).expect("it is in the image");
             // Wherever on the mark it was taken hold of.
             let grabbed = at + DVec2::new(3.0, -2.0);
             let by = DVec2::new(25.0, -30.0);
@@ -319,7 +319,7 @@ mod tests {
             );
             let by = DVec2::new(-60.0, 20.0);
             let moved = pulled(&light, handle, &view(), &pull(at, by));
-            let now = middle(&moved).expect("it is in the picture");
+            let now = middle(&moved).expect("it is in the image");
             assert!(now.distance(at + by) < 1e-6, "{now} instead of {}", at + by);
             assert_eq!(moved.yaw_deg.abs() > 90.0, yaw_deg > 90.0, "{yaw_deg}: {moved:?}");
         }
@@ -339,7 +339,7 @@ mod tests {
         };
         let by = DVec2::new(40.0, 60.0);
         let moved = pulled(&light, handle, &view(), &pull(at, by));
-        assert!(middle(&moved).expect("it is in the picture").distance(at + by) < 1e-6);
+        assert!(middle(&moved).expect("it is in the image").distance(at + by) < 1e-6);
         assert!(moved.yaw_deg.abs() < 90.0 && moved.distance < 8.0, "{moved:?}");
     }
 
@@ -351,7 +351,7 @@ mod tests {
             distance: 1.0,
             ..AreaLight::default()
         };
-        let at = middle(&light).expect("it is in the picture");
+        let at = middle(&light).expect("it is in the image");
         let by = DVec2::new(200.0, -90.0);
         let moved = pulled(&light, LightHandle::Direction, &view(), &pull(at, by));
         assert!(middle(&moved).expect("it still is").distance(at + by) < 1e-6);

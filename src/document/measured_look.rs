@@ -10,7 +10,7 @@ use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use crate::optics::vector::Vec3;
 
-/// Roughnesses between which the highlight is looked for: a rougher lobe cannot be told from the base.
+/// Roughnesses between which the highlight is looked for: a rougher lobe cannot be distinguished from the base.
 const ROUGHNESS_RANGE: [f64; 2] = [0.005, 0.5];
 /// Reach of the curve that stands for the highlight.
 const DISTANCE_MAX: f64 = 4.0;

@@ -51,17 +51,17 @@ pub use crate::scene::camera::PixelFilter;
 
 use crate::scene::{ModelOptions, ModelSource};
 
-/// Everything that a picture depends on, except for the contents of the files it names.
+/// Everything that an image depends on, except for the contents of the files it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Document {
     /// What is rendered.
     pub model: ModelSource,
-    /// What is shown of a file that holds more than one picture.
+    /// What is shown of a file that holds more than one image.
     pub import: ModelOptions,
     /// The numbers of the objects of the model that are not shown, each once.
     pub hidden_objects: Vec<usize>,
-    /// Names of objects of the model instead of the file's, by number; no picture depends on them.
+    /// Names of objects of the model instead of the file's, by number; no image depends on them.
     pub object_names: BTreeMap<usize, String>,
     /// Whether the model stands on a ground.
     pub ground: bool,
@@ -71,11 +71,11 @@ pub struct Document {
     pub lighting: Lighting,
     /// Where it is seen from.
     pub camera: CameraSettings,
-    /// Metres of a scene unit: what lights' power is reckoned with; no picture depends on it.
+    /// Metres of a scene unit: what lights' power is reckoned with; no image depends on it.
     pub unit_m: f64,
-    /// Cameras to come back to; no picture depends on them.
+    /// Cameras to come back to; no image depends on them.
     pub bookmarks: Vec<Bookmark>,
-    /// How radiance becomes a picture.
+    /// How radiance becomes an image.
     pub view: ViewSettings,
     /// How, and for how long, it is rendered.
     pub render: RenderSettings,

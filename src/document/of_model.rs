@@ -42,7 +42,7 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
     report
 }
 
-/// What is to be told where lights of a file found no room.
+/// Message if lights of a file found no room.
 pub fn lights_left_out(count: usize) -> Option<String> {
     (count > 0).then(|| format!("{count} lights of the file are left out: there may be {LIGHTS_MAX} in all"))
 }

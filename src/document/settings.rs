@@ -27,7 +27,7 @@ pub mod range {
     pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
     /// Blur of the environment as a background, degrees.
     pub const BACKGROUND_BLUR_DEG: RangeInclusive<f64> = 0.0..=90.0;
-    /// Sides of the rendered part, shares of the picture.
+    /// Sides of the rendered part, shares of the image.
     pub const REGION: RangeInclusive<f64> = 0.0..=1.0;
     /// Coordinates and distances of the camera, scene units.
     pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
@@ -59,7 +59,7 @@ pub mod range {
     pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
     /// Render time, seconds.
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
-    /// Relative error of the picture at which rendering stops.
+    /// Relative error of the image at which rendering stops.
     pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
     /// Samples a pixel before an estimate of the error is believed.
     pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
@@ -97,7 +97,7 @@ pub mod range {
 pub struct Lighting {
     /// The environment map.
     pub environment: EnvironmentSource,
-    /// What the numbers of a picture for screens stand for, where the map is one.
+    /// What the numbers of an image for screens stand for, where the map is one.
     pub environment_encoding: EnvironmentEncoding,
     /// Turn of the map about +Y, anticlockwise seen from above, degrees.
     pub rotation_deg: f32,
@@ -163,7 +163,7 @@ pub struct CameraSettings {
     pub yaw_deg: f64,
     /// Height of the camera above the target's horizon, degrees in [−90, 90].
     pub pitch_deg: f64,
-    /// Distance from the target, scene units; `None`: so far that the model fills the picture.
+    /// Distance from the target, scene units; `None`: so far that the model fills the image.
     pub distance: Option<f64>,
     /// The camera's place; replaces yaw, pitch and distance.
     pub position: Option<[f64; 3]>,
@@ -203,7 +203,7 @@ pub struct Bookmark {
     pub camera: CameraSettings,
 }
 
-/// How radiance becomes a picture.
+/// How radiance becomes an image.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
@@ -211,7 +211,7 @@ pub struct ViewSettings {
     pub tone_map: ToneCurve,
     /// Stops by which radiance is multiplied before it: 2^exposure.
     pub exposure_ev: f32,
-    /// The exposure is added to one that brings the picture's mean brightness to middle grey.
+    /// The exposure is added to one that brings the image's mean brightness to middle grey.
     pub auto_exposure: bool,
     /// The temperature of the light that appears white, in K.
     pub white_k: f32,
@@ -225,10 +225,10 @@ pub struct ViewSettings {
     /// The share of the light that is spread around where it falls, as in a lens.
     #[serde(skip_serializing_if = "is_zero")]
     pub glare: f32,
-    /// A table of colours in a `.cube` file that the picture goes through last, as codes of sRGB.
+    /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lut: Option<PathBuf>,
-    /// Whether the picture's noise is taken out, and how.
+    /// Whether the image is denoised, and how.
     pub denoise: Denoise,
     /// When that is done in the window.
     pub denoise_when: DenoiseWhen,
@@ -258,19 +258,19 @@ impl Default for ViewSettings {
 }
 
 named! {
-    /// How a picture's noise is taken out.
+    /// How an image is denoised.
     #[derive(Default)]
     Denoise {
         #[default]
         Off = 0, "off", "Off", "The samples as they are.";
-        Fast = 1, "fast", "Fast", "Noise is taken out, in about half the time.";
-        High = 2, "high", "High quality", "Noise is taken out as well as can be.";
+        Fast = 1, "fast", "Fast", "Denoises in about half the time.";
+        High = 2, "high", "High quality", "Denoises at the best quality.";
         Auto = 3, "auto", "Automatic", "Blends the denoised and the raw image per tile to minimise the estimated error; converges to the raw image.";
     }
 }
 
 named! {
-    /// When the window takes a picture's noise out.
+    /// When the window denoises an image.
     #[derive(Default)]
     DenoiseWhen {
         #[default]
@@ -279,7 +279,7 @@ named! {
     }
 }
 
-/// How, and for how long, the picture is rendered.
+/// How, and for how long, the image is rendered.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RenderSettings {
@@ -289,11 +289,11 @@ pub struct RenderSettings {
     pub height: u32,
     /// Samples a pixel after which rendering stops.
     pub samples: u32,
-    /// The number of the first of them: a part of a picture's samples is rendered where it is not 0.
+    /// The number of the first of them: a part of an image's samples is rendered where it is not 0.
     pub first_sample: u32,
     /// Seconds after which it stops earlier.
     pub time_s: Option<f64>,
-    /// Relative error of the picture (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
+    /// Relative error of the image (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
     pub noise: Option<f64>,
     /// Samples that each pixel has before the error is believed, so that small lights are not missed; at least 2.
     pub min_samples: u32,
@@ -302,20 +302,20 @@ pub struct RenderSettings {
     pub adaptive: Option<bool>,
     /// Longest path, 1 to 64 bounces.
     pub bounces: u32,
-    /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the picture,
-    /// and told. `None`: nothing is taken.
+    /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the image,
+    /// and reported. `None`: nothing is taken.
     pub firefly_clamp: Option<f32>,
     /// Which random numbers are drawn.
     pub sequence: Sequence,
     /// How light is found.
     pub strategy: Strategy,
-    /// Which light the picture shows.
+    /// Which light the image shows.
     pub light_paths: LightPaths,
-    /// Which of the possible pictures' noise: any number.
+    /// Which of the possible images' noise: any number.
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
     pub filter: PixelFilter,
-    /// The part of the picture that is rendered: left, top, right, bottom as shares of width and height; `None`: all.
+    /// The part of the image that is rendered: left, top, right, bottom as shares of width and height; `None`: all.
     pub region: Option<[f64; 4]>,
     /// What the user decides about effects, against the plan.
     pub effects: EffectSwitches,
@@ -423,7 +423,7 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     Ok(())
 }
 
-/// The sides of the rendered part: within the picture, and not empty.
+/// The sides of the rendered part: within the image, and not empty.
 fn render_region(document: &Document) -> [(&'static str, f64, RangeInclusive<f64>); 4] {
     let [left, top, right, bottom] = document.render.region.unwrap_or([0.0, 0.0, 1.0, 1.0]);
     let far = |near: f64| near.next_up()..=1.0;

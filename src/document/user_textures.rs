@@ -1,4 +1,4 @@
-//! The pictures that a user has put on a material.
+//! The images that a user has assigned to a material.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::scene::texture::{TextureAssignment, TextureProjection, TextureTarget,
 pub struct UserTextures([Option<Box<UserTexture>>; TextureTarget::ALL.len()]);
 
 impl UserTextures {
-    /// The picture for a target.
+    /// The image for a target.
     pub fn get(&self, target: TextureTarget) -> Option<&UserTexture> {
         self.0[target as usize].as_deref()
     }
@@ -23,7 +23,7 @@ impl UserTextures {
         self.0[target as usize].as_deref_mut()
     }
 
-    /// Puts a picture on a target, or takes it off.
+    /// Puts an image on a target, or takes it off.
     pub fn set(&mut self, target: TextureTarget, texture: Option<UserTexture>) {
         self.0[target as usize] = texture.map(Box::new);
     }
@@ -42,7 +42,7 @@ impl UserTextures {
     }
 }
 
-/// The key of a target's picture in a material's file, and on the command line before that of a parameter:
+/// The key of a target's image in a material's file, and on the command line before that of a parameter:
 /// `base.color_map.rotation`.
 pub const fn map_key(target: TextureTarget) -> &'static str {
     match target {
@@ -56,7 +56,7 @@ pub const fn map_key(target: TextureTarget) -> &'static str {
     }
 }
 
-/// The target whose picture has this key.
+/// The target whose image has this key.
 pub fn target_of_key(key: &str) -> Option<TextureTarget> {
     TextureTarget::ALL
         .iter()
@@ -65,7 +65,7 @@ pub fn target_of_key(key: &str) -> Option<TextureTarget> {
 }
 
 impl MaterialSettings {
-    /// Puts a picture on a target, so that it is seen: what it multiplies becomes 1 where another value would hide it.
+    /// Puts an image on a target, so that it is seen: what it multiplies becomes 1 where another value would hide it.
     pub fn put_texture(&mut self, target: TextureTarget, texture: UserTexture) {
         let is_new = self.user_textures.get(target).is_none();
         self.user_textures.set(target, Some(texture));
@@ -111,7 +111,7 @@ impl MaterialSettings {
         }
     }
 
-    /// Has its pictures lie by the first texture coordinates where they lay as on a box.
+    /// Has its images lie by the first texture coordinates where they lay as on a box.
     pub fn without_boxes(&mut self) {
         for texture in self.user_textures.0.iter_mut().flatten() {
             if matches!(texture.projection, TextureProjection::Box | TextureProjection::Auto) {
@@ -149,7 +149,7 @@ pub fn texture_assignments(materials: &[MaterialSettings]) -> Vec<TextureAssignm
     materials.iter().enumerate().flat_map(of_slot).collect()
 }
 
-/// A picture as a material's file has it: `{"file": …, "rotation": 45, …}`; what is left out has its default.
+/// An image as a material's file has it: `{"file": …, "rotation": 45, …}`; what is left out has its default.
 ///
 /// # Errors
 /// A value that a parameter does not take; a file that is no text.
@@ -169,7 +169,7 @@ pub fn texture_from_json(json: Json) -> Result<UserTexture, TextureError> {
     Ok(texture)
 }
 
-/// A picture for a material's file; see [`texture_from_json`].
+/// An image for a material's file; see [`texture_from_json`].
 pub fn texture_to_json(texture: &UserTexture) -> Json {
     let mut values = Map::new();
     // With the separators that every system reads.
@@ -184,7 +184,7 @@ pub fn texture_to_json(texture: &UserTexture) -> Json {
     Json::Object(values)
 }
 
-/// Why a picture in a material's file can't be used.
+/// Why an image in a material's file can't be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextureError {
     /// A parameter's value.

@@ -1,5 +1,7 @@
 //! Adapters: selection, requirements, requested limits.
 
+use std::sync::Mutex;
+
 use pollster::block_on;
 
 use super::array::TEXEL_ROW;
@@ -58,6 +60,9 @@ fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
     }
 }
 
+/// Key of the adapter that [`GpuAdapter::find`] prefers within a kind.
+static PREFERRED: Mutex<Option<String>> = Mutex::new(None);
+
 /// An adapter that has not been opened.
 #[derive(Debug)]
 pub struct GpuAdapter {
@@ -73,34 +78,58 @@ impl GpuAdapter {
     ///
     /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let wanted = |backends| {
-            let mut adapters = block_on(instance.enumerate_adapters(backends));
-            adapters.retain(|adapter| {
-                let is_software = is_software(&adapter.get_info());
-                match kind {
-                    AdapterKind::Any => true,
-                    AdapterKind::Hardware => !is_software,
-                    AdapterKind::Software => is_software,
-                }
-            });
-            adapters
-        };
-        // OpenGL only as a last resort: searching for it takes time and prints errors if it is missing.
-        let mut adapters = wanted(wgpu::Backends::PRIMARY);
-        if adapters.is_empty() && kind != AdapterKind::Software {
-            adapters = wanted(wgpu::Backends::GL);
-        }
-        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
-        let adapter = adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
+        let preferred = PREFERRED
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner)
+            .clone();
+        let mut adapters = Self::of_kind(kind);
+        adapters.sort_by_key(|adapter| (Some(adapter.key()) != preferred, rank(&adapter.info)));
+        adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
             AdapterKind::Any => "",
             AdapterKind::Hardware => "hardware ",
             AdapterKind::Software => "software ",
-        }))?;
-        Ok(Self {
-            info: adapter.get_info(),
-            adapter,
-        })
+        }))
+    }
+
+    /// All adapters, real GPUs first.
+    pub fn all() -> Vec<Self> {
+        let mut adapters = Self::of_kind(AdapterKind::Any);
+        adapters.sort_by_key(|adapter| rank(&adapter.info));
+        adapters
+    }
+
+    fn of_kind(kind: AdapterKind) -> Vec<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let wanted = |backends| {
+            let adapters = block_on(instance.enumerate_adapters(backends)).into_iter();
+            let found = adapters.map(|adapter| Self {
+                info: adapter.get_info(),
+                adapter,
+            });
+            let fits = |adapter: &Self| match kind {
+                AdapterKind::Any => true,
+                AdapterKind::Hardware => !adapter.is_software(),
+                AdapterKind::Software => adapter.is_software(),
+            };
+            found.filter(fits).collect::<Vec<_>>()
+        };
+        // OpenGL only as a last resort: searching for it takes time and prints errors if it is missing.
+        let adapters = wanted(wgpu::Backends::PRIMARY);
+        if adapters.is_empty() && kind != AdapterKind::Software {
+            wanted(wgpu::Backends::GL)
+        } else {
+            adapters
+        }
+    }
+
+    /// Has [`Self::find`] choose this adapter among those of its kind, in the whole process; `None`: the fastest again.
+    pub fn prefer(adapter: Option<&Self>) {
+        *PREFERRED.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = adapter.map(Self::key);
+    }
+
+    /// Identification among the adapters of a machine: interface and name.
+    pub fn key(&self) -> String {
+        format!("{} {}", self.info.backend, self.info.name)
     }
 
     /// True for a software adapter, which runs on the CPU.

@@ -14,11 +14,11 @@ pub enum GpuError {
     /// No adapter of the requested kind.
     #[error(
         "no {0}Vulkan adapter was found. Install a driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers), or \
-         render on the processor with --engine cpu"
+         render on the CPU with --engine cpu"
     )]
     NoAdapter(&'static str),
     /// The adapter can't run the path tracer.
-    #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the processor with --engine cpu")]
+    #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the CPU with --engine cpu")]
     Unfit {
         /// Name of the adapter.
         adapter: String,
@@ -28,7 +28,7 @@ pub enum GpuError {
     /// A resource exceeds the adapter's limit.
     #[error(
         "{what} takes {needed_mib} MiB, and the adapter {adapter} takes {allowed_mib} MiB at once. Choose something \
-         smaller, or render on the processor with --engine cpu"
+         smaller, or render on the CPU with --engine cpu"
     )]
     TooLarge {
         /// The resource.
@@ -41,10 +41,10 @@ pub enum GpuError {
         allowed_mib: u64,
     },
     /// A command that the device refused; the device remains usable.
-    #[error("the GPU refused a command: {0}. Choose something smaller, or render on the processor with --engine cpu")]
+    #[error("the GPU refused a command: {0}. Choose something smaller, or render on the CPU with --engine cpu")]
     Refused(String),
     /// The device stopped working.
-    #[error("the GPU stopped working: {0}. Start again, or render on the processor with --engine cpu")]
+    #[error("the GPU stopped working: {0}. Start again, or render on the CPU with --engine cpu")]
     Lost(String),
     /// A shader did not compile: a mistake of ours.
     #[error("a shader does not compile on this adapter: {0}. Please report it; --engine cpu works meanwhile")]

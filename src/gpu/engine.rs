@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::budget::Budget;
+use super::budget::{Budget, DISPATCH, DISPATCH_SOFTWARE};
 use super::compute;
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelColors, PixelStatistics, Tile};
@@ -19,7 +19,7 @@ use crate::job::guides::GuideSums;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
-const FLUSH_SAMPLES: u32 = 1024;
+pub const FLUSH_SAMPLES: u32 = 1024;
 /// Pixels per read by the host, to bound its memory.
 const READ_PIXELS: usize = 1 << 19;
 
@@ -52,6 +52,7 @@ impl GpuEngine {
     /// [`GpuError::Shader`] if the driver refuses the path tracer.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pipelines = Pipelines::new(&gpu)?;
+        let longest = if gpu.is_software() { DISPATCH_SOFTWARE } else { DISPATCH };
         Ok(Self {
             timer: Timer::new(&gpu),
             gpu,
@@ -62,7 +63,7 @@ impl GpuEngine {
             in_film: None,
             unflushed: 0,
             is_flushed: true,
-            budget: Budget::default(),
+            budget: Budget::new(longest),
             gpu_seconds: 0.0,
         })
     }
@@ -87,7 +88,7 @@ impl GpuEngine {
         let resources = Resources::new(&self.gpu, &self.pipelines, job.clone(), old)?;
         self.budget = match old {
             Some(old) if old.job().plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
-            _ => Budget::default(),
+            _ => self.budget.of_another_kernel(),
         };
         resources.sums.clear(&self.gpu);
         self.resources = Some(resources);
@@ -272,9 +273,7 @@ fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>)
     let colors: Vec<PixelColors> = gpu.read_part(colors, part.clone())?;
     let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
     let first = band.first_row as usize * film.width as usize + part.start;
-    for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(&statistics)) {
-        merge_pixel(film, pixel, colors, statistics);
-    }
+    merge_sums(film, first, &colors, &statistics);
     if film.extras().guides {
         let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
         for (sums, seen) in film.guides[first..]
@@ -288,28 +287,34 @@ fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>)
     Ok(())
 }
 
-/// Merges the GPU's sums of a pixel into the film.
-fn merge_pixel(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
-    let [red, green, blue, coverage] = colors.all.map(f64::from);
+/// Merges the GPU's sums of consecutive pixels into the film, from pixel `first` on.
+pub fn merge_sums(film: &mut Film, first: usize, colors: &[PixelColors], statistics: &[PixelStatistics]) {
+    film.add_halves(first, colors.len(), |place| halves(&colors[place], &statistics[place]));
+    let grid = film.grid();
+    for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(statistics)) {
+        film.add_coverage(pixel, f64::from(colors.all[3]));
+        let [rays, clamped] = statistics.rays_clamped;
+        let costs = &mut film.costs[grid.of_pixel(pixel)];
+        costs.rays += f64::from(rays);
+        costs.dropped += statistics.kept_dropped[1] as u64;
+        costs.clamped += f64::from(clamped);
+        costs.cut += f64::from(statistics.cut);
+    }
+}
+
+/// The halves of a pixel's samples, from the GPU's sums over all and over the odd ones.
+fn halves(colors: &PixelColors, statistics: &PixelStatistics) -> [HalfSums; 2] {
+    let [red, green, blue, _] = colors.all.map(f64::from);
     let [luminance_squared, odd_luminance_squared] = statistics.luminance_squared.map(f64::from);
-    let [kept, dropped] = statistics.kept_dropped;
-    let [rays, clamped] = statistics.rays_clamped;
+    let kept = f64::from(statistics.kept_dropped[0]);
     let [odd_red, odd_green, odd_blue, odd_kept] = colors.odd.map(f64::from);
     let odd = half([odd_red, odd_green, odd_blue], odd_luminance_squared, odd_kept);
     let even = half(
         [red - odd_red, green - odd_green, blue - odd_blue],
         luminance_squared - odd_luminance_squared,
-        f64::from(kept) - odd_kept,
+        kept - odd_kept,
     );
-    let [kept_even, kept_odd] = film.halves(pixel);
-    film.set_halves(pixel, &[kept_even.with(&even), kept_odd.with(&odd)]);
-    film.add_coverage(pixel, coverage);
-    let tile = film.grid().of_pixel(pixel);
-    let costs = &mut film.costs[tile];
-    costs.rays += f64::from(rays);
-    costs.dropped += dropped as u64;
-    costs.clamped += f64::from(clamped);
-    costs.cut += f64::from(statistics.cut);
+    [even, odd]
 }
 
 /// Converts a half's raw moments to central ones. Rounding may make the deviations negative; that cancels in the mean.

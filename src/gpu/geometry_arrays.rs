@@ -106,7 +106,7 @@ impl GeometryArrays {
             room,
             ..Self::empty(gpu)?
         };
-        let names = ["the hierarchy of boxes", "the model's triangles"];
+        let names = ["the BVH", "the model's triangles"];
         if arrays.form == Form::Textures {
             arrays.textures = [
                 array::empty_texture::<NodeWords>(gpu, names[0], counts.nodes),

@@ -2,7 +2,7 @@
 
 mod adapter;
 mod array;
-mod budget;
+pub mod budget;
 mod compute;
 pub mod device;
 mod engine;
@@ -27,5 +27,5 @@ mod traversal;
 
 pub use adapter::{AdapterKind, GpuAdapter};
 pub use device::{GpuDevice, GpuError, Moment};
-pub use engine::GpuEngine;
+pub use engine::{FLUSH_SAMPLES, GpuEngine, merge_sums};
 pub use traversal::Traversal;

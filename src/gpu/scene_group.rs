@@ -281,7 +281,7 @@ pub fn textures(
     let records = array::texture(gpu, "the model's textures", &Values::of(&textures.records))?;
     let words = match words {
         Some(words) => words,
-        None => array::texture(gpu, "the model's pictures", &Values::of(&textures.words))?,
+        None => array::texture(gpu, "the model's textures", &Values::of(&textures.words))?,
     };
     Ok([records, words])
 }

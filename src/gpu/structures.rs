@@ -145,10 +145,7 @@ mod tests {
         let first = Structures::new(&gpu, &alone, &triangles);
         let second = first.with_around(&gpu, &on_ground, &triangles);
         assert!(first.model.is_some() && first.model == second.model);
-        assert!(
-            first.whole != second.whole,
-            "pictures in the making go on with the first"
-        );
+        assert!(first.whole != second.whole, "renders in progress go on with the first");
         let are_there = |structures: &Structures| [0, 1].map(|number| structures.whole[number].is_some());
         assert_eq!([are_there(&first), are_there(&second)], [[true, false], [true, true]]);
         gpu.wait().expect("both are built");

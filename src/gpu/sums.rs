@@ -155,7 +155,7 @@ impl Band {
     ) -> Result<Self, GpuError> {
         let guide_bytes = if has_guides { size_of::<[GuideSums; 2]>() } else { 0 };
         let sizes = [size_of::<PixelColors>(), size_of::<PixelStatistics>(), guide_bytes];
-        let buffer = |bytes: usize| gpu.empty_storage("the picture", pixels * bytes as u64);
+        let buffer = |bytes: usize| gpu.empty_storage("the image", pixels * bytes as u64);
         let [colors, statistics, guides] = sizes.map(buffer);
         let buffers = [colors?, statistics?, guides?];
         let uniforms = gpu.uniforms(&[first_row, 0, 0, 0]);

@@ -7,7 +7,7 @@ named! {
     #[derive(Default)]
     Traversal {
         #[default]
-        Own, "own", "our own traversal", "Through a hierarchy of boxes of our own, by arithmetic that every adapter has.";
+        Own, "own", "our own traversal", "Through a BVH of our own, by arithmetic that every adapter has.";
         RayQueries, "ray-queries", "ray queries", "Through the adapter's own hierarchy, by its hardware where it has some for that.";
     }
 }

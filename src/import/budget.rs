@@ -4,10 +4,8 @@ use std::io::{self, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-use crate::scene::{Loading, USUAL};
+use crate::free_memory::{LIMIT_VARIABLE, of_import};
 
-/// Environment variable with the memory limit of a render and its imports, in MiB.
-pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
 /// Bytes used and allowed of one import; clones share them.
 #[derive(Clone, Debug)]
 pub struct Budget(Arc<State>);
@@ -37,12 +35,6 @@ impl From<OverBudget> for io::Error {
     }
 }
 
-impl Default for Budget {
-    fn default() -> Self {
-        Self::new(USUAL)
-    }
-}
-
 impl Budget {
     /// A budget of `allowed` bytes, unused.
     pub fn new(allowed: u64) -> Self {
@@ -50,9 +42,9 @@ impl Budget {
         Self(Arc::new(State { allowed, taken }))
     }
 
-    /// The budget of an import that begins now.
-    pub fn of(loading: &Loading) -> Self {
-        Self::new(loading.allowed())
+    /// The budget of an import that begins now: what the user allows, or a share of the free memory.
+    pub fn of_import() -> Self {
+        Self::new(of_import())
     }
 
     /// The bytes that are left.

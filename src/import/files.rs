@@ -43,7 +43,7 @@ impl Import {
     pub fn new(loading: &Loading) -> Self {
         Self {
             asked: Seen::default(),
-            budget: Budget::of(loading),
+            budget: Budget::of_import(),
             loading: loading.clone(),
         }
     }
@@ -120,7 +120,7 @@ impl Archive {
         let size = file.size();
         if size > PACKED_FROM && size / PACKED_MOST > file.compressed_size() {
             let why = format!(
-                "it is packed to a {PACKED_MOST}th of its {} MiB, as no model or picture is; unpack the archive where you trust it",
+                "it is packed to a {PACKED_MOST}th of its {} MiB, as no model or image is; unpack the archive where you trust it",
                 size >> 20
             );
             return Err(io::Error::new(ErrorKind::InvalidData, why));

@@ -8,6 +8,7 @@ pub mod endings;
 pub mod environment;
 mod file_parameter;
 mod files;
+pub mod free_memory;
 mod gltf;
 mod model;
 mod model_error;
@@ -17,7 +18,7 @@ mod ply;
 pub mod resource;
 mod stl;
 
-pub use budget::{Budget, LIMIT_VARIABLE, OverBudget};
+pub use budget::{Budget, OverBudget};
 pub use file_parameter::{FileParameter, Goes};
 pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use model::{holds_model, is_model, load, load_watched, load_with};

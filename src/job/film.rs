@@ -7,6 +7,9 @@ use super::guides::{GUIDE_SAMPLES, GuideSums};
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
+/// Pixels at least that a thread adds to at once.
+const ADDED_AT_ONCE: usize = 4096;
+
 /// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 72
 /// bytes per pixel and 32 per tile, plus the requested [`Extras`].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -248,6 +251,18 @@ impl Film {
     /// Replaces a pixel's sums.
     pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
         self.pixels[pixel] = KeptHalves::of(halves);
+    }
+
+    /// Adds the halves of `count` consecutive pixels, from pixel `first` on, in parallel; `halves` gives those of a pixel by
+    /// its place among them.
+    pub fn add_halves(&mut self, first: usize, count: usize, halves: impl Fn(usize) -> [HalfSums; 2] + Sync) {
+        let pixels = self.pixels[first..first + count]
+            .par_iter_mut()
+            .with_min_len(ADDED_AT_ONCE);
+        pixels.enumerate().for_each(|(place, kept)| {
+            let ([even, odd], [more_even, more_odd]) = (kept.sums(), halves(place));
+            *kept = KeptHalves::of(&[even.with(&more_even), odd.with(&more_odd)]);
+        });
     }
 
     /// Sums over all samples of a pixel.

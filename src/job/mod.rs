@@ -113,7 +113,7 @@ named! {
     #[derive(Default)]
     LightPaths {
         #[default]
-        All, "all", "All light", "The picture as it is.";
+        All, "all", "All light", "The image as it is.";
         Direct, "direct", "Direct light", "What shines, and light that was reflected once: straight from a light or the environment.";
         Indirect, "indirect", "Indirect light", "Light that was reflected twice or more: between the surfaces of the scene.";
     }

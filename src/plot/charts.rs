@@ -233,16 +233,16 @@ fn three_digits(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Pictures in rows, each with its name under it.
+/// Images in rows, each with its name under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSheet {
     /// What they are.
     pub title: String,
-    /// Pictures of the same size, red, green and blue of 8 bits a pixel.
+    /// Images of the same size, red, green and blue of 8 bits a pixel.
     pub pictures: Vec<(String, image::RgbImage)>,
 }
 
-/// Pictures in a row.
+/// Images in a row.
 const PICTURES_ACROSS: u32 = 4;
 const MARGIN: u32 = 12;
 const CAPTION: u32 = 26;
@@ -250,7 +250,7 @@ const CAPTION: u32 = 26;
 const PICTURE_WIDTH_MIN: u32 = 190;
 
 impl PictureSheet {
-    /// Width and height of a picture's place.
+    /// Width and height of an image's place.
     fn cell(&self) -> (u32, u32) {
         let size = self
             .pictures

@@ -13,7 +13,7 @@ use super::{PlotError, register_fonts};
 /// What drawing may fail with.
 pub(super) type Outcome = Result<(), Box<dyn Error>>;
 
-/// Colours of lines and bodies, told apart by people of any colour vision (Okabe and Ito 2008).
+/// Colours of lines and bodies, distinguished by people of any colour vision (Okabe and Ito 2008).
 pub(super) const PALETTE: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -66,7 +66,7 @@ impl Style {
 pub(super) const TITLE: u32 = 50;
 pub(super) const NAME: u32 = 30;
 
-/// Pictures are drawn at this many times their size and then reduced: plotters smooths no edges itself.
+/// Images are drawn at this many times their size and then reduced: plotters smooths no edges itself.
 const OVERSAMPLING: u32 = 2;
 
 /// A figure that can be drawn at any scale.
@@ -101,7 +101,7 @@ fn svg(figure: &impl Figure) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(text.into_bytes())
 }
 
-/// A picture as a file has it.
+/// An image as a file has it.
 pub(super) fn png(picture: &image::RgbImage) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut file = Cursor::new(Vec::new());
     picture.write_to(&mut file, image::ImageFormat::Png)?;

@@ -69,7 +69,7 @@ pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<Vec<u8>, PlotError
     }
 }
 
-/// A view of lobes as a picture for the screen: every length `zoom` times as large as in a file, dark on white or
+/// A view of lobes as an image for the screen: every length `zoom` times as large as in a file, dark on white or
 /// light on a dark grey. `None` where the figure can't be drawn.
 pub fn lobe_view_picture(view: &LobeView, zoom: f64, is_dark: bool) -> Option<image::RgbImage> {
     let style = if is_dark { Style::dark(zoom) } else { Style::light(zoom) };
@@ -105,7 +105,7 @@ pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<Vec<u8>, PlotError> 
     figure::contents(path, plot)
 }
 
-/// Pictures in rows as .png, into a file that is open.
+/// Images in rows as .png, into a file that is open.
 ///
 /// # Errors
 /// Where the file can't be written.

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::error::SessionError;
-use super::memory;
 use crate::import;
 use crate::import::picture::read_texture;
 use crate::import::{Budget, ModelError};
@@ -234,7 +233,6 @@ impl Kept {
             return Ok(model);
         }
         let (source, options) = key;
-        loading.allow(memory::of_import());
         let model = Arc::new(import::load_watched(source, options, loading)?);
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
@@ -255,7 +253,7 @@ impl Kept {
             return Ok(textures);
         }
         let model = self.model(&key.0, loading)?;
-        let textures = Arc::new(self.pack(&key.0, &model, assigned, loading).textures(&model, assigned));
+        let textures = Arc::new(self.pack(&key.0, &model, assigned).textures(&model, assigned));
         // Each assignment is an entry of its own and takes little memory; only the last few are ever needed again.
         while self.textures.count(|_| true) >= TEXTURES {
             self.textures.drop_oldest(|_| true);
@@ -265,7 +263,7 @@ impl Kept {
     }
 
     /// The packed texels of a model's and users' maps, for any mapping.
-    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment], loading: &Loading) -> Arc<Pack> {
+    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
         let now = self.now();
         let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
         own.sort();
@@ -276,8 +274,7 @@ impl Kept {
         }
         let pictures = RefCell::new(&mut self.pictures);
         // The user's own are of one import with the model's.
-        loading.allow(memory::of_import());
-        let budget = Budget::of(loading);
+        let budget = Budget::of_import();
         let _ = budget.take((model.bytes() as u64).min(budget.left()));
         let read = |path: &Path, is_color: bool| {
             let key = (path.to_owned(), is_color);

@@ -31,7 +31,7 @@ impl Attendant {
         if attendant.how != Denoise::Off {
             match Denoiser::open() {
                 Ok(denoiser) => attendant.denoiser = Some(denoiser),
-                Err(error) => log::warn!("{error}; the picture is not denoised"),
+                Err(error) => log::warn!("{error}; the image is not denoised"),
             }
         }
         attendant
@@ -81,7 +81,7 @@ impl Attendant {
                 Ok(Some(denoised))
             }
             Err(error) => {
-                log::warn!("{error}; the picture is not denoised");
+                log::warn!("{error}; the image is not denoised");
                 self.denoiser = None;
                 Ok(None)
             }

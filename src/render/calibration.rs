@@ -60,7 +60,7 @@ impl Candidate {
     /// Its name; `is_software` if the CPU engine is among the candidates.
     fn name(self, is_software: bool) -> &'static str {
         match (self, is_software) {
-            (Self::Processor, _) => "the processor engine",
+            (Self::Processor, _) => "the CPU engine",
             (Self::OWN, true) => "software Vulkan",
             (Self::QUERIES, true) => "software Vulkan with ray queries",
             (Self::OWN, false) => "our own traversal",
@@ -139,7 +139,7 @@ pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, Str
 pub(super) fn compare_rates(software: f64, processor: f64) {
     if is_doubtful(software, processor) && measure_when_quiet(AdapterKind::Software) {
         log::info!(
-            "software Vulkan renders {:.1} × as fast as the processor here: it is measured again",
+            "software Vulkan renders {:.1} × as fast as the CPU here: it is measured again",
             software / processor
         );
     }
@@ -456,7 +456,7 @@ mod tests {
         assert_eq!(software.fastest(), Candidate::OWN);
         assert_eq!(
             software.reason(),
-            "software Vulkan was measured 1.2 × as fast here as the processor engine and 2.0 × as fast here as software \
+            "software Vulkan was measured 1.2 × as fast here as the CPU engine and 2.0 × as fast here as software \
              Vulkan with ray queries"
         );
         let hardware = verdict("m", &[(Candidate::OWN, 1.0), (Candidate::QUERIES, 1.5)]);

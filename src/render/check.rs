@@ -432,13 +432,9 @@ fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sess
         .map(|film| film.dropped())
         .sum::<u64>() as f64;
     Ok(vec![
-        compare(
-            "engines",
-            "this engine against the processor, whole picture",
-            &processor,
-        ),
-        compare("strategies", "mis against lobe, whole picture", &lobe),
-        compare("strategies", "mis against light, whole picture", &light),
+        compare("engines", "this engine against the CPU, whole image", &processor),
+        compare("strategies", "mis against lobe, whole image", &lobe),
+        compare("strategies", "mis against light, whole image", &light),
         Check::new(
             "soundness",
             "samples dropped because they were not finite",

@@ -20,9 +20,9 @@ named! {
     #[derive(Default)]
     EngineChoice {
         #[default]
-        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the faster of software Vulkan and the processor.";
+        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the faster of software Vulkan and the CPU.";
         Gpu, "gpu", "GPU", "The GPU, software Vulkan included.";
-        Cpu, "cpu", "CPU", "The processor.";
+        Cpu, "cpu", "CPU", "The CPU.";
     }
 }
 
@@ -37,7 +37,7 @@ named! {
     /// Kind of engine: CPU or GPU.
     EngineKind {
         Gpu, "gpu", "GPU", "Compute shaders on an adapter.";
-        Cpu, "cpu", "CPU", "Rust on the processor's cores.";
+        Cpu, "cpu", "CPU", "Rust on the cores of the CPU.";
     }
 }
 
@@ -186,7 +186,7 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 }
 
 /// Name of the CPU, if the system reports it.
-fn processor_name() -> String {
+pub(super) fn processor_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()

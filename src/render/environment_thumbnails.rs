@@ -9,8 +9,9 @@ use std::sync::atomic::AtomicBool;
 
 use super::background::Background;
 use super::picture_cache;
+use crate::import::environment::EnvironmentError;
 use crate::import::environment::load;
-use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource, thumbnail};
+use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
 
 /// Columns and rows of a thumbnail.
 pub const SIZE: [u32; 2] = [256, 128];
@@ -62,7 +63,7 @@ pub fn spawn_environment_thumbnails(
             };
             // The error is reported when the environment is selected.
             let picture = picture.unwrap_or_else(|error| {
-                log::debug!("no small picture: {error}");
+                log::debug!("no thumbnail: {error}");
                 None
             });
             made.insert(wanted.source, (key, picture.map(Arc::new)));

@@ -3,7 +3,7 @@
 use super::memory;
 use crate::gpu::GpuError;
 use crate::import::ModelError;
-use crate::scene::environment::EnvironmentError;
+use crate::import::environment::EnvironmentError;
 
 /// Why a session refuses a document or fails.
 #[derive(Debug, thiserror::Error)]

@@ -26,7 +26,7 @@ use crate::store::replace::save_by;
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The extension is not that of a format that can be written.
-    #[error("{}: pictures are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
+    #[error("{}: images are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
     Format {
         /// The file.
         path: PathBuf,
@@ -158,7 +158,7 @@ pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
 fn png(path: &Path, image: &Image, document: &Document) -> io::Result<Vec<u8>> {
     let text = own_text(path, document);
     if let Err(error) = &text {
-        log::warn!("the picture is saved without its document: {error}");
+        log::warn!("the image is saved without its document: {error}");
     }
     let pixels = display(image, &document.view);
     png_bytes([image.width, image.height], &pixels, text.as_deref().ok()).map_err(io::Error::other)

@@ -50,11 +50,11 @@ pub enum Shown {
 impl Shown {
     /// All views, with labels and descriptions.
     pub const ALL: [(Self, &str, &str); 10] = [
-        (Self::Picture, "Picture", "The picture itself."),
+        (Self::Picture, "Image", "The image itself."),
         (
             Self::Error,
             "Error",
-            "The estimated standard error of each pixel, relative to the picture's mean luminance.",
+            "The estimated standard error of each pixel, relative to the image's mean luminance.",
         ),
         (
             Self::Samples,
@@ -74,7 +74,7 @@ impl Shown {
         (
             Self::Clipping,
             "Clipping",
-            "The picture; red where a channel is as bright as the screen can be, blue where all are black.",
+            "The image; red where a channel is as bright as the screen can be, blue where all are black.",
         ),
         (
             Self::Albedo,

@@ -54,7 +54,7 @@ pub struct KeptFilm {
 #[derive(Debug, thiserror::Error)]
 pub enum SumsError {
     /// Not an EXR file, or damaged.
-    #[error("{}: cannot be read as a picture: {reason}; render it again with --keep-sums", path.display())]
+    #[error("{}: cannot be read as an image: {reason}; render it again with --keep-sums", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -79,7 +79,7 @@ pub enum SumsError {
     )]
     NotSeen,
     /// Sums of another image.
-    #[error("{}: of another picture than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
+    #[error("{}: of another image than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
     Differs {
         /// The file.
         path: PathBuf,

@@ -78,7 +78,7 @@ pub fn spawn_thumbnails(
                     responder.publish(Arc::new(made.clone()));
                 }
                 Ok(None) => return,
-                Err(error) => log::warn!("no small picture of {}: {error}", material.name),
+                Err(error) => log::warn!("no thumbnail of {}: {error}", material.name),
             }
         }
     })

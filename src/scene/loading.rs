@@ -2,35 +2,19 @@
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// Default memory of one import, in bytes.
-pub const USUAL: u64 = 8 << 30;
 
 /// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct Loading(Arc<State>);
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct State {
     doing: Mutex<String>,
     is_cancelled: AtomicBool,
-    /// The bytes that each import may take.
-    allowed: AtomicU64,
     /// Files that were named and not allowed, since they were last asked for.
     refused: Mutex<Vec<PathBuf>>,
-}
-
-impl Default for State {
-    fn default() -> Self {
-        Self {
-            doing: Mutex::default(),
-            is_cancelled: AtomicBool::default(),
-            allowed: AtomicU64::new(USUAL),
-            refused: Mutex::default(),
-        }
-    }
 }
 
 /// Nobody wants it any more.
@@ -75,16 +59,6 @@ impl Loading {
     /// The current step; empty if none.
     pub fn doing(&self) -> String {
         self.0.doing.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Says how many bytes each import may take from now on.
-    pub fn allow(&self, bytes: u64) {
-        self.0.allowed.store(bytes, Relaxed);
-    }
-
-    /// The bytes that each import may take.
-    pub fn allowed(&self) -> u64 {
-        self.0.allowed.load(Relaxed)
     }
 
     /// Keeps the name of a file that was not allowed, once.

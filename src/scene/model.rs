@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::mesh::Mesh;
+use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
 use super::{shapes, still_life, teapot};
@@ -42,20 +43,13 @@ const BUILT_IN: [(&str, ModelSource); 5] = [
 impl From<&str> for ModelSource {
     fn from(text: &str) -> Self {
         let built_in = BUILT_IN.into_iter().find(|(name, _)| *name == text);
-        built_in.map_or_else(|| Self::File(PathBuf::from(text)), |(_, source)| source)
+        built_in.map_or_else(|| Self::File(path_of_text(text)), |(_, source)| source)
     }
 }
 
 impl From<String> for ModelSource {
     fn from(text: String) -> Self {
         Self::from(text.as_str())
-    }
-}
-
-impl std::str::FromStr for ModelSource {
-    type Err = std::convert::Infallible;
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(Self::from(text))
     }
 }
 

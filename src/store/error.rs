@@ -38,11 +38,11 @@ pub enum FileError {
         path: PathBuf,
         /// `material` or `project`.
         expected: &'static str,
-        /// The key that tells.
+        /// The key that says so.
         mark: &'static str,
     },
-    /// A picture that was not saved by Glossmith, or whose text another program left out.
-    #[error("{}: a picture without a Glossmith document inside; open one that was saved here", path.display())]
+    /// An image that was not saved by Glossmith, or whose text another program left out.
+    #[error("{}: an image without a Glossmith document inside; open one that was saved here", path.display())]
     NoDocument {
         /// The file.
         path: PathBuf,

@@ -12,7 +12,7 @@ pub struct Example {
     pub label: &'static str,
     /// What is to be seen.
     pub help: &'static str,
-    /// The title of the panel that tells more.
+    /// The title of the panel that shows more.
     pub panel: &'static str,
     /// Makes it.
     pub document: fn() -> Document,
@@ -28,7 +28,7 @@ pub const EXAMPLES: [Example; 5] = [
     },
     Example {
         label: "Accuracy in time",
-        help: "Brushed steel, rendered until the error is 1 %: Convergence tells what that takes, and what more would.",
+        help: "Brushed steel, rendered until the error is 1 %: Convergence shows what that takes, and what more would.",
         panel: "Convergence",
         document: accuracy,
     },
@@ -41,7 +41,7 @@ pub const EXAMPLES: [Example; 5] = [
     },
     Example {
         label: "Effects and their cost",
-        help: "Lacquer, glass, a metal that shines and a lens out of focus: Effects tells what is simulated and why, and \
+        help: "Lacquer, glass, a metal that shines and a lens out of focus: Effects lists what is simulated and why, and \
                measures what each costs.",
         panel: "Effects",
         document: effects,

@@ -12,11 +12,11 @@ named! {
     FileKind {
         Document, "document", "Projects and materials", "Projects and materials of Glossmith.";
         Model, "model", "Models", "Models, alone or in an archive.";
-        Light, "light", "Pictures of light", "Environments, and textures where they are put on a material.";
-        Picture, "picture", "Pictures", "Pictures for screens: environments, textures, or pictures saved here, which have the document inside.";
+        Light, "light", "Images of light", "Environments, and textures if assigned to a material.";
+        Picture, "picture", "Images", "Images for screens: environments, textures, or images saved here, which have the document inside.";
         Material, "material", "Materials of other programs", "Materials in other programs' formats.";
         Measured, "measured", "Measured materials (MERL)", "Measurements that a material is fitted to.";
-        ColorTable, "color-table", "Tables of colours", "Tables that the picture's colours go through.";
+        ColorTable, "color-table", "Tables of colours", "Tables that the image's colours go through.";
         Part, "part", "Parts of models", "What models refer to; dropped together with them.";
     }
 }
@@ -72,7 +72,7 @@ pub fn endings(kinds: &[FileKind]) -> Vec<&'static str> {
     kinds.iter().flat_map(|kind| kind.endings()).collect()
 }
 
-/// Whether a file may have a document in it, which pictures that were saved here do.
+/// Whether a file may have a document in it, which images that were saved here do.
 pub fn may_hold_document(path: &Path) -> bool {
     FileKind::of(path) == Some(FileKind::Document) || has_ending(path, &["png"])
 }

@@ -94,7 +94,7 @@ pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
     let table = match load(path) {
         Ok(table) => Some(Arc::new(table)),
         Err(error) => {
-            log::warn!("{error}; the picture is shown without it");
+            log::warn!("{error}; the image is shown without it");
             None
         }
     };

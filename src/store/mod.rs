@@ -1,4 +1,4 @@
-//! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
+//! What is kept in files: projects, presets and the user's folder of them, images with a document inside, copies of
 //! unsaved documents, pinned states; materials in other programs' formats; examples to begin with;
 //! folders that are watched; tables of colours.
 

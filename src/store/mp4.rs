@@ -16,7 +16,7 @@ use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_max
 
 /// Whether this program can write them.
 pub(super) const IS_BUILT: bool = true;
-/// Mean bits per pixel of an MP4: enough that gradients of clean pictures show no banding.
+/// Mean bits per pixel of an MP4: enough that gradients of clean images show no banding.
 const BITS_PER_PIXEL: f64 = 0.25;
 /// Fewest rows and columns that the encoder takes.
 const SIDE_MIN: u32 = 16;

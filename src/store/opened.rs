@@ -12,11 +12,11 @@ pub enum Opened {
     Material(Box<Loaded<MaterialSettings>>),
     /// A whole document.
     Document(Box<Loaded<Document>>),
-    /// A picture with the document that it shows.
+    /// An image with the document that it shows.
     Picture(Box<Loaded<Document>>),
 }
 
-/// Opens a material, a project file or a picture with a document inside, whichever it is.
+/// Opens a material, a project file or an image with a document inside, whichever it is.
 ///
 /// # Errors
 /// What is wrong with the file.

@@ -1,5 +1,5 @@
-//! Pictures that carry the document they show: PNG files with the project's JSON in a compressed iTXt chunk before the
-//! pixels. Any viewer shows the picture; opening it here brings materials, camera and light back.
+//! Images that carry the document they show: PNG files with the project's JSON in a compressed iTXt chunk before the
+//! pixels. Any viewer shows the image; opening it here brings materials, camera and light back.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Seek};
@@ -54,7 +54,7 @@ pub fn png_bytes([width, height]: [u32; 2], rgba: &[u8], document_text: Option<&
     write().map_err(|error| error.to_string())
 }
 
-/// The document in a picture.
+/// The document in an image.
 ///
 /// # Errors
 /// [`FileError`] where the file cannot be read, is no PNG, or carries no document; what is wrong with the document.
@@ -62,7 +62,7 @@ pub fn load_picture_document(path: &Path) -> Result<Loaded<Document>, FileError>
     project::parse_document(path, document_text_in(path)?.as_bytes())
 }
 
-/// The text of the document in a picture.
+/// The text of the document in an image.
 pub(super) fn document_text_in(path: &Path) -> Result<String, FileError> {
     let file = resource::open(path).map_err(|source| FileError::Read {
         path: path.to_owned(),
@@ -71,7 +71,7 @@ pub(super) fn document_text_in(path: &Path) -> Result<String, FileError> {
     text_in(path, BufReader::new(file))
 }
 
-/// The document in a picture's contents. Relative file names are relative to `path`'s folder.
+/// The document in an image's contents. Relative file names are relative to `path`'s folder.
 ///
 /// # Errors
 /// As [`load_picture_document`].
@@ -82,7 +82,7 @@ pub fn parse_picture_document(path: &Path, contents: impl BufRead + Seek) -> Res
 fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileError> {
     let damaged = |error: png::DecodingError| FileError::Content {
         path: path.to_owned(),
-        reason: format!("not a whole PNG picture ({error}); save it again where it came from"),
+        reason: format!("not a whole PNG image ({error}); save it again where it came from"),
     };
     let mut reader = png::Decoder::new(contents).read_info().map_err(damaged)?;
     let chunk = |info: &png::Info<'_>| info.utf8_text.iter().find(|chunk| chunk.keyword == KEYWORD).cloned();
@@ -98,7 +98,7 @@ fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileErr
         .and_then(|()| found.get_text())
         .map_err(|error| FileError::Content {
             path: path.to_owned(),
-            reason: format!("the document in the picture is damaged ({error}); open its project instead"),
+            reason: format!("the document in the image is damaged ({error}); open its project instead"),
         })
 }
 

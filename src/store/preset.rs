@@ -17,6 +17,7 @@ use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
 };
 use crate::import::kept_keys;
+use crate::scene::path_text::path_of_text;
 use crate::scene::texture::TextureTarget;
 
 /// The version of the format.
@@ -75,7 +76,7 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
             warnings: Vec::new(),
         });
     }
-    let path = Path::new(name_or_path);
+    let path = &path_of_text(name_or_path);
     let is_path = path.extension().is_some() || path.components().count() > 1;
     if !is_path && !path.exists() {
         let known: Vec<_> = PRESETS

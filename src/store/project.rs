@@ -18,7 +18,7 @@ use crate::scene::texture::{TextureTarget, UserTexture};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
-/// Slots before which older files may put a picture: each makes the materials before it.
+/// Slots before which older files may put an image: each makes the materials before it.
 const SLOTS_MAX: usize = 1 << 12;
 /// Most materials of a file that is read: each takes kilobytes, of which the file may say none.
 const MATERIALS_MAX: usize = 1 << 16;
@@ -170,7 +170,7 @@ pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
     Ok(text)
 }
 
-/// The contents of a document's file at `path`, the same whoever saves it.
+/// The contents of a document's file at `path`, the same for every user who saves it.
 ///
 /// # Errors
 /// [`FileError::Content`] for file names that are no Unicode.

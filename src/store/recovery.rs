@@ -1,9 +1,9 @@
-//! Unsaved documents put aside, so that a crash loses little of them.
+//! Unsaved documents saved for recovery, so that a crash loses little of them.
 //!
 //! Every window has a file of its own in one folder, and holds a lock on another beside it for as long as it lives. The
 //! system lets go of the lock however the window ends: a file that is not locked was left by a crash. The files are
 //! project files with one more key, so that they can be opened by hand, too. A window that panicked has written a report
-//! beside its file; reports stay when what was put aside goes, the latest few of them.
+//! beside its file; reports stay when the saved document goes, the latest few of them.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -46,11 +46,11 @@ pub struct Report {
 /// What a crash left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recovered {
-    /// The document as it was last put aside.
+    /// The document as it was last saved for recovery.
     pub document: Document,
     /// The file that it had been opened from or saved to.
     pub project: Option<PathBuf>,
-    /// When it was put aside.
+    /// When it was saved.
     pub at: SystemTime,
     /// What the user should know, one sentence each.
     pub warnings: Vec<String>,
@@ -92,7 +92,7 @@ impl Slot {
         put_aside(&self.path, document, project)
     }
 
-    /// Whether something was put aside.
+    /// Whether something was saved for recovery.
     pub fn has_document(&self) -> bool {
         self.path.exists()
     }
@@ -125,7 +125,7 @@ impl Slot {
         })
     }
 
-    /// Removes what was put aside: it has been saved, or is not wanted any more. The slot can go on being used.
+    /// Removes the saved document: it has been saved, or is not wanted any more. The slot can go on being used.
     ///
     /// # Errors
     /// [`FileError::Write`] where the system doesn't let it.
@@ -202,7 +202,7 @@ pub fn report_path(path: &Path) -> PathBuf {
     path.with_extension("txt")
 }
 
-/// Leaves the latest reports, and those that belong to what was put aside.
+/// Leaves the latest reports, and those that belong to a saved document.
 fn remove_old_reports(folder: &Path) {
     let entries = fs::read_dir(folder)
         .into_iter()

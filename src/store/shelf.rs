@@ -14,7 +14,7 @@ use crate::document::MaterialSettings;
 const DEPTH: usize = 3;
 /// Files of a folder that are shown at most: more are not looked through, but searched for in a file manager.
 pub const FILES_MAX: usize = 400;
-/// Pictures of fewer bytes are no environments but icons and previews.
+/// Images of fewer bytes are no environments but icons and previews.
 const ENVIRONMENT_BYTES_MIN: u64 = 1 << 12;
 
 /// A file that can be used.
@@ -129,7 +129,7 @@ fn is_material(path: &Path) -> bool {
     FileKind::of(path).is_some_and(|kind| MATERIAL_KINDS.contains(&kind))
 }
 
-/// Pictures for screens are seldom environments; where a folder holds some, they are opened by hand.
+/// Images for screens are seldom environments; where a folder holds some, they are opened by hand.
 fn is_environment(path: &Path) -> bool {
     FileKind::of(path) == Some(FileKind::Light)
 }

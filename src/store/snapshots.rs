@@ -1,4 +1,4 @@
-//! Pinned states: a folder of small pictures that carry their documents.
+//! Pinned states: a folder of thumbnails that carry their documents.
 
 use std::fs;
 use std::io::{self, Cursor};
@@ -11,7 +11,7 @@ use super::project::document_text;
 use super::replace::save_atomically;
 use crate::document::Document;
 
-/// Longest side of a pinned picture, pixels.
+/// Longest side of a pinned image, pixels.
 pub const SIDE_MAX: u32 = 256;
 
 /// A pinned state.
@@ -23,7 +23,7 @@ pub struct Pinned {
     pub name: String,
     /// The document.
     pub document: Document,
-    /// Columns and rows of its picture.
+    /// Columns and rows of its image.
     pub size: [u32; 2],
     /// Red, green, blue and alpha of 8 bits, not premultiplied, row by row from the top.
     pub rgba: Vec<u8>,
@@ -72,7 +72,7 @@ fn read(path: &Path) -> Result<Pinned, FileError> {
         reason,
     };
     let picture = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png)
-        .map_err(|error| content(format!("not a whole PNG picture ({error}); delete it")))?
+        .map_err(|error| content(format!("not a whole PNG image ({error}); delete it")))?
         .into_rgba8();
     Ok(Pinned {
         path: path.to_owned(),
@@ -83,11 +83,11 @@ fn read(path: &Path) -> Result<Pinned, FileError> {
     })
 }
 
-/// Pins a document with its picture (8 bits of red, green, blue and alpha a pixel), which is made smaller; its file is
+/// Pins a document with its image (8 bits of red, green, blue and alpha a pixel), which is made smaller; its file is
 /// named after its first material. The folder is made where it is not there.
 ///
 /// # Errors
-/// [`FileError::Write`], or what is wrong with the picture's size.
+/// [`FileError::Write`], or what is wrong with the image's size.
 pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: &[u8]) -> Result<PathBuf, FileError> {
     fs::create_dir_all(folder).map_err(|source| FileError::Write {
         path: folder.to_owned(),
@@ -100,7 +100,7 @@ pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: 
         reason,
     };
     let picture = image::RgbaImage::from_raw(width, height, rgba.to_vec())
-        .ok_or_else(|| content("the picture's size is not that of its pixels; report it".to_owned()))?;
+        .ok_or_else(|| content("the image's size is not that of its pixels; report it".to_owned()))?;
     let longest = width.max(height).max(1);
     let picture = if longest > SIDE_MAX {
         let side = |side: u32| (side * SIDE_MAX / longest).max(1);
@@ -167,7 +167,7 @@ mod tests {
         let paths = [0, 1].map(|_| add(&folder, &document, [600, 300], &pixels).expect("pinned"));
         assert_eq!(paths[0].file_name(), Some("Odd name.png".as_ref()));
         assert_eq!(paths[1].file_name(), Some("Odd name 2.png".as_ref()));
-        fs::write(folder.join("broken.png"), "no picture").expect("a temporary file");
+        fs::write(folder.join("broken.png"), "no image").expect("a temporary file");
         let (pinned, errors) = list(&folder).expect("listed");
         assert!(errors.len() == 1 && errors[0].contains("broken.png"), "{errors:?}");
         assert_eq!(pinned.len(), 2);

@@ -201,7 +201,7 @@ mod tests {
         video.finish().expect("written");
     }
 
-    /// Mean difference of two pictures' channels.
+    /// Mean difference of two images' channels.
     fn difference(a: &[u8], b: &[u8]) -> f64 {
         assert_eq!(a.len(), b.len());
         let of_bytes = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)));

@@ -35,7 +35,7 @@ pub struct Case {
     samples: u32,
     /// How many times as many the lobe takes alone, where it finds a light by chance.
     chance: u32,
-    /// Pixels are alike. Where they are not, the mean of the whole picture is known, and its error is told by the spread
+    /// Pixels are alike. Where they are not, the mean of the whole image is known, and its error is told by the spread
     /// of pictures of many seeds.
     pub is_even: bool,
 }

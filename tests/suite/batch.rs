@@ -141,7 +141,7 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     );
     let run = place.run("batch a.toml --engine cpu");
     assert_eq!(run.code, Some(3), "{}", run.stderr);
-    assert!(run.stderr.contains("1 of 2 pictures"), "{}", run.stderr);
+    assert!(run.stderr.contains("1 of 2 images"), "{}", run.stderr);
     let rows = lines(&run);
     assert_eq!(
         (&rows[0]["status"], &rows[1]["status"]),

@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 
+use glossmith::scene::texture::{TextureTarget, UserTexture};
 use serde_json::{Value as Json, json};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
@@ -229,17 +230,19 @@ fn textures_of_fate(place: &Workplace, fate: &str) -> Json {
     entries(place).into_iter().find(is_it).unwrap_or_default()
 }
 
-/// 8 pictures of 16 MiB each from files of 16 KiB, where 100 MiB are allowed: as many as fit are shown, the same in each run, and
-/// of the others it is told what each takes, what is left, and what to do.
+/// A square image of many colours.
+fn gradient(side: u32, shade: u8) -> image::RgbImage {
+    image::RgbImage::from_fn(side, side, |x, y| image::Rgb([(x / 8) as u8, (y / 8) as u8, shade]))
+}
+
+/// 8 pictures of 16 MiB each from small files, where 100 MiB are allowed: as many as fit are shown at their size, the others
+/// smaller, the same in each run, and it is told why and what to do. What can't be reduced while it is decoded is left out.
 #[test]
 fn pictures_share_the_budget_of_their_import() {
     let place = Workplace::new();
     let names: Vec<String> = (0..8).map(|i| format!("p{i}.png")).collect();
     for (i, name) in names.iter().enumerate() {
-        let color = image::Rgba([20 * i as u8, 0, 0, 255]);
-        image::RgbaImage::from_pixel(2048, 2048, color)
-            .save(place.path(name))
-            .unwrap();
+        gradient(2048, 20 * i as u8).save(place.path(name)).unwrap();
     }
     write_square(&place, "m.gltf", with_pictures(&names));
     for _ in 0..2 {
@@ -249,21 +252,44 @@ fn pictures_share_the_budget_of_their_import() {
             Some(100),
         );
         assert_eq!(taken.code, Some(0), "{}", taken.said);
-        let used = textures_of_fate(&place, "used");
-        let missing = textures_of_fate(&place, "missing");
-        let count = used["count"].as_u64().unwrap();
-        assert!((2..=6).contains(&count), "{used}");
-        assert_eq!(used["names"], json!(names[..count as usize]));
-        assert_eq!(8 - count, missing["count"].as_u64().unwrap());
-        let told = missing["what"].as_str().unwrap();
-        for words in ["it takes", "are left of the 100 MiB", "GLOSSMITH_MEMORY"] {
-            assert!(told.contains(words), "{told}");
-        }
+        assert_eq!(textures_of_fate(&place, "used")["names"], json!(names));
+        let of_reduction = |entry: &Json| {
+            entry["what"]
+                .as_str()
+                .unwrap()
+                .contains("used at 1024 × 1024, to fit the memory")
+        };
+        let reduced = entries(&place).into_iter().find(of_reduction).unwrap();
+        let count = reduced["count"].as_u64().unwrap();
+        assert!((2..=6).contains(&count), "{reduced}");
+        assert_eq!(reduced["names"], json!(names[8 - count as usize..]));
+        assert!(
+            reduced["what"].as_str().unwrap().contains("GLOSSMITH_MEMORY"),
+            "{reduced}"
+        );
+    }
+    gradient(2048, 0).save(place.path("whole.jpg")).unwrap();
+    write_square(&place, "whole.gltf", with_pictures(&["whole.jpg".to_owned()]));
+    let arguments = format!("render whole.gltf {QUICK} --import-report report.json");
+    assert_eq!(run(&place, &arguments, Some(16)).code, Some(0));
+    let missing = textures_of_fate(&place, "missing");
+    for words in ["it takes 48 MiB", "are left of the 16 MiB", "GLOSSMITH_MEMORY"] {
+        assert!(missing["what"].as_str().unwrap().contains(words), "{missing}");
     }
     // The user's own are of the same import.
-    let taken = run(&place, &format!("render --texture base-color=p1.png {QUICK}"), Some(16));
+    let own = format!("render --texture base-color=p1.png {QUICK}");
+    let taken = run(&place, &own, Some(16));
+    assert_eq!(taken.code, Some(0), "{}", taken.said);
+    assert!(
+        taken
+            .said
+            .contains("p1.png: a picture of 2048 × 2048, used at 1024 × 1024"),
+        "{}",
+        taken.said
+    );
+    let taken = run(&place, &own, Some(3));
     assert_eq!(taken.code, Some(1), "{}", taken.said);
-    for words in ["p1.png", "it takes", "of the 16 MiB", "GLOSSMITH_MEMORY"] {
+    for words in ["p1.png", "it takes", "of the 3 MiB", "GLOSSMITH_MEMORY"] {
         assert!(taken.said.contains(words), "{}", taken.said);
     }
     // And so is a model's own file.
@@ -356,4 +382,123 @@ fn tiff_of_halves(side: u32) -> Vec<u8> {
     }
     bytes.extend(0_u32.to_le_bytes());
     bytes
+}
+
+/// Eight pictures of 16384 × 16384 took 5 GB. They are reduced row by row, several at once; of one colour, they are a texel.
+#[test]
+fn pictures_larger_than_needed_are_reduced_while_they_are_decoded() {
+    let place = Workplace::new();
+    let file = std::fs::File::create(place.path("p.png")).unwrap();
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), 1 << 14, 1 << 14);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_compression(png::Compression::Fastest);
+    let mut writer = encoder.write_header().unwrap();
+    let mut rows = writer.stream_writer().unwrap();
+    (0..1 << 14).for_each(|_| rows.write_all(&[0; 1 << 14]).unwrap());
+    rows.finish().unwrap();
+    drop(writer);
+    write_square(&place, "m.gltf", with_pictures(&vec!["p.png".to_owned(); 8]));
+    let taken = run(
+        &place,
+        &format!("render m.gltf {QUICK} --import-report report.json"),
+        None,
+    );
+    assert_eq!(taken.code, Some(0), "{}", taken.said);
+    assert!(taken.peak_mib < 1024, "{} MiB", taken.peak_mib);
+    assert_eq!(textures_of_fate(&place, "used")["count"], 8);
+}
+
+#[test]
+fn environments_share_the_budget_of_imports() {
+    let place = Workplace::new();
+    let light = |x: usize, y: usize| [x as f32, y as f32, 1.0];
+    super::cli_support::write_hdr(&place.path("l.hdr"), 512, 256, light);
+    super::cli_support::write_exr(&place.path("l.exr"), 512, 256, light);
+    gradient(512, 0).save(place.path("l.png")).unwrap();
+    std::fs::create_dir(place.path("faces")).unwrap();
+    for face in ["px", "nx", "py", "ny", "pz", "nz"] {
+        gradient(128, 0).save(place.path(&format!("faces/{face}.png"))).unwrap();
+    }
+    for name in ["l.hdr", "l.exr", "l.png", "faces"] {
+        let arguments = format!("render --model sphere --environment {name} {QUICK}");
+        let taken = run(&place, &arguments, Some(1));
+        assert_eq!(taken.code, Some(1), "{name}: {}", taken.said);
+        for words in ["it takes", "of the 1 MiB", "GLOSSMITH_MEMORY"] {
+            assert!(taken.said.contains(words), "{name}: {}", taken.said);
+        }
+        assert_eq!(run(&place, &arguments, Some(64)).code, Some(0), "{name}");
+    }
+}
+
+#[test]
+fn pictures_of_a_graph_share_the_budget_of_their_import_and_are_read_once() {
+    let place = Workplace::new();
+    gradient(2048, 0).save(place.path("p.png")).unwrap();
+    let node = |i: usize| {
+        let input = |name: &str| format!("<input name=\"{name}\" type=\"color3\" nodename=\"n{}\"/>", i - 1);
+        format!(
+            "<add name=\"n{i}\" type=\"color3\">{}{}</add>",
+            input("in1"),
+            input("in2")
+        )
+    };
+    // The picture is an input 1024 times.
+    let nodes: String = (1..11).map(node).collect();
+    let text = format!(
+        "<materialx version=\"1.39\"><nodegraph name=\"g\"><image name=\"n0\" type=\"color3\"><input name=\"file\" \
+         type=\"filename\" value=\"p.png\"/></image>{nodes}<output name=\"out\" type=\"color3\" nodename=\"n10\"/>\
+         </nodegraph><standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"base_color\" type=\"color3\" \
+         nodegraph=\"g\" output=\"out\"/></standard_surface></materialx>"
+    );
+    place.write("m.mtlx", text.as_bytes());
+    done(&place, "convert m.mtlx out.json --report report.json");
+    assert!(
+        place.read("report.json").contains("the mean of p.png"),
+        "{}",
+        place.read("report.json")
+    );
+    let taken = run(&place, "convert m.mtlx out.json --report report.json", Some(16));
+    assert_eq!(taken.code, Some(0), "{}", taken.said);
+    for words in ["p.png: it takes 48 MiB", "of the 16 MiB", "GLOSSMITH_MEMORY"] {
+        assert!(
+            place.read("report.json").contains(words),
+            "{}",
+            place.read("report.json")
+        );
+    }
+}
+
+#[test]
+fn textures_of_an_export_share_one_budget() {
+    let place = Workplace::new();
+    gradient(2048, 0).save(place.path("p.png")).unwrap();
+    write_square(&place, "m.gltf", |_| {});
+    let mut document = glossmith::document::Document {
+        model: glossmith::scene::ModelSource::File(place.path("m.gltf")),
+        ..Default::default()
+    };
+    document.materials[0].put_texture(TextureTarget::BaseColor, UserTexture::of(place.path("p.png")));
+    glossmith::store::save_document(&place.path("p.json"), &document).unwrap();
+    let arguments = "convert p.json out.glb --report report.json";
+    let taken = run(&place, arguments, Some(16));
+    assert_eq!(taken.code, Some(0), "{}", taken.said);
+    assert!(
+        taken.said.contains("used at 1024 × 1024, to fit the memory"),
+        "{}",
+        taken.said
+    );
+    let taken = run(&place, arguments, Some(3));
+    assert_eq!(taken.code, Some(0), "{}", taken.said);
+    for words in [
+        "your texture of the base colour",
+        "it takes",
+        "of the 3 MiB",
+        "GLOSSMITH_MEMORY",
+    ] {
+        assert!(
+            place.read("report.json").contains(words),
+            "{}",
+            place.read("report.json")
+        );
+    }
 }

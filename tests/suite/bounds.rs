@@ -115,3 +115,70 @@ fn names_that_are_no_unicode_are_written() {
         assert!(place.path("").join(name).is_file(), "{command} {option}");
     }
 }
+
+/// Files of a batch in folders whose names are not Unicode are found, and their records lead back to them.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let place = Workplace::new();
+    let inside = |name: &[u8]| place.path("").join(OsStr::from_bytes(name));
+    let folder = inside(b"in\xff");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    super::cli_support::write_hdr(&folder.join("l.hdr"), 8, 4, |_, _| [1.0; 3]);
+    glossmith::store::save_material(&folder.join("mine.json"), &glossmith::store::PRESETS[2]).unwrap();
+    let text = "models = [\"m.obj\"]\nmaterials = [\"mine.json\"]\nenvironments = [\"l.hdr\"]\n[common]\nsize = \"8x8\"\nsamples = 1\n";
+    std::fs::write(folder.join("b.toml"), text).unwrap();
+    let batch = |out: &[u8]| {
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+            .args(["batch", "--engine", "cpu"])
+            .arg(folder.join("b.toml"))
+            .arg("--folder")
+            .arg(inside(out))
+            .current_dir(place.path(""))
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            output.status.success(),
+            "{told}\n{}",
+            String::from_utf8_lossy(&output.stdout)
+        );
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
+    };
+    let mut texts = Vec::new();
+    for out in [&b"out\xfe"[..], b"out\xfd"] {
+        let row = batch(out);
+        assert_eq!(row["status"], "rendered");
+        let text = row["files"][0].as_str().unwrap().to_owned();
+        let file = glossmith::scene::path_text::path_of_text(&text);
+        assert_eq!(file, std::path::absolute(inside(out).join("m-mine-l.png")).unwrap());
+        assert!(file.is_file() && !texts.contains(&text), "{text}");
+        let record: serde_json::Value =
+            serde_json::from_slice(&std::fs::read(inside(out).join("m-mine-l.json")).unwrap()).unwrap();
+        assert_eq!(record["files"][0], text.as_str());
+        assert_eq!(batch(out)["status"], "kept");
+        texts.push(text);
+    }
+    // And so are models, environments and materials on the command line.
+    let render = |option: &str, name: &str| {
+        let mut argument = std::ffi::OsString::from(format!("{option}="));
+        argument.push(folder.join(name));
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+            .args("render --engine cpu --size 8x8 --samples 1 --output a.exr".split(' '))
+            .arg(argument)
+            .current_dir(place.path(""))
+            .output()
+            .unwrap();
+        assert!(
+            output.status.success(),
+            "{option}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    };
+    render("--model", "m.obj");
+    render("--environment", "l.hdr");
+    render("--material", "mine.json");
+}

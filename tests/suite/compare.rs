@@ -329,7 +329,7 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     see(&mut harness, "it to come back", |harness| has_button(harness, "Quagga"));
 }
 
-/// Chooses a file in the path field, which takes the dialog's place here.
+/// Chooses a file in the path field.
 fn choose(harness: &mut Editor, command: Command, path: &Path) {
     request(harness, Action::Do(command));
     see(harness, "the path field", |harness| {

@@ -438,3 +438,26 @@ fn no_direction_gives_anything_but_a_number() {
         }
     });
 }
+
+/// The offset along the normal displaces the lobe from the mirror direction r: samples lean towards the normal, by many
+/// standard errors (docs/mathematics/lobe.md, equation 1.7).
+#[test]
+fn the_lobe_leans_from_the_mirror_direction_to_the_normal() {
+    const SAMPLES: u32 = 20_000;
+    let case = Case::new(Lobe::Geometric, Curve::Sqrt, Horizon::None, 0.5, 45.0);
+    let inputs = inputs::<f64>(&case);
+    let normal = inputs.frame.normal;
+    let mirrored = normal * (2.0 * normal.dot(inputs.wo)) - inputs.wo;
+    let across = (normal - mirrored * normal.dot(mirrored)).normalize();
+    let leans = (0..SAMPLES).map(|i| {
+        let state = random_state(23, 0, 0, i, Sequence::Independent);
+        let ([a, b], [c, _]) = (random_pair::<f64>(state, 0), random_pair::<f64>(state, 1));
+        let sample = lobe_sample(&inputs.shape, &inputs.frame, normal, inputs.wo, [a, b, c]);
+        sample.wi.dot(across)
+    });
+    let (sum, squares) = leans.fold((0.0, 0.0), |(sum, squares), x| (sum + x, squares + x * x));
+    let count = f64::from(SAMPLES);
+    let mean = sum / count;
+    let error = ((squares / count - mean * mean) / count).sqrt();
+    assert!(mean > 10.0 * error, "{mean} ± {error}");
+}

@@ -95,7 +95,7 @@ fn what_is_lost_again_and_again_is_left_to_the_processor() {
         let worker = gpu_worker();
         worker.lose_device(moment, 4);
         worker.submit(&long_document(), Pace::Still);
-        let told = warnings_until(&worker, "going on with the processor");
+        let told = warnings_until(&worker, "going on with the CPU");
         for time in 1..=3 {
             let word = format!("({time} of 3 times)");
             assert!(told.iter().any(|text| text.contains(&word)), "{moment:?}: {told:?}");
@@ -122,7 +122,7 @@ fn what_was_read_back_counts() {
         other => panic!("{other:?}"),
     };
     let told = session.recover(&lost);
-    assert!(told.contains("opened anew"), "{told}");
+    assert!(told.contains("opened again"), "{told}");
     assert_eq!(session.progress().samples_per_pixel, had);
     while !session.step(Duration::from_secs(1)).expect("it is whole again").is_done {}
     let mut alone = Session::open(EngineChoice::Cpu).expect("always");

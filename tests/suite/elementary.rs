@@ -1,4 +1,4 @@
-//! Known values of elementary functions: Fresnel's equations, Sobol's points, and the step from a mirror to a lobe.
+//! Known values of elementary functions: Fresnel's equations, points of the Sobol sequence, and the step from a mirror to a lobe.
 
 use std::collections::HashSet;
 

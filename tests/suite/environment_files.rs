@@ -7,8 +7,9 @@ use exr::prelude::{
     AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
     LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
 };
+use glossmith::import::environment::EnvironmentError;
 use glossmith::import::environment::load;
-use glossmith::scene::environment::{Environment, EnvironmentError, EnvironmentSource};
+use glossmith::scene::environment::{Environment, EnvironmentSource};
 use image::codecs::hdr::HdrEncoder;
 use proptest::prelude::{ProptestConfig, any, proptest};
 use tempfile::TempDir;
@@ -367,7 +368,7 @@ fn what_is_no_environment_is_refused() {
     std::fs::create_dir(folder.path().join("folder.hdr")).unwrap();
     assert_says(
         &refusal(&folder.path().join("folder.hdr")),
-        &["folder without six pictures", "px, nx"],
+        &["folder without six images", "px, nx"],
     );
 }
 
@@ -524,7 +525,9 @@ fn colours_of_wider_spaces_are_converted() {
         if name == "plain.exr" {
             exr_file(&folder, name, &RGB, "float", Compression::Uncompressed);
         }
-        glossmith::import::picture::mean_of_file(&path).expect("loads").linear
+        glossmith::import::picture::mean_of_file(&path, &glossmith::import::Budget::of_import())
+            .expect("loads")
+            .linear
     });
     assert!(plain != wide, "{plain:?}");
 }

@@ -51,7 +51,7 @@ fn every_picture_is_read_as_an_environment_and_as_a_texture() {
             ".{ending} as an environment: {}",
             environment.unwrap_err()
         );
-        let texture = mean_of_file(&path);
+        let texture = mean_of_file(&path, &glossmith::import::Budget::of_import());
         assert!(texture.is_ok(), ".{ending} as a texture: {}", texture.unwrap_err());
     }
 }

@@ -386,7 +386,8 @@ fn old_layouts_of_dds_are_read() {
     let path = folder.path("old.dds");
     let read = |bytes: Vec<u8>| {
         std::fs::write(&path, bytes).unwrap();
-        glossmith::import::picture::mean_of_file(&path).map(|mean| mean.codes.map(|code| (255.0 * code).round() as u8))
+        glossmith::import::picture::mean_of_file(&path, &glossmith::import::Budget::of_import())
+            .map(|mean| mean.codes.map(|code| (255.0 * code).round() as u8))
     };
     let (with_opacity, alone, code, colors, grey) = (1, 2, 4, 0x40, 0x2_0000);
     let by_masks = |flags, bits, masks, texels: &[u8]| read(dds_of_masks(flags, [0; 4], bits, masks, texels));

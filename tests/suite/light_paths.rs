@@ -152,7 +152,7 @@ fn the_viewport_shows_parts_of_the_light() {
     );
     look_at(&mut harness, "Direct light");
     assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);
-    look_at(&mut harness, "Picture");
+    look_at(&mut harness, "Image");
     assert_eq!(picture(&harness), all);
     undo(&mut harness);
     assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);

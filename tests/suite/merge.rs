@@ -93,7 +93,7 @@ fn a_region_of_a_picture_joins_like_the_whole() {
     place.done(&format!(
         "render {SCENE} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
     ));
-    place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another picture"]);
+    place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another image"]);
 }
 
 /// The GPU sums in f32 before it hands over: pictures agree to its rounding.
@@ -199,7 +199,7 @@ fn films_that_do_not_belong_together_are_refused() {
     place.refused(
         1,
         "merge a.exr c.exr --output x.exr",
-        &["c.exr", "a.exr", "another picture"],
+        &["c.exr", "a.exr", "another image"],
     );
     place.refused(1, "merge a.exr plain.exr --output x.exr", &["plain.exr", "--keep-sums"]);
     place.refused(1, "render --samples-from 4 --samples-to 4", &["--samples-to 4"]);

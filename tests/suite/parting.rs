@@ -28,7 +28,7 @@ pub struct Pair {
 pub struct Apart {
     /// The share of pixels that are off.
     pub pixels: f64,
-    /// The whole picture, relative.
+    /// The whole image, relative.
     pub whole: f64,
     /// The pixel that is off the most.
     worst: [u32; 2],

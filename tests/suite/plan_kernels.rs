@@ -130,12 +130,12 @@ fn assert_same_bits(specialised: &Film, general: &Film, what: &str) {
     assert_eq!(specialised.dropped(), general.dropped(), "{what}");
 }
 
-/// The share of pixels that rounding may move by more than 1e-3, and how far it may move the whole picture.
+/// The share of pixels that rounding may move by more than 1e-3, and how far it may move the whole image.
 pub const ROUNDED_PIXELS: f64 = 0.01;
 pub const ROUNDED_WHOLE: f64 = 1e-3;
 
 /// Different code orders and fuses the same arithmetic differently, so that last bits differ, and now and then a decision
-/// of a path with them: nearly all pixels agree to 1e-3, and the whole picture does.
+/// of a path with them: nearly all pixels agree to 1e-3, and the whole image does.
 pub fn assert_same_but_for_rounding(a: &Film, b: &Film, what: &str) {
     let [off, whole] = apart(&a.luminance(), &b.luminance());
     println!("{:.2} % of pixels off, the whole by {whole:.1e}", 100.0 * off);

@@ -14,7 +14,7 @@ use super::cli_support::{Workplace, read_exr};
 use super::plan::job_in;
 use super::random_documents::apart;
 
-/// The share of pixels that may be off by more than a thousandth, and how far the whole picture may be: rays at edges meet
+/// The share of pixels that may be off by more than a thousandth, and how far the whole image may be: rays at edges meet
 /// the triangle on the other side, after which a path goes elsewhere. All other hits have the same numbers, as these are
 /// computed by the same arithmetic once the triangle is known.
 const PARTED_PIXELS: f64 = 0.005;

@@ -101,10 +101,7 @@ pub(super) fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
 #[track_caller]
 pub fn assert_same_picture(a: &Film, b: &Film, what: &str) {
     let whole = a.difference_in_sigma(b);
-    assert!(
-        whole.abs() < 4.0,
-        "{what}: the whole picture is off by {whole:.1} sigma"
-    );
+    assert!(whole.abs() < 4.0, "{what}: the whole image is off by {whole:.1} sigma");
     // Pixels with few bright hits are skewed, so the tails are wider than a normal's 0.27 %.
     let beyond = beyond_three_sigma(a, b);
     assert!(

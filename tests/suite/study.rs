@@ -237,7 +237,7 @@ fn the_ledger_tells_what_is_known_of_a_scene() {
         strategy.words
     );
     assert!(
-        strategy.words.contains("removes") && strategy.words.contains("leaves the picture"),
+        strategy.words.contains("removes") && strategy.words.contains("leaves the image"),
         "{}",
         strategy.words
     );

@@ -35,6 +35,8 @@ pub(super) fn options() -> Options {
         resolution: Some(Resolution::Document),
         // With every panel in it.
         workspace: Some(MEASURE.to_owned()),
+        // The system's dialogs can't be used by a test, and some systems have none.
+        typed_paths: Some(std::env::temp_dir()),
         ..Options::default()
     }
 }
@@ -544,7 +546,6 @@ fn projects_and_materials_come_back_from_their_files() {
 fn the_picture_is_saved_as_it_is_shown() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor();
-    // There is no file dialog here: the path field takes its place.
     request(&mut harness, Action::Do(Command::SavePicture));
     see(&mut harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()

@@ -49,7 +49,7 @@ fn pictures_have_any_size_and_the_smallest_make_a_list() {
         );
     }
     let slider = |harness: &mut Editor, value: f64| {
-        let slider = harness.get_by_role_and_label(Role::Slider, "Size of the pictures");
+        let slider = harness.get_by_role_and_label(Role::Slider, "Size of the thumbnails");
         harness.event(egui::Event::AccessKitActionRequest(accesskit::ActionRequest {
             target_node: slider.accesskit_node().locate().0,
             target_tree: accesskit::TreeId::ROOT,

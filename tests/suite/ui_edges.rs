@@ -47,7 +47,7 @@ fn a_pasted_picture_is_told_what_to_do_with() {
     let image = egui::ColorImage::filled([2, 2], egui::Color32::RED);
     harness.event(Event::PasteImage(std::sync::Arc::new(image)));
     harness.run_steps(3);
-    assert!(is_shown(&harness, "the clipboard holds a picture"));
+    assert!(is_shown(&harness, "the clipboard holds an image"));
 }
 
 #[test]

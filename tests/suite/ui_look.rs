@@ -62,7 +62,7 @@ fn shown(harness: &Editor) -> std::sync::Arc<Picture> {
 #[test]
 fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     let mut harness = inspecting();
-    assert!(says(&harness, "Move the pointer over the picture"));
+    assert!(says(&harness, "Move the pointer over the image"));
     for pixel in [[20, 12], [3, 2]] {
         hover_pixel(&mut harness, pixel);
         let [x, y] = pixel;
@@ -82,7 +82,7 @@ fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     hover_pixel(&mut harness, [20, 12]);
     let name = harness.state().document().materials[0].name.clone();
     assert!(says(&harness, &name) && !says(&harness, "none: the background"));
-    assert!(says(&harness, "Histogram of the picture") && says(&harness, "Too bright for the screen"));
+    assert!(says(&harness, "Histogram of the image") && says(&harness, "Too bright for the screen"));
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
             picture.is_some_and(|picture| picture.map.is_some_and(|(of, _)| of == map))
         });
         let rgba = shown(&harness).rgba.clone();
-        assert_eq!(picture(&harness), linear, "{label} leaves the picture as it is");
+        assert_eq!(picture(&harness), linear, "{label} leaves the image as it is");
         assert!(!seen.contains(&rgba), "{label} shows nothing of its own");
         seen.push(rgba);
     }
@@ -176,7 +176,7 @@ fn wheel(harness: &mut Editor, at: Pos2, points: f32) {
 fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     let mut harness = inspecting();
     let before = harness.state().document().clone();
-    let whole = "Show the whole picture";
+    let whole = "Show the whole image";
     hover_pixel(&mut harness, [30, 16]);
     let at = place(&harness).min + Vec2::new(30.5, 16.5) * (place(&harness).width() / 40.0);
     wheel(&mut harness, at, 300.0);
@@ -219,7 +219,7 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     }
     request(&mut harness, Action::Do(Command::ZoomIn));
     settle(&mut harness);
-    see(&mut harness, "the whole picture's button", |harness| {
+    see(&mut harness, "the whole image's button", |harness| {
         harness.query_by_label(whole).is_some()
     });
     assert_eq!(*harness.state().document(), before);

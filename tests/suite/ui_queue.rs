@@ -45,7 +45,7 @@ fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = |name: &str| folder.path().join(name);
     let mut harness = editor();
-    turn(&mut harness, "Pictures", &path("turn"), [3.0, 2.0]);
+    turn(&mut harness, "Images", &path("turn"), [3.0, 2.0]);
     wait(&mut harness, "the frames", |app| {
         app.messages().iter().any(|text| text.contains("turntable: 3 frames"))
     });

@@ -296,6 +296,36 @@ fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     });
 }
 
+/// Help › Benchmark opens its section; a quick run shows a table of the engines and hands on its result.
+#[test]
+fn the_benchmark_is_run_from_the_help_menu() {
+    let mut harness = editor();
+    harness.get_by_label("Help").click_accesskit();
+    harness.run_steps(3);
+    harness.get_by_label("Benchmark").click_accesskit();
+    harness.run_steps(5);
+    harness.get_by_role_and_label(Role::CheckBox, "Quick").click_accesskit();
+    harness.run_steps(2);
+    harness.get_by_label("Run the benchmark").click_accesskit();
+    see(&mut harness, "the result", |harness| {
+        harness.query_by_label("Copy the result").is_some()
+    });
+    harness.get_by_label("Run the benchmark");
+    for what in [
+        "samples, default",
+        "rays, default",
+        "sampling, ggx",
+        "edit, roughness dragged",
+    ] {
+        assert!(
+            harness.query_all_by_label(what).count() >= 2,
+            "{what}: a CPU and an adapter"
+        );
+    }
+    // The viewport goes on.
+    wait(&mut harness, "the picture", App::is_settled);
+}
+
 /// A model of so many triangles that reading it takes a while.
 fn write_large_model(path: &std::path::Path) {
     let mut text = String::new();

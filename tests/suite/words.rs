@@ -1,8 +1,9 @@
-//! What a program can check of docs/STYLE.md: the words of its table, the length of sentences, their mean on each page.
+//! What a program can check of docs/STYLE.md: the words of its table, in the pages and in the texts and comments of the
+//! sources; the length of sentences, and their mean on each page.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::docs::{pages, text_of};
+use super::docs::{pages, root, text_of};
 
 /// Words that a sentence may have, and that those of a page may have in the mean.
 const MOST_WORDS: usize = 30;
@@ -144,4 +145,88 @@ fn pages_keep_to_the_style() {
             "{name}: {mean:.1} words a sentence in the mean"
         );
     }
+}
+
+/// Folders of `src` whose comments keep to the table as well.
+const COMMENTED: [&str; 5] = ["app", "cli", "document", "plot", "store"];
+/// Names that other programs give their inputs.
+const NAMES_OF_OTHERS: [&str; 2] = ["Base Color", "Emission Color"];
+
+/// The sources below a folder.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => sources(&path, found),
+            false if path.extension().is_some_and(|ending| ending == "rs") => found.push(path),
+            false => {}
+        }
+    }
+}
+
+/// The texts in quotes of a line of code.
+fn quoted(line: &str) -> Vec<String> {
+    let line = line.replace("\\\"", "'");
+    line.split('"').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// The words of a text in lower case; code, options and what formats fill in as they are: `base.color` is one word.
+fn whole_words(text: &str) -> String {
+    let text = replaced(text, '`', "code").to_lowercase();
+    let is_mark = |c: char| !c.is_alphanumeric() && !matches!(c, '-' | '{' | '}');
+    let words = text
+        .split_whitespace()
+        .map(|word| word.trim_matches(is_mark).trim_end_matches("'s"));
+    format!(" {} ", words.collect::<Vec<_>>().join(" "))
+}
+
+/// Messages, help and labels: text that is no name, which has a blank or begins with a capital letter. Tests are left out.
+#[test]
+fn texts_and_comments_keep_to_the_table() {
+    let private = private_words();
+    let mut files = Vec::new();
+    sources(&root().join("src"), &mut files);
+    let (mut found, mut long) = (Vec::new(), Vec::new());
+    for file in files {
+        let name = file
+            .strip_prefix(root())
+            .unwrap()
+            .display()
+            .to_string()
+            .replace('\\', "/");
+        let is_commented = COMMENTED
+            .iter()
+            .any(|folder| name.starts_with(&format!("src/{folder}/")));
+        let text = std::fs::read_to_string(&file).unwrap();
+        // Texts go on behind a backslash at the end of a line.
+        let joined = text.replace("\\\n", " ");
+        for line in joined.lines().take_while(|line| !line.starts_with("#[cfg(test)]")) {
+            let texts = match line.trim_start().strip_prefix("//") {
+                Some(comment) if is_commented => vec![comment.to_owned()],
+                Some(_) => Vec::new(),
+                None => quoted(line),
+            };
+            let is_label = |text: &str| text.starts_with(char::is_uppercase) && text.contains(char::is_lowercase);
+            let is_said = |text: &&String| !text.starts_with('<') && (text.contains(' ') || is_label(text));
+            let said = texts
+                .iter()
+                .filter(is_said)
+                .filter(|text| !NAMES_OF_OTHERS.contains(&text.as_str()));
+            let is_generator = name.contains("/generated_");
+            for text in said.clone().filter(|_| !is_generator) {
+                let sentences = sentences(text).into_iter();
+                long.extend(
+                    sentences
+                        .filter(|words| words.len() > MOST_WORDS)
+                        .map(|words| words.join(" ")),
+                );
+            }
+            for text in said.map(|text| whole_words(text)) {
+                let words = private.iter().filter(|word| text.contains(&format!(" {word} ")));
+                found.extend(words.map(|word| format!("{name}: {word}: {}", text.trim())));
+            }
+        }
+    }
+    assert!(found.is_empty(), "words that docs/STYLE.md replaces: {found:#?}");
+    assert!(long.is_empty(), "sentences of more than {MOST_WORDS} words: {long:#?}");
 }

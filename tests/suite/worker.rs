@@ -152,7 +152,7 @@ fn the_last_of_many_submissions_is_what_stays() {
 fn a_steady_stream_of_changes_is_shown_while_it_lasts() {
     let worker = worker();
     let mut document = small_document();
-    // Large enough that a change every 3 ms never leaves time for a whole picture.
+    // Large enough that a change every 3 ms never leaves time for a whole image.
     (document.render.width, document.render.height) = (1600, 1000);
     finished_first_look(&worker, worker.submit(&document, Pace::Still));
     let begun = Instant::now();

@@ -1,4 +1,4 @@
-//! What the clipboard did with a copy: told in the frame after, as the window's own library only logs it.
+//! What the clipboard did with a copy: reported in the frame after, as the window's own library only logs it.
 
 use egui::OutputCommand;
 
@@ -7,7 +7,7 @@ use crate::app::services::heard;
 use crate::render::worker::Level;
 
 /// What to do where copying fails.
-const REMEDY: &str = "pictures can be saved by File › Save picture…, materials by File › Export…";
+const REMEDY: &str = "images can be saved by File › Save image…, materials by File › Export…";
 
 impl App {
     /// Says whether the last frame's copy was taken.
@@ -37,9 +37,9 @@ impl App {
         }
     }
 
-    /// A picture was pasted, which has no place to go to without a name.
+    /// An image was pasted, which has no place to go to without a name.
     pub(in crate::app) fn refuse_pasted_picture(&mut self) {
-        let text = "the clipboard holds a picture: save it as a file, and open or drop that";
+        let text = "the clipboard holds an image: save it as a file, and open or drop that";
         self.say(Level::Warning, text);
     }
 }

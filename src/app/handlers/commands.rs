@@ -5,6 +5,7 @@ use crate::app::desk::{PICTURE_SIZE, Resolution};
 use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
+use crate::app::sheets::book;
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
@@ -16,7 +17,7 @@ use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
 use crate::store::examples::{EXAMPLES, Example};
 
-/// How many times larger one step of magnification shows the picture.
+/// How many times larger one step of magnification shows the image.
 const MAGNIFICATION: f32 = 2.0;
 
 impl App {
@@ -91,7 +92,7 @@ impl App {
         }
     }
 
-    /// Takes an example over, as an edit that can be taken back, and shows the panel that tells of it.
+    /// Opens an example, as an edit that can be undone, and shows the panel about it.
     fn open_example(&mut self, number: usize) {
         let Some(Example {
             label, panel, document, ..
@@ -109,7 +110,7 @@ impl App {
         }
     }
 
-    /// Lays the account of a path of the picture in progress over the window.
+    /// Lays the account of a path of the image in progress over the window.
     fn explain(&mut self, pixel: [u32; 2], sample: u32) {
         if let Some(scene) = &self.worker.snapshot().scene {
             let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
@@ -123,17 +124,17 @@ impl App {
     fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
         if let Ok(parameter) = parameter(key) {
             self.reveal(Pane::Material);
-            keys::wish_focus(ctx, parameter.group, parameter.full_name());
+            keys::focus_row(ctx, parameter.group, parameter.full_name());
         } else if let Some(setting) = setting(key) {
             let is_light = key.starts_with("lighting.") || key == "scene.ground";
             self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
             let mut group = setting.group;
             if group == PICTURE_SIZE {
-                // Rows that are shown where the viewport has the picture's size.
+                // Rows that are shown where the viewport has the image's size.
                 self.shared.resolution = Resolution::Document;
-                group = "Picture";
+                group = "Image";
             }
-            keys::wish_focus(ctx, group, setting.full_name());
+            keys::focus_row(ctx, group, setting.full_name());
         }
     }
 
@@ -226,7 +227,7 @@ impl App {
             Command::Restart => {
                 self.worker.restart();
                 self.restart_rival();
-                // With the viewport's size, where the picture had been kept at another.
+                // With the viewport's size, where the image had been kept at another.
                 self.submitted = None;
             }
             Command::Compare => self.toggle_compare(),
@@ -245,6 +246,7 @@ impl App {
                 self.panels.hear(command);
                 self.reveal(Pane::Race);
             }
+            Command::Benchmark => self.reveal(Pane::Check),
             Command::Turntable => self.open_turntable(),
             Command::PreviewTurn => self.toggle_preview(),
             Command::Palette => {
@@ -255,6 +257,7 @@ impl App {
                     things: self.things(),
                 };
             }
+            Command::Manual => book::ask(ctx, self.topic(ctx)),
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
             Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,

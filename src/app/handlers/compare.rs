@@ -15,7 +15,7 @@ impl App {
         self.shared.compare.snapshot()
     }
 
-    /// How the pictures of A and B differ: the root mean square relative difference.
+    /// How the images of A and B differ: the root mean square relative difference.
     pub fn rms_difference(&self) -> Option<f64> {
         Some(self.shared.compare.compared()?.rms)
     }
@@ -94,7 +94,7 @@ impl App {
         if !compare.is_on {
             return;
         }
-        // A goes first: its engine is B's, and its first picture comes before B's.
+        // A goes first: its engine is B's, and its first image comes before B's.
         let (Some(engine), Some(a)) = (engine, &snapshot.picture) else {
             return;
         };

@@ -8,6 +8,7 @@ use crate::import::{endings, environment};
 use crate::import::{holds_model, is_model};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::path_text::path_of_text;
 use crate::scene::texture::{UserTexture, set};
 use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::file_kind::{FileKind, may_hold_document};
@@ -41,7 +42,7 @@ fn name(path: &Path) -> String {
         .into_owned()
 }
 
-/// The pictures in a folder, where their names say that they belong on a material.
+/// The images in a folder, where their names say that they belong on a material.
 pub(in crate::app) fn textures_in(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() || holds_model(path) {
         return Vec::new();
@@ -93,7 +94,7 @@ impl Sorted {
 
 impl App {
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
-    /// too. Pictures are for the selected material; one may have a document in it.
+    /// too. Images are for the selected material; one may have a document in it.
     pub(in crate::app) fn drop_files(&mut self, paths: Vec<PathBuf>) {
         if let Some(address) = paths
             .iter()
@@ -154,7 +155,7 @@ impl App {
                 .sum::<usize>()
     }
 
-    /// Pictures by themselves: for the selected material.
+    /// Images by themselves: for the selected material.
     fn drop_without_model(&mut self, pictures: Vec<PathBuf>, parts: &[PathBuf]) {
         for part in parts {
             let text = format!(
@@ -179,7 +180,7 @@ impl App {
         self.leave_out(&left);
     }
 
-    /// What was dropped with a model and is not part of it: pictures that say what they are for are put on its first material.
+    /// What was dropped with a model and is not part of it: images that say what they are for are assigned to its first material.
     pub(in crate::app) fn use_dropped_with(&mut self, model: &Model) {
         let names: Vec<String> = model.files.iter().map(|path| name(path)).collect();
         let mut left = std::mem::take(&mut self.files.dropped_with);
@@ -207,8 +208,7 @@ impl App {
             self.refuse_address(address);
             return;
         }
-        let path = |line: &str| PathBuf::from(line.strip_prefix("file://").map_or(line.to_owned(), decoded));
-        let paths: Vec<PathBuf> = lines.map(path).collect();
+        let paths: Vec<PathBuf> = lines.map(path_of_text).collect();
         if paths.iter().all(|path| path.exists()) {
             self.drop_files(paths);
         } else {
@@ -228,27 +228,6 @@ fn is_address(text: &str) -> bool {
     let scheme = text.split_once(":/").map_or("", |(scheme, _)| scheme);
     let is_scheme = scheme.len() > 1 && scheme.chars().all(|letter| letter.is_ascii_alphanumeric());
     is_scheme && scheme != "file"
-}
-
-/// A name as file managers write it, its special characters as %20 and the like.
-fn decoded(text: &str) -> String {
-    let mut bytes = Vec::new();
-    let mut rest = text.as_bytes();
-    while let [first, after @ ..] = rest {
-        let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
-        let code = code.and_then(|digits| u8::from_str_radix(digits, 16).ok());
-        match code {
-            Some(code) if *first == b'%' => {
-                bytes.push(code);
-                rest = &after[2..];
-            }
-            _ => {
-                bytes.push(*first);
-                rest = after;
-            }
-        }
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 #[cfg(test)]
@@ -277,7 +256,7 @@ mod tests {
         let found = sorted(&names);
         assert_eq!(found.environments, [PathBuf::from("sky")]);
         assert!(found.pictures.is_empty());
-        // One more picture, and they are pictures like any other.
+        // One more image, and they are images like any other.
         assert_eq!(sorted(&[&names[..], &["other.png"]].concat()).pictures.len(), 7);
     }
 
@@ -286,7 +265,5 @@ mod tests {
         assert!(is_address("https://example.org/a.glb") && is_address("https:/example.org/a.glb"));
         assert!(is_address("data:/x") && !is_address("file:///a.glb"));
         assert!(!is_address("/models/a.glb") && !is_address("C:/models/a.glb") && !is_address("a.glb"));
-        assert_eq!(decoded("/my%20models/%c3%a4.glb"), "/my models/ä.glb");
-        assert_eq!(decoded("100%"), "100%");
     }
 }

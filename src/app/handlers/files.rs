@@ -1,4 +1,4 @@
-//! Opening and saving: projects, materials, pictures. The window never waits for them.
+//! Opening and saving: projects, materials, images. The window never waits for them.
 
 use std::path::{Path, PathBuf};
 
@@ -31,13 +31,13 @@ const KIND: &str = ".glossmith";
 pub(in crate::app) struct Files {
     pub(in crate::app) disk: Disk,
     pub(in crate::app) project: Option<PathBuf>,
-    /// A picture that was dropped on the window and may hold a document.
+    /// An image that was dropped on the window and may hold a document.
     pub(in crate::app) dropped: Option<PathBuf>,
-    /// Pictures and buffers that were dropped together with a model that is still being opened.
+    /// Images and buffers that were dropped together with a model that is still being opened.
     pub(in crate::app) dropped_with: Vec<PathBuf>,
     /// The files that are shown, looked at for changes.
     pub(in crate::app) watched: Watched,
-    /// Where the next whole picture goes.
+    /// Where the next whole image goes.
     pub(in crate::app) wanted_pictures: Vec<Destination>,
     /// The preset that is exported; the document's materials where there is none.
     pub(in crate::app) exported: Option<MaterialSettings>,
@@ -217,7 +217,7 @@ impl App {
         self.awaited = self.awaited.saturating_sub(1);
     }
 
-    /// Files given at the start are where editing begins, not edits that could be lost or taken back; a project's changes
+    /// Files given at the start are where editing begins, not edits that could be lost or undone; a project's changes
     /// are.
     pub(in crate::app) fn count_as_start(&mut self, is_start: bool) {
         self.edits.record(&self.document, false);
@@ -238,7 +238,7 @@ impl App {
         self.edits.mark_saved();
     }
 
-    /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
+    /// Goes on with the document in an image: an edit like others, so that saving does not replace the image.
     fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
         self.say_all(loaded.warnings);
         self.shared.recent.add(path);
@@ -322,7 +322,7 @@ impl App {
             Purpose::Texture(target) => self.put_textures(&[(target, UserTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
-            // The ending says what is saved: a picture has the document inside, too.
+            // The ending says what is saved: an image has the document inside, too.
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
             Purpose::SaveProject => self.save_project(as_project(path)),
             Purpose::SaveMaterial => self.save_material(as_json(path)),
@@ -352,7 +352,7 @@ impl App {
         self.say(Level::Info, text);
     }
 
-    /// Shows the picture through a table of colours.
+    /// Shows the image through a table of colours.
     fn use_lut(&mut self, path: PathBuf) {
         // Tables are small: this one is read at once, so that errors are reported here.
         match lut::load(&path) {
@@ -389,7 +389,7 @@ impl App {
     }
 }
 
-/// Whether a file of this name is a picture.
+/// Whether a file of this name is an image.
 fn is_picture(path: &Path) -> bool {
     format_of(path).is_ok()
 }

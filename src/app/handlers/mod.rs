@@ -7,6 +7,7 @@ pub(super) mod dropped;
 mod export;
 pub(super) mod files;
 mod library;
+mod manual;
 pub(super) mod models;
 mod outside;
 mod queue;

@@ -20,7 +20,7 @@ impl App {
         self.reveal(Pane::Queue);
     }
 
-    /// Has the document rendered as it is, with its own picture size.
+    /// Has the document rendered as it is, with its own image size.
     pub(in crate::app) fn enqueue_picture(&mut self, path: PathBuf) {
         let document = Box::new(self.document.clone());
         self.enqueue(Task::Picture { document, path });

@@ -6,7 +6,7 @@ use crate::app::sheets::recovery::{Choice, name, sheet};
 use crate::render::worker::Level;
 
 impl App {
-    /// Takes what the thread told that puts documents aside.
+    /// Takes the reports of the thread that saves documents for recovery.
     pub(in crate::app) fn take_autosave_reports(&mut self) {
         for text in self.autosave.witness.take_told() {
             self.say(Level::Error, text);

@@ -28,13 +28,13 @@ impl App {
         let Some(folder) = self.shared.snapshots.folder.clone() else {
             self.say(
                 Level::Error,
-                "there is no folder for snapshots: set HOME, or save the picture as a .png, which has the document inside",
+                "there is no folder for snapshots: set HOME, or save the image as a .png, which has the document inside",
             );
             return;
         };
         let picture = self.worker.snapshot().picture.clone();
         if change == PinChange::Add && picture.is_none() {
-            self.say(Level::Warning, "there is no picture to pin yet");
+            self.say(Level::Warning, "there is no image to pin yet");
             return;
         }
         let document = self.document.clone();

@@ -39,7 +39,7 @@ impl App {
     }
 
     /// Gives a document that is to be rendered the viewport's size, unless nothing else would make the renderer start over
-    /// and the picture is finished and has cost too much for that. One in progress is begun anew, however slow it is.
+    /// and the image is finished and has cost too much for that. One in progress is begun again, however slow it is.
     fn set_size(&self, wanted: &mut Document, [width, height]: [u32; 2]) {
         (wanted.render.width, wanted.render.height) = (width, height);
         let Some(old) = &self.submitted else { return };

@@ -1,4 +1,4 @@
-//! The picture as a file or on the clipboard: as soon as there is one of the document as it is, at its full size.
+//! The image as a file or on the clipboard: as soon as there is one of the document as it is, at its full size.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use crate::app::App;
 use crate::render::output::{self, Layers};
 use crate::render::worker::{Activity, Level, Picture};
 
-/// Where a picture goes.
+/// Where an image goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Destination {
     File(PathBuf),
@@ -15,16 +15,16 @@ pub(in crate::app) enum Destination {
 }
 
 impl App {
-    /// Hands the picture over as soon as it is whole.
+    /// Hands the image over as soon as it is whole.
     pub(in crate::app) fn want_picture(&mut self, to: Destination) {
         if self.worker.snapshot().picture.is_none() {
-            self.say(Level::Warning, "there is no picture yet");
+            self.say(Level::Warning, "there is no image yet");
         } else {
             self.files.wanted_pictures.push(to);
         }
     }
 
-    /// Delivers the picture if one was requested. While something is being changed there are only small previews, which
+    /// Delivers the image if one was requested. While something is being changed there are only small previews, which
     /// do not count, unless rendering was stopped and nothing better will come.
     pub(in crate::app) fn hand_over_pictures(&mut self, ctx: &egui::Context) {
         if self.files.wanted_pictures.is_empty() {
@@ -62,7 +62,7 @@ impl App {
     fn copy_picture(&mut self, ctx: &egui::Context, picture: &Picture) {
         let size = [picture.width as usize, picture.height as usize];
         ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-        self.copied = Some(format!("copied the picture ({} × {})", picture.width, picture.height));
+        self.copied = Some(format!("copied the image ({} × {})", picture.width, picture.height));
     }
 
     /// Writes the layers that the renderer made.

@@ -1,4 +1,4 @@
-//! Pictures that are put on materials.
+//! Images that are assigned to materials.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 impl App {
-    /// Puts pictures on the selected materials, in one edit.
+    /// Puts images on the selected materials, in one edit.
     pub(in crate::app) fn put_textures(&mut self, textures: &[(TextureTarget, UserTexture)]) {
         let Some((_, first)) = textures.first() else { return };
         let name = first
@@ -22,7 +22,7 @@ impl App {
         for slot in self.shared.selection.slots(self.shared.slot) {
             let material = self.document.material_mut(slot);
             for (target, texture) in textures {
-                // What is in the picture's place keeps the way in which it lies there.
+                // What is in the image's place keeps the way in which it lies there.
                 let known = material.user_textures.get(*target).filter(|_| textures.len() == 1);
                 let texture = known.map_or_else(
                     || texture.clone(),
@@ -38,7 +38,7 @@ impl App {
         self.edits.seal();
     }
 
-    /// Puts pictures on what their names say; those that are left over. One by itself whose name says nothing is a base colour.
+    /// Puts images on what their names say; those that are left over. One by itself whose name says nothing is a base colour.
     pub(in crate::app) fn put_pictures(&mut self, pictures: &[PathBuf]) -> Vec<PathBuf> {
         let (found, left) = set::recognised(pictures);
         if let (true, [picture]) = (found.is_empty(), pictures) {

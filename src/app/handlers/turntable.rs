@@ -4,8 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::app::App;
+use crate::app::book::TURNTABLE;
 use crate::app::desk::Resolution;
 use crate::app::kit::theme;
+use crate::app::sheets::book;
 use crate::app::sheets::turntable::{Preview, SIZE};
 use crate::document::Document;
 use crate::document::turntable::turned_by;
@@ -13,11 +15,11 @@ use crate::render::queue::Task;
 
 /// How long a turn takes in the viewport.
 const PREVIEW_TURN: Duration = Duration::from_secs(12);
-/// Between two pictures of it.
+/// Between two images of it.
 const PREVIEW_STEP: Duration = Duration::from_millis(33);
 
 impl App {
-    /// Opens the sheet, with the size of the picture as it is.
+    /// Opens the sheet, with the size of the image as it is.
     pub(in crate::app) fn open_turntable(&mut self) {
         let project = self.files.project.as_deref().and_then(Path::parent);
         let beside = project.or(self.dialogs.folder()).unwrap_or(Path::new(""));
@@ -76,7 +78,7 @@ impl App {
         let sheet = &mut self.turntable;
         let modal = egui::Modal::new(egui::Id::unique("turntable")).show(ctx, |ui| {
             ui.set_width(440.0);
-            ui.heading("Turntable");
+            book::heading(ui, "Turntable", TURNTABLE);
             ui.add_space(theme::GAP);
             begins = sheet.settings(ui, speed);
         });

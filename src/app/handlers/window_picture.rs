@@ -1,4 +1,4 @@
-//! A picture of the window itself, panels and all: for guides, and for reports of what looks wrong.
+//! A screenshot itself, panels and all: for guides, and for reports of what looks wrong.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -11,11 +11,11 @@ use crate::app::App;
 use crate::store::picture::png_bytes;
 use crate::store::replace::save_atomically;
 
-/// How long the picture may take to come.
+/// How long the image may take to come.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 impl App {
-    /// Asks for the picture that was wanted in the frame before, when a sheet may have lain over the window.
+    /// Asks for the image that was wanted in the frame before, when a sheet may have lain over the window.
     pub(in crate::app) fn picture_window(&mut self, ctx: &egui::Context) {
         let Some(path) = self.window_picture.take() else {
             return;
@@ -27,12 +27,9 @@ impl App {
         });
         ctx.request_repaint();
         self.files.disk.write_beside(move || {
-            let image: Arc<ColorImage> = taken.recv_timeout(PATIENCE).map_err(|_| {
-                format!(
-                    "{}: the window's picture can't be read back from the GPU",
-                    path.display()
-                )
-            })?;
+            let image: Arc<ColorImage> = taken
+                .recv_timeout(PATIENCE)
+                .map_err(|_| format!("{}: the screenshot can't be read back from the GPU", path.display()))?;
             let [width, height] = image.size;
             save(&path, &image)?;
             Ok(format!("saved {} ({width} × {height})", path.display()))
@@ -41,7 +38,7 @@ impl App {
 }
 
 fn save(path: &Path, image: &ColorImage) -> Result<(), String> {
-    // The window is opaque, whatever its surface keeps as alpha.
+    // The window is opaque, even if its surface has an alpha.
     let opaque = |pixel: &egui::Color32| [pixel.r(), pixel.g(), pixel.b(), 255];
     let rgba: Vec<u8> = image.pixels.iter().flat_map(opaque).collect();
     let bytes = png_bytes(image.size.map(|side| side as u32), &rgba, None)?;

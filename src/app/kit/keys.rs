@@ -4,7 +4,7 @@ use egui::{Align, Response, Ui, Vec2};
 
 /// A row that is to have the keys as soon as it is shown.
 #[derive(Clone, Default)]
-pub(super) struct Wish {
+pub(super) struct FocusRequest {
     pub(super) group: &'static str,
     row: String,
     /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
@@ -18,39 +18,39 @@ pub(super) struct Wish {
 }
 
 /// For how many frames a request stands: a panel that was brought to the front appears in the next one.
-const WISH_FRAMES: u64 = 4;
+const REQUEST_FRAMES: u64 = 4;
 
-fn wish_id() -> egui::Id {
-    egui::Id::unique("wished focus")
+fn request_id() -> egui::Id {
+    egui::Id::unique("requested focus")
 }
 
-pub(super) fn wish(ui: &Ui) -> Option<Wish> {
+pub(super) fn requested(ui: &Ui) -> Option<FocusRequest> {
     let frame = ui.ctx().cumulative_frame_nr();
-    let wish: Option<Wish> = ui.data(|data| data.get_temp(wish_id()));
-    wish.filter(|wish| frame <= wish.frame + WISH_FRAMES)
+    let requested: Option<FocusRequest> = ui.data(|data| data.get_temp(request_id()));
+    requested.filter(|requested| frame <= requested.frame + REQUEST_FRAMES)
 }
 
 /// Gives the row of this name (see [`Name::full`](super::widgets::Name::full)) the keys, and opens its group.
-pub(in crate::app) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
-    let wish = Wish {
+pub(in crate::app) fn focus_row(ctx: &egui::Context, group: &'static str, row: String) {
+    let requested = FocusRequest {
         group,
         row,
         frame: ctx.cumulative_frame_nr(),
-        ..Wish::default()
+        ..FocusRequest::default()
     };
-    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ctx.data_mut(|data| data.insert_temp(request_id(), requested));
     ctx.request_repaint();
 }
 
-/// What is typed before the row has the keys waits for it: at the start of each frame it is taken out of the input, and put
+/// What is typed before the row has the keys waits for it: at the start of each frame it is removed from the input, and put
 /// back once the row's number is selected, which it then replaces.
 pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
     let frame = ctx.cumulative_frame_nr();
-    let Some(mut wish) = ctx.data_mut(|data| data.remove_temp::<Wish>(wish_id())) else {
+    let Some(mut requested) = ctx.data_mut(|data| data.remove_temp::<FocusRequest>(request_id())) else {
         return;
     };
-    if wish.is_given || frame > wish.frame + WISH_FRAMES {
-        ctx.input_mut(|input| input.events.splice(0..0, wish.typed).count());
+    if requested.is_given || frame > requested.frame + REQUEST_FRAMES {
+        ctx.input_mut(|input| input.events.splice(0..0, requested.typed).count());
         return;
     }
     let is_typed = |event: &egui::Event| match event {
@@ -59,29 +59,29 @@ pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
         _ => false,
     };
     let typed = ctx.input_mut(|input| input.events.extract_if(.., |event| is_typed(event)).collect::<Vec<_>>());
-    wish.typed.extend(typed);
-    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    requested.typed.extend(typed);
+    ctx.data_mut(|data| data.insert_temp(request_id(), requested));
     ctx.request_repaint();
 }
 
-/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
-pub(super) fn fulfil_wish(ui: &Ui, row: &str) -> bool {
-    let Some(mut wish) = wish(ui).filter(|wish| wish.row == row && !wish.is_given) else {
+/// Gives the row's control the keys where that was requested and it has been seen; true where it is still to be seen.
+pub(super) fn fulfil_request(ui: &Ui, row: &str) -> bool {
+    let Some(mut requested) = requested(ui).filter(|requested| requested.row == row && !requested.is_given) else {
         return false;
     };
-    let Some(control) = wish.control else { return true };
-    wish.is_given = true;
-    ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    let Some(control) = requested.control else { return true };
+    requested.is_given = true;
+    ui.data_mut(|data| data.insert_temp(request_id(), requested));
     ui.memory_mut(|memory| memory.request_focus(control));
     ui.ctx().request_repaint();
     log::debug!("the keys go to {row}");
     false
 }
 
-pub(super) fn note_wished(ui: &Ui, control: &Response) {
-    if let Some(mut wish) = wish(ui) {
-        wish.control = Some(control.id);
-        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+pub(super) fn note_requested(ui: &Ui, control: &Response) {
+    if let Some(mut requested) = requested(ui) {
+        requested.control = Some(control.id);
+        ui.data_mut(|data| data.insert_temp(request_id(), requested));
     }
     control.scroll_to_me(Some(Align::Center));
     ui.ctx().request_repaint();

@@ -66,7 +66,7 @@ pub(in crate::app) fn accent(is_dark: bool) -> Color32 {
     }
 }
 
-/// What surrounds the picture: a grey that is neither black nor white, so that both can be told from it.
+/// What surrounds the image: a grey that is neither black nor white, so that both can be distinguished from it.
 pub(in crate::app) fn surround(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { 28 } else { 150 })
 }

@@ -1,4 +1,4 @@
-//! A picture with a name, to choose: as a tile of a grid, or as a row of a list; with a button for what else can be done.
+//! An image with a name, to choose: as a tile of a grid, or as a row of a list; with a button for what else can be done.
 
 use egui::text::LayoutJob;
 use egui::{Color32, Mesh, Rect, Response, Sense, Shape, TextStyle, TextureHandle, Ui, Vec2, pos2, vec2};
@@ -14,15 +14,15 @@ const BUTTON: f32 = 18.0;
 /// How things are laid out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::app) enum Layout {
-    /// Rows with small pictures of this height.
+    /// Rows with thumbnails of this height.
     List(f32),
-    /// A grid of pictures of this height.
+    /// A grid of images of this height.
     Grid(f32),
 }
 
 /// What is shown.
 pub(in crate::app) struct Tile<'a> {
-    /// What stands below the picture, or beside it.
+    /// What stands below the image, or beside it.
     pub(in crate::app) name: &'a str,
     /// What it is called where only one thing may have a name.
     pub(in crate::app) full_name: &'a str,
@@ -30,9 +30,9 @@ pub(in crate::app) struct Tile<'a> {
     pub(in crate::app) menu_name: &'a str,
     /// `None` until it is there.
     pub(in crate::app) picture: Option<&'a TextureHandle>,
-    /// Width of the picture over its height.
+    /// Width of the image over its height.
     pub(in crate::app) aspect: f32,
-    /// Stands in for the picture.
+    /// Stands in for the image.
     pub(in crate::app) color: Color32,
     pub(in crate::app) is_current: bool,
     pub(in crate::app) is_favourite: bool,

@@ -8,7 +8,7 @@ use egui::{
     Ui, UiBuilder, Vec2,
 };
 
-use crate::app::kit::keys::{fulfil_wish, note_wished, wish};
+use crate::app::kit::keys::{fulfil_request, note_requested, requested};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
@@ -29,7 +29,7 @@ pub(in crate::app) struct Name<'a> {
     pub(in crate::app) label: &'a str,
     /// A symbol behind it, or empty.
     pub(in crate::app) symbol: &'a str,
-    /// What it does to the picture.
+    /// What it does to the image.
     pub(in crate::app) help: &'a str,
 }
 
@@ -57,7 +57,7 @@ pub(in crate::app) struct RowResponse {
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
-        let is_wished = fulfil_wish(ui, name.full);
+        let is_requested = fulfil_request(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
@@ -67,8 +67,8 @@ pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut
             .inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
-        if is_wished {
-            note_wished(ui, &control);
+        if is_requested {
+            note_requested(ui, &control);
         }
         if !name.help.is_empty() {
             control.on_hover_text(name.help);
@@ -414,7 +414,9 @@ pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)
 
 /// The same, opened or closed by the program in this frame.
 pub(in crate::app) fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
-    let wished = wish(ui).is_some_and(|wish| wish.group == title).then_some(true);
+    let wished = requested(ui)
+        .is_some_and(|requested| requested.group == title)
+        .then_some(true);
     let header = RichText::new(title).strong();
     let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
@@ -438,7 +440,7 @@ fn show_focus(ui: &Ui, response: &Response) {
 }
 
 /// Content that appears and disappears by itself, such as answers of other threads, above controls that stay. egui
-/// tells controls apart by their order: without this those below would be others once it came, and a click, a drag or
+/// distinguishes controls by their order: without this those below would be others once it came, and a click, a drag or
 /// the keys that one of them had would be lost.
 pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     let mut inside = ui.new_child(UiBuilder::new());
@@ -453,16 +455,16 @@ pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut U
     result
 }
 
-/// A picture with a name beside it, to choose.
+/// An image with a name beside it, to choose.
 pub(in crate::app) struct PictureRow<'a> {
     pub(in crate::app) name: &'a str,
     /// What it is called where only one thing may have a name.
     pub(in crate::app) full_name: &'a str,
     /// `None` until it is there.
     pub(in crate::app) picture: Option<&'a TextureHandle>,
-    /// Of the picture, points.
+    /// Of the image, points.
     pub(in crate::app) size: Vec2,
-    /// Stands in for the picture.
+    /// Stands in for the image.
     pub(in crate::app) color: Color32,
     pub(in crate::app) is_current: bool,
 }

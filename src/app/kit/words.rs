@@ -48,7 +48,7 @@ pub(in crate::app) fn percent_short(share: f64) -> String {
     format!("{} %", (share * 1e10).round() / 1e8)
 }
 
-/// Less than this is not told apart from nothing, percent.
+/// Values below this are not distinguished from 0, percent.
 const PERCENT_MIN: f64 = 0.0001;
 
 /// A share as a percentage with three digits.

@@ -1,4 +1,4 @@
-//! Error against time: how exact the picture is, and what more would cost.
+//! Error against time: how exact the image is, and what more would cost.
 
 use egui::{Color32, Ui};
 use egui_plot::{HLine, Line, LineStyle, PlotPoints, Points};

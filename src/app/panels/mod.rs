@@ -20,7 +20,7 @@ pub(super) trait Panel {
 }
 
 macro_rules! panels {
-    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident;)*) => {
+    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident, $manual:literal;)*) => {
         $(mod $module;)*
 
         impl Default for Panels {

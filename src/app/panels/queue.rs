@@ -42,7 +42,7 @@ impl Panel for QueuePanel {
         if entries.is_empty() {
             widgets::note(
                 ui,
-                "Pictures and turntables are rendered here one after the other, while you go on editing: what you change \
+                "Images and turntables are rendered here one after the other, while you go on editing: what you change \
                  afterwards does not change them.",
             );
         }

@@ -20,9 +20,9 @@ use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 
-/// Longest side of the raced picture, pixels.
+/// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;
-/// Width of a small picture, points.
+/// Width of a thumbnail, points.
 const THUMBNAIL: f32 = 112.0;
 /// How near to a point a click must be, points.
 const REACH: f32 = 14.0;
@@ -40,7 +40,7 @@ pub(super) struct RacePanel {
     pictured: Option<Pictured>,
 }
 
-/// The small pictures of a race.
+/// The thumbnails of a race.
 struct Pictured {
     race: Arc<Race>,
     equal_time: Vec<TextureHandle>,
@@ -89,7 +89,7 @@ impl Panel for RacePanel {
             None => widgets::note(
                 ui,
                 "Which settings are worth their time on this view: how soon each reaches a noise of 2 %, and how far it \
-                 stays from the most accurate picture.",
+                 stays from the most accurate image.",
             ),
             Some(found) => outcome(ui, desk, state, &found),
         }
@@ -101,7 +101,7 @@ impl Panel for RacePanel {
 
     fn hear(&mut self, command: Command) {
         if command == Command::Race {
-            self.worker.wish();
+            self.worker.request();
         }
     }
 }
@@ -157,7 +157,7 @@ fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<R
     widgets::note(
         ui,
         format!(
-            "Left: faster, to a noise of {}. Low: less bias against the most accurate picture; on the lowest line none \
+            "Left: faster, to a noise of {}. Low: less bias against the most accurate image; on the lowest line none \
              could be measured. Click a point to use its settings.",
             percent(race.noise)
         ),
@@ -294,7 +294,7 @@ fn bias(runner: &Runner) -> String {
     }
 }
 
-/// The small pictures of equal time or of equal error.
+/// The thumbnails of equal time or of equal error.
 fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
     ui.horizontal(|ui| {
         ui.selectable_value(&mut state.shows_equal_error, false, "Equal time");

@@ -70,7 +70,7 @@ pub(super) struct SamplesPanel {
     drawn: Option<Drawn>,
 }
 
-/// The points as a picture, and of what.
+/// The points as an image, and of what.
 struct Drawn {
     report: Arc<SampleReport>,
     look: Look,
@@ -233,7 +233,7 @@ fn reach(report: &SampleReport, look: Look) -> f32 {
     (1.08 * extents.fold(0.02, f32::max)).min(1.08)
 }
 
-/// The points as a picture whose opacity grows with their number.
+/// The points as an image whose opacity grows with their number.
 fn splat(report: &SampleReport, look: Look, reach: f32, side: usize, color: Color32) -> ColorImage {
     let mirror = Vec3::from_f32(report.query.request.middle().to_f32());
     let mut counts = vec![0_u32; side * side];
@@ -378,7 +378,7 @@ fn numbers(ui: &mut Ui, report: &SampleReport) {
     }
     let engine = match report.query.engine {
         EngineChoice::Gpu => "Drawn by the shader's own function.",
-        _ => "Drawn by the processor engine's own function.",
+        _ => "Drawn by the CPU engine's own function.",
     };
     widgets::note(ui, engine);
 }

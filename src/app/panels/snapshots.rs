@@ -1,4 +1,4 @@
-//! Pinned states as small pictures: to bring back, to compare with, to remove.
+//! Pinned states as thumbnails: to bring back, to compare with, to remove.
 
 use egui::{Rect, Sense, Ui, vec2};
 
@@ -9,7 +9,7 @@ use crate::app::kit::{theme, widgets};
 use crate::app::services::compare::Rival;
 use crate::app::services::snapshots::PinChange;
 
-/// Width and height of a picture's place, points.
+/// Width and height of an image's place, points.
 const PLACE: egui::Vec2 = vec2(112.0, 74.0);
 
 /// The pinned states.
@@ -81,7 +81,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
             .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
     let place = Rect::from_min_size(rect.min, PLACE).shrink(4.0);
-    // The middle of the picture fills the place.
+    // The middle of the image fills the place.
     let scale = (place.width() / size[0]).max(place.height() / size[1]);
     let share = place.size() / (scale * vec2(size[0], size[1]));
     let middle = Rect::from_center_size(egui::pos2(0.5, 0.5), share);

@@ -1,4 +1,4 @@
-//! Unsaved edits are put aside every few seconds, on a thread of their own, and offered again after a crash.
+//! Unsaved edits are saved for recovery every few seconds, on a thread of their own, and offered again after a crash.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -18,7 +18,7 @@ const FAREWELL: Duration = Duration::from_secs(2);
 /// The file for this window's unsaved edits, and the thread that writes it.
 #[derive(Default)]
 pub(in crate::app) struct Autosave {
-    /// `None` where nothing is put aside.
+    /// `None` where nothing is saved for recovery.
     orders: Option<Sender<Order>>,
     reports: Option<Receiver<Report>>,
     thread: Option<JoinHandle<()>>,
@@ -33,7 +33,7 @@ pub(in crate::app) struct Autosave {
 enum Order {
     Keep(Box<Document>, Option<PathBuf>),
     Forget,
-    /// A leftover goes, unless its contents, restored and put aside again, could not be written.
+    /// A leftover goes, unless its contents, restored and saved again, could not be written.
     Discard(usize),
 }
 
@@ -84,13 +84,13 @@ impl Autosave {
         })
     }
 
-    /// What the thread told since this was last called.
+    /// What the thread reported since this was last called.
     pub(in crate::app) fn take_reports(&self) -> Vec<Report> {
         self.reports.iter().flat_map(Receiver::try_iter).collect()
     }
 
     /// Takes the document as the frame left it. Returns after how long to be called again, where something is still to
-    /// be put aside.
+    /// be saved.
     pub(in crate::app) fn watch(
         &mut self,
         document: &Document,
@@ -122,7 +122,7 @@ impl Autosave {
         self.kept_at = Some(Instant::now());
     }
 
-    /// Removes a leftover, once everything put aside before has been written.
+    /// Removes a leftover, once everything saved before has been written.
     pub(in crate::app) fn discard(&self, index: usize) {
         self.order(Order::Discard(index));
     }
@@ -142,7 +142,7 @@ impl Autosave {
 }
 
 impl Drop for Autosave {
-    /// Lets the thread do what it was told, and leaves it behind where that takes long.
+    /// Lets the thread finish its orders, and leaves it behind where that takes long.
     fn drop(&mut self) {
         if std::thread::panicking() {
             // The window ends by this panic: its file stays for the next start.

@@ -71,7 +71,7 @@ struct Matched {
     found: Result<LobeModel, String>,
 }
 
-/// Two pictures to compare, and the scale that was chosen.
+/// Two images to compare, and the scale that was chosen.
 #[derive(Clone)]
 struct DifferenceQuery {
     a: Arc<Picture>,
@@ -79,11 +79,11 @@ struct DifferenceQuery {
     scale: Option<f32>,
 }
 
-/// How two pictures differ.
+/// How two images differ.
 pub(in crate::app) struct Compared {
     /// Columns and rows.
     pub(in crate::app) size: [usize; 2],
-    /// The picture of the difference.
+    /// The image of the difference.
     pub(in crate::app) rgba: Vec<u8>,
     /// Its full colours, in radiance.
     pub(in crate::app) scale: f32,
@@ -102,7 +102,7 @@ pub(in crate::app) struct Compare {
     pub(in crate::app) rival: Rival,
     /// It was chosen: it stays until something else is.
     pub(in crate::app) is_chosen: bool,
-    /// Where the divider is, as a share of the picture's width.
+    /// Where the divider is, as a share of the image's width.
     pub(in crate::app) divider: f32,
     /// Changes a second.
     pub(in crate::app) flicker_hz: f32,
@@ -151,12 +151,12 @@ impl Compare {
         Some(self.renderer.as_ref()?.worker.snapshot())
     }
 
-    /// B's latest picture.
+    /// B's latest image.
     pub(in crate::app) fn picture(&self) -> Option<Arc<Picture>> {
         self.snapshot()?.picture.clone()
     }
 
-    /// How the latest pictures differ.
+    /// How the latest images differ.
     pub(in crate::app) fn compared(&self) -> Option<Arc<Compared>> {
         self.differing.as_ref()?.latest()
     }
@@ -234,7 +234,7 @@ impl Compare {
         self.asked_match = Some(query);
     }
 
-    /// Requests the difference of the pictures if they are new and of the same size.
+    /// Requests the difference of the images if they are new and of the same size.
     pub(in crate::app) fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
         let (Some(a), Some(b)) = (a, self.picture()) else {
             return;

@@ -30,7 +30,7 @@ pub(in crate::app) struct Witness(Arc<Mutex<Known>>);
 struct Known {
     /// The document where it is unsaved, and the file that it belongs to.
     unsaved: Option<(Document, Option<PathBuf>)>,
-    /// Where the copy goes; a report stands beside it. `None` where nothing is put aside.
+    /// Where the copy goes; a report stands beside it. `None` where nothing is saved for recovery.
     copy: Option<PathBuf>,
     /// What renders.
     engine: String,
@@ -143,7 +143,7 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
     let thread = std::thread::current();
     if thread.id() != known.window {
         let place = match written {
-            Ok(()) => format!("{} tells more", report.display()),
+            Ok(()) => format!("{} has more", report.display()),
             Err(error) => format!("no report could be written: {error}"),
         };
         let name = thread.name().unwrap_or("a thread without a name").to_owned();
@@ -174,7 +174,7 @@ fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failures: &
         line("Place", place);
     }
     for failure in failures {
-        line("The document could not be put aside", failure);
+        line("The document could not be saved for recovery", failure);
     }
     line("Done last", &"");
     for (deed, count) in &known.deeds {

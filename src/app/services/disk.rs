@@ -50,7 +50,7 @@ pub(in crate::app) enum Task {
 
 type Job = Box<dyn FnOnce() -> Done + Send>;
 
-/// The thread, and what it was told to do.
+/// The thread, and its orders.
 pub(in crate::app) struct Disk {
     ctx: egui::Context,
     jobs: Sender<(Task, Job)>,

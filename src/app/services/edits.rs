@@ -27,7 +27,7 @@ impl Edits {
         }
     }
 
-    /// Names the edit of this frame: for the menu, and a key that tells whether the next one belongs to it.
+    /// Names the edit of this frame: for the menu, and a key that says whether the next one belongs to it.
     pub(in crate::app) fn note(&mut self, label: impl Into<Cow<'static, str>>, key: impl Into<Cow<'static, str>>) {
         self.note = Some((label.into(), key.into()));
     }

@@ -1,4 +1,4 @@
-//! The environments to choose from: those that come with the program, and the files opened last, with small pictures.
+//! The environments to choose from: those that come with the program, and the files opened last, with thumbnails.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
     }
 }
 
-/// The small pictures of environments.
+/// The thumbnails of environments.
 #[derive(Default)]
 pub(in crate::app) struct Environments {
     cache: Option<PathBuf>,
@@ -40,7 +40,7 @@ pub(in crate::app) struct Environments {
 }
 
 impl Environments {
-    /// `cache` keeps the pictures from one start to the next; nothing is made while `hold` is set.
+    /// `cache` keeps the images from one start to the next; nothing is made while `hold` is set.
     pub(in crate::app) fn new(cache: Option<PathBuf>, hold: Arc<AtomicBool>) -> Self {
         Self {
             cache,
@@ -49,12 +49,12 @@ impl Environments {
         }
     }
 
-    /// The picture of an environment.
+    /// The image of an environment.
     pub(in crate::app) fn picture(&self, source: &EnvironmentSource) -> Option<&TextureHandle> {
         self.textures.get(source)
     }
 
-    /// The pixels of that picture, red, green, blue and alpha.
+    /// The pixels of that image, red, green, blue and alpha.
     pub(in crate::app) fn pixels(&self, source: &EnvironmentSource) -> Option<&[u8]> {
         self.uploaded.as_ref()?.get(source)?.as_deref().map(Vec::as_slice)
     }
@@ -65,7 +65,7 @@ impl Environments {
         known.is_some_and(Option::is_none)
     }
 
-    /// Asks for the pictures of what a part of the window shows, besides those that others do, and takes those that are there.
+    /// Asks for the images of what a part of the window shows, besides those that others do, and takes those that are there.
     /// `loaded` is the environment in use, with where it comes from. To be called while they are seen.
     pub(in crate::app) fn make_pictures(
         &mut self,

@@ -8,7 +8,7 @@ use crate::store::exchange::{self, Prepared, Registered, Subject};
 /// Materials of which balls are rendered: a model's may be hundreds.
 const COMPARED_MAX: usize = 4;
 
-/// A file that is ready to be written, with pictures of what it loses.
+/// A file that is ready to be written, with images of what it loses.
 pub(in crate::app) struct Ready {
     pub(in crate::app) prepared: Prepared,
     /// One for each material, where there is something to show.

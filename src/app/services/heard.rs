@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-/// What was heard and not told yet.
+/// What was heard and not reported yet.
 struct Heard {
     no_dialog: bool,
     no_clipboard: Option<String>,

@@ -1,4 +1,4 @@
-//! The user's materials and the small pictures of all of them.
+//! The user's materials and the thumbnails of all of them.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(in crate::app) struct Listed {
     pub(in crate::app) removed: Option<Removed>,
 }
 
-/// A material of the panel, with the key of its picture.
+/// A material of the panel, with the key of its image.
 pub(in crate::app) struct Shown {
     pub(in crate::app) entry: Entry,
     pub(in crate::app) key: u64,
@@ -66,7 +66,7 @@ pub(in crate::app) struct Library {
 }
 
 impl Library {
-    /// `cache` keeps the pictures; without it none are made.
+    /// `cache` keeps the images; without it none are made.
     pub(in crate::app) fn new(folder: Option<PathBuf>, cache: Option<PathBuf>) -> Self {
         Self {
             folder,
@@ -76,22 +76,22 @@ impl Library {
         }
     }
 
-    /// Set while pictures have to wait.
+    /// Set while images have to wait.
     pub(in crate::app) fn holder(&self) -> Arc<AtomicBool> {
         self.hold.clone()
     }
 
-    /// Whether pictures have to wait.
+    /// Whether images have to wait.
     pub(in crate::app) fn hold(&self, is_held: bool) {
         self.hold.store(is_held, Ordering::Relaxed);
     }
 
-    /// The picture of a shipped material, by its place among them.
+    /// The image of a shipped material, by its place among them.
     pub(in crate::app) fn shipped_picture(&self, index: usize) -> Option<&TextureHandle> {
         self.textures.get(self.shipped.get(index)?)
     }
 
-    /// The picture of a material of the user's.
+    /// The image of a material of the user's.
     pub(in crate::app) fn picture(&self, key: u64) -> Option<&TextureHandle> {
         self.textures.get(&key)
     }
@@ -113,7 +113,7 @@ impl Library {
         self.is_asked = false;
     }
 
-    /// Has pictures made of the document's materials, and gives that of each; `is_in_flow`: they are being edited.
+    /// Has images made of the document's materials, and gives that of each; `is_in_flow`: they are being edited.
     pub(in crate::app) fn pictures_of(
         &mut self,
         ctx: &egui::Context,
@@ -129,12 +129,12 @@ impl Library {
             self.is_asked = false;
         }
         self.make_pictures(ctx);
-        // While a material is edited its picture is that from before.
+        // While a material is edited its image is that from before.
         let picture = |place: usize| self.textures.get(&self.in_document.get(place)?.1).cloned();
         (0..materials.len()).map(picture).collect()
     }
 
-    /// Asks for pictures that are not there yet, and takes those that are. To be called while they are seen.
+    /// Asks for images that are not there yet, and takes those that are. To be called while they are seen.
     pub(in crate::app) fn make_pictures(&mut self, ctx: &egui::Context) {
         let Some(cache) = &self.cache else {
             return;
@@ -149,7 +149,7 @@ impl Library {
             let worker = thumbnails::spawn_thumbnails(folder, self.hold.clone(), repaint);
             match worker {
                 Ok(worker) => self.worker = Some(worker),
-                // Colours stand in for pictures.
+                // Colours stand in for images.
                 Err(_) => return self.cache = None,
             }
         }

@@ -1,9 +1,9 @@
-//! What of the picture is looked at closely: a pixel, and what is seen there.
+//! What of the image is looked at closely: a pixel, and what is seen there.
 
-/// A pixel, as shares of the picture's width and height.
+/// A pixel, as shares of the image's width and height.
 pub(in crate::app) type Place = [f64; 2];
 
-/// What is seen at a place of the picture.
+/// What is seen at a place of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::app) struct SeenSurface {
     /// The material slot; `None` for the ground and area lights, which are no materials of the document.
@@ -45,7 +45,7 @@ impl Look {
         (self.at, self.is_pinned) = (Some(at), true);
     }
 
-    /// The pixel of a picture of this size.
+    /// The pixel of an image of this size.
     pub(in crate::app) fn pixel(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
         let [x, y] = self.at?;
         let index = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side.saturating_sub(1));
@@ -53,7 +53,7 @@ impl Look {
     }
 }
 
-/// The middle of a pixel of a picture of this size.
+/// The middle of a pixel of an image of this size.
 pub(in crate::app) fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
     let share = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side.max(1));
     [share(x, width), share(y, height)]

@@ -11,7 +11,7 @@ const LIMIT: usize = 500;
 /// Something said.
 #[derive(Clone, Debug)]
 pub(in crate::app) struct Entry {
-    /// Tells it from the others for as long as the window lives.
+    /// Distinguishes it from the others for as long as the window lives.
     pub(in crate::app) number: u64,
     pub(in crate::app) level: Level,
     pub(in crate::app) text: String,

@@ -42,7 +42,7 @@ impl Recent {
 
     /// Those that are environments.
     pub(in crate::app) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
-        // Of pictures only environments are remembered, and those that have a document inside.
+        // Of images only environments are remembered, and those that have a document inside.
         let is_map = |path: &&PathBuf| is_picture(path) && !may_hold_document(path);
         self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
     }

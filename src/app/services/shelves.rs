@@ -1,4 +1,4 @@
-//! What the browser of materials and environments keeps: favourites, tags, the size of its pictures, the folders that it
+//! What the browser of materials and environments keeps: favourites, tags, the size of its images, the folders that it
 //! watches and what lies in them.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,13 +26,13 @@ pub(in crate::app) struct KeptShelves {
     pub(in crate::app) tags: BTreeMap<String, BTreeSet<String>>,
     /// Folders that are watched.
     pub(in crate::app) folders: Vec<PathBuf>,
-    /// Side of a material's picture, points; [`LIST`] and below are rows of a list.
+    /// Side of a material's image, points; [`LIST`] and below are rows of a list.
     pub(in crate::app) picture_side: f32,
 }
 
-/// The side of a picture in a list.
+/// The side of an image in a list.
 pub(in crate::app) const LIST: f32 = 36.0;
-/// The largest side of a picture.
+/// The largest side of an image.
 pub(in crate::app) const SIDE_MAX: f32 = 160.0;
 
 impl Default for KeptShelves {
@@ -85,7 +85,7 @@ pub(in crate::app) struct Shelves {
     has_failed: bool,
     asked: Option<(Instant, Vec<PathBuf>)>,
     contents: Arc<Vec<Contents>>,
-    /// The keys of the pictures of the materials, in the order of folders and items; 0 for what is no material.
+    /// The keys of the images of the materials, in the order of folders and items; 0 for what is no material.
     picture_keys: Vec<Vec<u64>>,
 }
 
@@ -104,7 +104,7 @@ impl Shelves {
         }
     }
 
-    /// Looks into the folders now and then, and has pictures made of the materials that lie there. To be called while they
+    /// Looks into the folders now and then, and has images made of the materials that lie there. To be called while they
     /// are seen.
     pub(in crate::app) fn look(&mut self, ctx: &egui::Context, library: &mut Library) {
         if self.kept.folders.is_empty() && self.asked.is_none() || self.has_failed {
@@ -158,7 +158,7 @@ impl Shelves {
         self.contents = latest;
     }
 
-    /// What the folders hold, each with the keys of its pictures.
+    /// What the folders hold, each with the keys of its images.
     pub(in crate::app) fn contents(&self) -> (Arc<Vec<Contents>>, Vec<Vec<u64>>) {
         (self.contents.clone(), self.picture_keys.clone())
     }

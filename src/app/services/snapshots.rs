@@ -1,4 +1,4 @@
-//! Pinned states: the document with its picture, kept with the user's data.
+//! Pinned states: the document with its image, kept with the user's data.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use crate::store::snapshots::Pinned;
 /// What can be done with pinned states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PinChange {
-    /// The document is pinned with the latest picture.
+    /// The document is pinned with the latest image.
     Add,
     /// A file gets another name.
     Rename(PathBuf, String),
@@ -51,7 +51,7 @@ impl Snapshots {
         }
     }
 
-    /// The picture of a pinned state, by its place among them.
+    /// The image of a pinned state, by its place among them.
     pub(in crate::app) fn picture(&mut self, ctx: &egui::Context, index: usize) -> Option<&TextureHandle> {
         let pinned = self.pinned.get(index)?;
         Some(self.textures.entry(pinned.path.clone()).or_insert_with(|| {

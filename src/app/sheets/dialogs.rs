@@ -53,10 +53,10 @@ impl Purpose {
             Self::OpenMeasured => "Open a measured material",
             Self::SaveMaterial => "Save the material",
             Self::Export => "Export for another program",
-            Self::SavePicture => "Save the picture",
-            Self::SaveLayers => "Save the picture with layers",
-            Self::QueuePicture => "Render to a picture",
-            Self::SaveWindow => "Save a picture of the window",
+            Self::SavePicture => "Save the image",
+            Self::SaveLayers => "Save the image with layers",
+            Self::QueuePicture => "Render to an image",
+            Self::SaveWindow => "Save a screenshot",
             Self::WatchFolder => "Watch a folder",
             Self::Texture(_) => "Choose a texture",
             Self::OpenLut => "Choose a table of colours",
@@ -67,7 +67,7 @@ impl Purpose {
     fn kind(self) -> (&'static str, Vec<&'static str>) {
         match self {
             Self::Open => (
-                "Projects, materials, models, environments, pictures with a document",
+                "Projects, materials, models, environments, images with a document",
                 endings(OPENED),
             ),
             Self::SaveProject => ("Projects", vec!["json"]),
@@ -77,11 +77,11 @@ impl Purpose {
             Self::SaveMaterial => ("Materials", vec!["json"]),
             Self::Export => ("Files of other programs", exchange::endings_written()),
             Self::OpenMeasured => (FileKind::Measured.label(), FileKind::Measured.endings()),
-            Self::SavePicture | Self::QueuePicture => ("Pictures", FORMATS.map(|(ending, _)| ending).to_vec()),
-            Self::SaveLayers => ("OpenEXR pictures", vec!["exr"]),
-            Self::SaveWindow => ("PNG pictures", vec!["png"]),
+            Self::SavePicture | Self::QueuePicture => ("Images", FORMATS.map(|(ending, _)| ending).to_vec()),
+            Self::SaveLayers => ("OpenEXR images", vec!["exr"]),
+            Self::SaveWindow => ("PNG images", vec!["png"]),
             Self::WatchFolder => ("Folders", Vec::new()),
-            Self::Texture(_) => ("Pictures", endings(PICTURE_KINDS)),
+            Self::Texture(_) => ("Images", endings(PICTURE_KINDS)),
             Self::OpenLut => (FileKind::ColorTable.label(), FileKind::ColorTable.endings()),
         }
     }
@@ -277,7 +277,7 @@ impl Dialogs {
         Some(chosen)
     }
 
-    /// Takes the system's dialog's answer. `failed` tells whether the dialog could not be opened: it answers then as if it
+    /// Takes the system's dialog's answer. `failed` says whether the dialog could not be opened: it answers then as if it
     /// had been cancelled, sooner or later.
     fn poll(&mut self, failed: impl FnOnce() -> bool) -> Option<(Purpose, Option<PathBuf>)> {
         let answer = self.pending.as_ref()?.answer.try_recv();

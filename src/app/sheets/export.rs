@@ -1,16 +1,18 @@
-//! The sheet that tells what another program's file loses, before it is written.
+//! The sheet that shows what another program's file loses, before it is written.
 
 use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui, vec2};
 
+use crate::app::book::EXPORT;
 use crate::app::kit::{theme, widgets};
 use crate::app::services::export::Ready;
+use crate::app::sheets::book;
 use crate::render::looks::Compared;
 use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
 
-/// Points that the side of a picture takes.
+/// Points that the side of an image takes.
 const PICTURE: f32 = 128.0;
-/// What the pictures of a ball show.
+/// What the images of a ball show.
 const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference"];
 
 /// The sheet, while there is something to ask.
@@ -59,7 +61,7 @@ impl ExportSheet {
         let mut answer = None;
         let modal = egui::Modal::new(egui::Id::unique("export")).show(ctx, |ui| {
             ui.set_width(560.0);
-            ui.heading("Export");
+            book::heading(ui, "Export", EXPORT);
             let report = &ready.prepared.report;
             ui.label(report.output.display().to_string());
             ui.add_space(theme::GAP);
@@ -85,7 +87,7 @@ impl ExportSheet {
     }
 }
 
-/// What becomes of a material's parts, and the pictures of a ball.
+/// What becomes of a material's parts, and the images of a ball.
 fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[TextureHandle; 3]>) {
     ui.label(RichText::new(&material.material).strong());
     egui::Grid::new(&material.material)

@@ -1,9 +1,11 @@
-//! The sheet about the model's file: which of its pictures is shown, and what became of its parts.
+//! The sheet about the model's file: which of its images is shown, and what became of its parts.
 
 use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::actions::Action;
+use crate::app::book::MODEL_FILE;
 use crate::app::kit::{theme, widgets};
+use crate::app::sheets::book;
 use crate::document::of_model::import_report;
 use crate::document::{Document, ImportLobe};
 use crate::scene::{Fate, ImportReport, Model, ModelOptions};
@@ -18,7 +20,7 @@ pub(in crate::app) fn show(
     ui.set_width(560.0);
     let mut is_done = false;
     ui.horizontal(|ui| {
-        ui.heading("Model file");
+        book::heading(ui, "Model file", MODEL_FILE);
         // Above what comes and goes, so that it stays where it is.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             is_done = ui.button("Close").clicked()

@@ -1,5 +1,6 @@
 //! What lies around and over the panels: menus, status bar, dialogs and sheets.
 
+pub(super) mod book;
 pub(super) mod dialogs;
 pub(super) mod export;
 pub(super) mod import;

@@ -117,7 +117,7 @@ fn found(
             .unwrap_or_default(),
         action: Action::Do(*command),
     });
-    // A texture's switch stands beside its picture.
+    // A texture's switch stands beside its image.
     let parameters = PARAMETERS
         .iter()
         .filter(|parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(edited))

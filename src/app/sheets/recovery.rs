@@ -99,7 +99,7 @@ pub(in crate::app) fn name(recovered: &Recovered) -> String {
     stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// What tells one untitled document from another.
+/// What distinguishes one untitled document from another.
 fn contents(recovered: &Recovered) -> String {
     let materials = &recovered.document.materials;
     let names: Vec<&str> = materials.iter().take(3).map(|material| &*material.name).collect();

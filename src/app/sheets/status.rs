@@ -260,7 +260,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
             let text = RichText::new("compiling the kernel").weak();
             parts.push(spinner());
             parts.push(Part::text(ui, Rank::Activity, text, |ui| {
-                ui.label("The processor draws until the GPU's kernel for this scene is compiled.");
+                ui.label("The CPU renders until the GPU's kernel for this scene is compiled.");
             }));
         }
         let share = share_done(snapshot) as f32;
@@ -279,7 +279,7 @@ fn share_done(snapshot: &Snapshot) -> f64 {
     snapshot.progress.share_done(limit)
 }
 
-/// How the picture stands, in a word or two.
+/// How the image stands, in a word or two.
 fn state(snapshot: &Snapshot) -> String {
     let progress = &snapshot.progress;
     match snapshot.activity {
@@ -320,7 +320,7 @@ fn account(ui: &mut Ui, snapshot: &Snapshot) {
     ui.weak("More in the panel Convergence and the workspace Measure.");
 }
 
-/// How far the picture has come, in numbers.
+/// How far the image has come, in numbers.
 fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
     let progress = &snapshot.progress;
     let mut parts = Vec::new();
@@ -378,10 +378,7 @@ fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Pa
     Part::text(ui, Rank::Window, text, |ui| {
         meter.describe(ui);
         if let Some(first) = snapshot.first_picture {
-            ui.label(format!(
-                "From the last change to its first picture: {:.0} ms",
-                ms(first)
-            ));
+            ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
         }
     })
 }

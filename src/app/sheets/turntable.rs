@@ -14,7 +14,7 @@ use crate::store::video;
 
 /// Frames at first: four seconds.
 const FRAMES: u32 = 96;
-/// Columns and rows at first, where the picture's own size only follows from the window's.
+/// Columns and rows at first, where the image's own size only follows from the window's.
 pub(in crate::app) const SIZE: [u32; 2] = [1920, 1080];
 
 /// What a turntable is written as.
@@ -28,7 +28,7 @@ enum Form {
 
 /// All of them, with their labels and what they are.
 const FORMS: [(Form, &str, &str); 3] = [
-    (Form::Pictures, "Pictures", "Numbered pictures (.png) in a folder."),
+    (Form::Pictures, "Images", "Numbered images (.png) in a folder."),
     (Form::Mp4, "Video (.mp4)", "H.264, which everything plays."),
     (
         Form::Gif,
@@ -129,7 +129,7 @@ impl TurntableSheet {
         number(
             "Turntable frames",
             "Frames",
-            "Pictures of a whole turn.",
+            "Images of a whole turn.",
             &mut self.frames,
             1.0..=9999.0,
         );

@@ -23,7 +23,7 @@ impl Then {
     fn verb(&self) -> &'static str {
         match self {
             Self::Close => "closing",
-            Self::New => "starting anew",
+            Self::New => "starting a new one",
             Self::Adopt(..) => "opening another project",
         }
     }

@@ -44,7 +44,7 @@ fn halves(area: Rect) -> [Rect; 2] {
 }
 
 impl Viewport {
-    /// Shows A, `a`, and B where there is a picture of it; returns where what the pointer is over is shown.
+    /// Shows A, `a`, and B where there is an image of it; returns where what the pointer is over is shown.
     pub(super) fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
         let resolution = desk.shared.resolution;
         let place = placed(area_of_a(area, desk.shared.compare.view), a, resolution);
@@ -101,7 +101,7 @@ impl Viewport {
         place
     }
 
-    /// The divider over the picture. To be shown after what turns the camera, so that it is before that.
+    /// The divider over the image. To be shown after what turns the camera, so that it is before that.
     pub(super) fn divider(ui: &mut Ui, place: Rect, desk: &mut Desk<'_>) {
         let compare = &mut desk.shared.compare;
         let x = egui::lerp(place.x_range(), compare.divider);
@@ -151,7 +151,7 @@ fn arrows(ui: &Ui, response: &Response) -> f32 {
     count(Key::ArrowRight) - count(Key::ArrowLeft)
 }
 
-/// A name over a corner of the picture.
+/// A name over a corner of the image.
 fn label(ui: &Ui, clip: Rect, corner: Align2, text: &str) {
     let painter = ui.painter_at(clip);
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -361,7 +361,7 @@ fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         let [a, b] = compared.samples;
         let help = format!(
-            "Root mean square of (B − A) over A, with at least 0.1 for A: with {a} samples a pixel of A and {b} of B, \
+            "Root mean square of (B − A) over A, with at least 0.1 for A. A has {a} samples per pixel and B {b}, \
              drawn with the same random numbers."
         );
         ui.label(format!("RMS {:.2} %", 100.0 * compared.rms))

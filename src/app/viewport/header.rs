@@ -1,4 +1,4 @@
-//! The bar over the picture: what is looked at, in which light, and how it is shown.
+//! The bar over the image: what is looked at, in which light, and how it is shown.
 
 use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 
@@ -166,7 +166,7 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             let response = widgets::choice(ui, "header size", &mut desk.shared.resolution, &RESOLUTIONS);
             response
                 .accessible_name("Resolution")
-                .on_hover_text("Size of the picture");
+                .on_hover_text("Size of the image");
         }
         Item::Compare => {
             let compares = ui.selectable_label(desk.shared.compare.is_on, "A | B");
@@ -204,7 +204,7 @@ fn seen(desk: &Desk<'_>) -> Seen {
     (desk.shared.shown, desk.document.render.light_paths)
 }
 
-/// What there is to be seen: parts of the light behind the picture; maps of the light that is rendered.
+/// What there is to be seen: parts of the light behind the image; maps of the light that is rendered.
 fn all_seen(desk: &Desk<'_>) -> Vec<(Seen, &'static str, &'static str)> {
     let rendered = desk.document.render.light_paths;
     let maps = Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture);

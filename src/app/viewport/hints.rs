@@ -9,7 +9,7 @@ use crate::app::desk::Desk;
 const HINTS: [&str; 5] = [
     "Drag to orbit, scroll to zoom, Shift+drag to rotate the light.",
     "Click a preset to apply it; drag it onto a part to change only that part.",
-    "Ctrl+K finds commands, presets, environments and parameters. F1 lists keys; Help › Examples has scenes.",
+    "Ctrl+K finds commands, presets, environments and parameters. F1 opens the manual; Help › Examples has scenes.",
     "C: compare with what you had before the last change. Press it again to go on.",
     "Ctrl+E: save the image. A .png holds the whole project and opens again.",
 ];
@@ -31,7 +31,7 @@ pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
     }
 }
 
-/// Shows the hint that is next over the lower edge of the picture.
+/// Shows the hint that is next over the lower edge of the image.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     let number = desk.shared.hints_seen;
     let Some(hint) = HINTS.get(number) else { return };

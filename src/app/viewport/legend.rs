@@ -1,4 +1,4 @@
-//! What the colours of a map over the picture mean.
+//! What the colours of a map over the image mean.
 
 use egui::{Align2, Color32, Rect, TextStyle, Ui, pos2, vec2};
 
@@ -43,7 +43,7 @@ fn strip(ui: &Ui, area: Rect, shown: Shown, scale: Scale) {
     text(strip.center().x, Align2::CENTER_TOP, what(shown).to_owned());
 }
 
-/// Where the strip is, on a ground that it can be told from.
+/// Where the strip is, on a ground that it can be distinguished from.
 fn place(ui: &Ui, area: Rect) -> Rect {
     let at = pos2(area.left() + MARGIN, area.bottom() - MARGIN - 16.0 - SIZE[1]);
     let strip = Rect::from_min_size(at, vec2(SIZE[0], SIZE[1]));

@@ -18,7 +18,7 @@ use crate::scene::Outline;
 const TARGET: f32 = 20.0;
 /// Radius of a light's mark, points.
 const MARK: f32 = 7.0;
-/// From the picture's edge to the marks of lights beyond it, points.
+/// From the image's edge to the marks of lights beyond it, points.
 const MARGIN: f64 = 14.0;
 /// Share of the pointer's way that counts with shift.
 const FINE: f32 = 0.1;
@@ -42,7 +42,7 @@ struct Held {
 }
 
 impl LightHandles {
-    /// Shows the lights over the picture at `place` while their list is shown, and lets them be moved.
+    /// Shows the lights over the image at `place` while their list is shown, and lets them be moved.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk<'_>) {
         if !desk.shared.selection.showed_lights {
             self.held = None;

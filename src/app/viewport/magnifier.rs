@@ -1,16 +1,16 @@
-//! A closer look at the pixels that the picture has, without moving the camera.
+//! A closer look at the pixels that the image has, without moving the camera.
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Largest size of one of the picture's pixels, points.
+/// Largest size of one of the image's pixels, points.
 const PIXEL_MAX: f32 = 48.0;
 
-/// How much larger than it fits the picture is shown, and which part of it.
+/// How much larger than it fits the image is shown, and which part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Magnifier {
     /// 1: as large as it fits.
     factor: f32,
-    /// What is in the middle of the viewport, as shares of the picture.
+    /// What is in the middle of the viewport, as shares of the image.
     center: Vec2,
 }
 
@@ -24,12 +24,12 @@ impl Default for Magnifier {
 }
 
 impl Magnifier {
-    /// Whether the picture is shown larger than it fits.
+    /// Whether the image is shown larger than it fits.
     pub(super) fn is_on(&self) -> bool {
         self.factor > 1.0
     }
 
-    /// Where the picture is, of which `fitted` is the place at its usual size: it covers the area where it can.
+    /// Where the image is, of which `fitted` is the place at its usual size: it covers the area where it can.
     pub(super) fn place(&mut self, area: Rect, fitted: Rect) -> Rect {
         if !self.is_on() {
             *self = Self::default();
@@ -52,7 +52,7 @@ impl Magnifier {
         Rect::from_min_size(min, size)
     }
 
-    /// Magnifies the picture by a factor around a fixed place. `width_px` is the picture's width.
+    /// Magnifies the image by a factor around a fixed place. `width_px` is the image's width.
     pub(super) fn zoom(&mut self, by: f32, at: Pos2, area: Rect, fitted: Rect, width_px: u32) {
         let before = self.place(area, fitted);
         let share = (at - before.min) / before.size();
@@ -105,7 +105,7 @@ mod tests {
         magnifier.zoom(1e-3, area.center(), area, fitted, 4000);
         assert!(!magnifier.is_on());
         assert_eq!(magnifier.place(area, fitted), fitted);
-        // A pixel of a small picture does not fill the viewport.
+        // A pixel of a thumbnail does not fill the viewport.
         magnifier.zoom(1e6, area.center(), area, fitted, 40);
         assert!((magnifier.place(area, fitted).width() - 40.0 * PIXEL_MAX).abs() < 1.0);
     }

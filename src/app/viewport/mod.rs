@@ -1,4 +1,4 @@
-//! The picture, and the camera that the pointer moves.
+//! The image, and the camera that the pointer moves.
 //!
 //! As in Marmoset and Substance, with or without alt: left drag turns, middle drag (or ctrl and left) pans, right drag
 //! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the
@@ -44,15 +44,15 @@ const ZOOM_PER_POINT: f64 = 0.004;
 const KEY_POINTS: f64 = 14.0;
 /// From how many points a pixel on it has edges, points.
 const PIXEL_SEEN: f32 = 2.0;
-/// Width of the button that shows the whole picture, points.
+/// Width of the button that shows the whole image, points.
 const WHOLE_WIDTH: f32 = 64.0;
 /// From the viewport's corner to what stands in it, points.
 const LOADING_MARGIN: f32 = 12.0;
-/// Sides of the squares behind transparent pictures, points.
+/// Sides of the squares behind transparent images, points.
 const CHECKER: f32 = 12.0;
-/// By how much less a picture that fills the viewport may be stretched: what rounding to pixels makes of its shape.
+/// By how much less an image that fills the viewport may be stretched: what rounding to pixels makes of its shape.
 const STRETCH_MAX: f32 = 0.03;
-/// Largest side of a picture that fills the viewport.
+/// Largest side of an image that fills the viewport.
 const SIDE_MAX_PX: u32 = 8192;
 
 /// The viewport's own state.
@@ -65,7 +65,7 @@ pub(super) struct Viewport {
     difference: Shown,
     /// What of the numbers is not to be trusted.
     precision: precision::Precision,
-    /// Where the picture may be, points.
+    /// Where the image may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
     is_software: bool,
@@ -75,7 +75,7 @@ pub(super) struct Viewport {
     outline: outline::Outline,
     lights: light_handles::LightHandles,
     denoiser: denoiser::DenoiserOffer,
-    /// By how much the picture is to be shown larger; 0 is back to all of it.
+    /// By how much the image is to be shown larger; 0 is back to all of it.
     magnifies: Option<f32>,
 }
 
@@ -119,7 +119,7 @@ impl Shown {
         }
     }
 
-    /// Paints a picture as far as `clip` shows it; `source` tells renderers apart whose serials may be the same.
+    /// Paints an image as far as `clip` shows it; `source` distinguishes renderers whose serials may be the same.
     fn paint(&mut self, ui: &Ui, clip: Rect, place: Rect, picture: &Picture, source: u64) {
         self.upload(ui, [source, picture.serial], || {
             let size = [picture.width as usize, picture.height as usize];
@@ -138,18 +138,18 @@ impl Viewport {
         self.id
     }
 
-    /// The next drag says which part of the picture is rendered.
+    /// The next drag says which part of the image is rendered.
     pub(super) fn draw_region(&mut self) {
         self.region.arm();
     }
 
-    /// Magnifies the picture by a factor from the next frame on; 0 shows all of it.
+    /// Magnifies the image by a factor from the next frame on; 0 shows all of it.
     pub(super) fn magnify(&mut self, by: f32) {
         self.magnifies = Some(by);
     }
 
-    /// The size that a picture that fills the viewport has; `None` before the viewport was laid out, or where the
-    /// picture's size is the document's.
+    /// The size that an image that fills the viewport has; `None` before the viewport was laid out, or where the
+    /// image's size is the document's.
     pub(super) fn fill_size(&self, resolution: Resolution) -> Option<[u32; 2]> {
         let area = self.area?;
         let scale = match resolution {
@@ -247,7 +247,7 @@ impl Viewport {
         drop_hint(ui, area);
     }
 
-    /// Where the picture is, after what the user does to magnify it.
+    /// Where the image is, after what the user does to magnify it.
     fn magnified(
         &mut self,
         ui: &Ui,
@@ -279,7 +279,7 @@ impl Viewport {
         place
     }
 
-    /// How much the picture is magnified, and a way back.
+    /// How much the image is magnified, and a way back.
     fn whole_picture(&mut self, ui: &mut Ui, area: Rect, place: Rect, picture: &Picture) {
         if !self.magnifier.is_on() {
             return;
@@ -287,15 +287,15 @@ impl Viewport {
         let percent = 100.0 * place.width() * self.pixels_per_point / picture.width.max(1) as f32;
         let corner = area.max - vec2(WHOLE_WIDTH, theme::ROW_HEIGHT) - Vec2::splat(LOADING_MARGIN);
         let builder = egui::UiBuilder::new()
-            .scope_id(egui::Id::unique("whole picture"))
+            .scope_id(egui::Id::unique("whole image"))
             .max_rect(Rect::from_min_size(corner, vec2(WHOLE_WIDTH, theme::ROW_HEIGHT)));
         let mut inside = ui.new_child(builder);
         let button = egui::Button::new(format!("{percent:.0} %")).min_size(vec2(WHOLE_WIDTH, theme::ROW_HEIGHT));
-        let button = inside.add(button).on_hover_text("Shows the whole picture again (0)");
+        let button = inside.add(button).on_hover_text("Shows the whole image again (0)");
         if button.clicked() {
             self.magnify(0.0);
         }
-        button.accessible_name("Show the whole picture");
+        button.accessible_name("Show the whole image");
     }
 
     fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
@@ -416,8 +416,8 @@ fn is_transparent(image: &ColorImage) -> bool {
     image.pixels.iter().any(|pixel| pixel.a() < 255)
 }
 
-/// Where the picture is shown: over the whole area, or with its own shape in the middle of it, as large as fits. A
-/// picture that was kept while the area got another shape keeps its own, too.
+/// Where the image is shown: over the whole area, or with its own shape in the middle of it, as large as fits. A
+/// image that was kept while the area got another shape keeps its own, too.
 fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
     placed_size(area, [picture.width, picture.height], resolution)
 }
@@ -432,7 +432,7 @@ fn placed_size(area: Rect, size: [u32; 2], resolution: Resolution) -> Rect {
     Rect::from_center_size(area.center(), size * scale)
 }
 
-/// Squares that show through where the picture is transparent.
+/// Squares that show through where the image is transparent.
 fn checker(ui: &Ui, place: Rect) {
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
     let [light, dark] = if ui.visuals().dark_mode { [70, 54] } else { [206, 182] };
@@ -453,7 +453,7 @@ fn checker(ui: &Ui, place: Rect) {
     }
 }
 
-/// What is going on before there is a picture.
+/// What is going on before there is an image.
 fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     let center = area.center();
     let spinner = Rect::from_center_size(center - vec2(0.0, 16.0), Vec2::splat(24.0));
@@ -465,7 +465,7 @@ fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
         .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
 }
 
-/// What is being loaded while the picture before it stays.
+/// What is being loaded while the image before it stays.
 fn loading(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     let text = match &desk.snapshot.activity {
         Activity::Loading(what) => format!("Loading {what} …"),
@@ -484,7 +484,7 @@ fn loading(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     });
 }
 
-/// What every screen shows of the picture at `place`: actions, and within them titles (EBU R 95).
+/// What every screen shows of the image at `place`: actions, and within them titles (EBU R 95).
 fn safe_frames(painter: &egui::Painter, place: Rect) {
     for share in [0.93, 0.9] {
         let frame = Rect::from_center_size(place.center(), share * place.size());

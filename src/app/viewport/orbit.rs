@@ -54,7 +54,7 @@ impl Orbit {
         self.pitch_deg = (self.pitch_deg + DEG_PER_POINT * points[1]).clamp(-90.0, 90.0);
     }
 
-    /// Moves the target so that it follows a drag by `shift` heights of the picture, to the right and down.
+    /// Moves the target so that it follows a drag by `shift` heights of the image, to the right and down.
     pub(super) fn pan(&mut self, shift: [f64; 2]) {
         let (yaw, pitch) = (self.yaw_deg.to_radians(), self.pitch_deg.to_radians());
         let right = DVec3::new(yaw.cos(), 0.0, -yaw.sin());
@@ -72,7 +72,7 @@ impl Orbit {
     }
 
     /// Writes what was moved; the target and the distance only where they were, so that an untouched camera goes on
-    /// framing whatever model comes.
+    /// framing any model that comes.
     pub(super) fn write(&self, before: &Self, camera: &mut CameraSettings) {
         if self == before {
             return;

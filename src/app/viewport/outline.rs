@@ -22,7 +22,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// Paints the lines over the picture at `place`, once it is known what is seen where.
+    /// Paints the lines over the image at `place`, once it is known what is seen where.
     pub(super) fn show(&mut self, ui: &Ui, area: Rect, place: Rect, job: &Arc<Job>, desk: &Desk<'_>) {
         let chosen = chosen(desk);
         let lit = desk.shared.selection.lit;

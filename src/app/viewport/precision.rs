@@ -1,4 +1,4 @@
-//! The map of what in the picture's numbers is not to be trusted, with what its colours mean.
+//! The map of what in the image's numbers is not to be trusted, with what its colours mean.
 
 use std::sync::Arc;
 

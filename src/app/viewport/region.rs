@@ -1,4 +1,4 @@
-//! The part of the picture that is rendered: drawn with the mouse, outlined, taken away again.
+//! The part of the image that is rendered: drawn with the mouse, outlined, taken away again.
 
 use egui::{
     Align2, Color32, CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, vec2,
@@ -28,7 +28,7 @@ impl RegionTool {
         (self.is_armed, self.from) = (true, None);
     }
 
-    /// Shows the region over the picture at `place`; true while the viewport's drags are its own.
+    /// Shows the region over the image at `place`; true while the viewport's drags are its own.
     pub(super) fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) -> bool {
         let is_wanted = self.is_armed || desk.document.render.region.is_some();
         if is_wanted && self.takes_escape(ui, response) {
@@ -83,7 +83,7 @@ impl RegionTool {
     }
 }
 
-/// Left, top, right and bottom of a rectangle as shares of the picture.
+/// Left, top, right and bottom of a rectangle as shares of the image.
 fn region_of(drawn: Rect, place: Rect) -> [f64; 4] {
     let share = |value: f32, from: f32, length: f32| f64::from(((value - from) / length).clamp(0.0, 1.0));
     let (x, y) = (
@@ -120,7 +120,7 @@ fn outline(ui: &mut Ui, area: Rect, at: Rect, desk: &mut Desk<'_>) {
     );
     let builder = egui::UiBuilder::new().max_rect(corner).id_salt("clear region");
     let mut inside = ui.new_child(builder);
-    let help = "Render the whole picture again (escape)";
+    let help = "Render the whole image again (Esc)";
     if icons::button(&mut inside, Icon::Close, Command::ClearRegion.label(), help).clicked() {
         desk.act(Command::ClearRegion);
     }

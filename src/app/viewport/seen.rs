@@ -1,4 +1,4 @@
-//! What is seen at a place of the picture.
+//! What is seen at a place of the image.
 
 use egui::{Pos2, Rect};
 use glam::DVec3;
@@ -10,7 +10,7 @@ use crate::render::worker::Scene;
 use crate::scene::camera::camera_ray;
 use crate::scene::surface::surface_at;
 
-/// The place in the picture, in pixels, below its size.
+/// The place in the image, in pixels, below its size.
 pub(super) fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
     let share = (at - place.min) / place.size();
     let is_inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);

@@ -12,6 +12,7 @@ use crate::cli::scene::SceneArguments;
 use crate::document::turntable::Turn;
 use crate::named::Named as _;
 use crate::render::output::format_of;
+use crate::scene::path_text::path_text;
 
 /// The lists, in the order in which images count through them, each with the option that a plain text stands for.
 const LISTS: [(&str, Option<&str>); 5] = [
@@ -148,10 +149,10 @@ impl Source<'_> {
         if FILES.contains(&name) {
             let beside = self.folder().join(&text);
             if beside.exists() {
-                text = beside.to_string_lossy().into_owned();
+                text = path_text(&beside).into_owned();
             }
         }
-        // A project is what a picture begins with.
+        // A project is what an image begins with.
         Ok(if name == "project" {
             text
         } else {

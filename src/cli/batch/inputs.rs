@@ -1,4 +1,4 @@
-//! The hash of all that a picture is made of: by it a batch knows what is done.
+//! The hash of all that an image is made of: by it a batch knows what is done.
 
 use std::hash::Hasher as _;
 use std::io::Read as _;

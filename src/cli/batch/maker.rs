@@ -1,4 +1,4 @@
-//! The pictures of a batch: rendered whole or in parts, or joined of parts. A record beside each says of what it was made.
+//! The images of a batch: rendered whole or in parts, or joined of parts. A record beside each says of what it was made.
 
 use std::path::PathBuf;
 
@@ -41,7 +41,7 @@ impl<'a> Maker<'a> {
     pub(super) fn open(file: &'a BatchFile, engine: EngineChoice, part: Part) -> anyhow::Result<Self> {
         let mut session = Session::open(engine)?;
         if part != Part::Whole {
-            session.keep_guides("sums of the picture are kept");
+            session.keep_guides("sums of the image are kept");
         }
         remove_leftovers(&file.folder);
         remove_leftovers(&file.folder.join(sheet::THUMBNAILS));
@@ -71,7 +71,7 @@ impl<'a> Maker<'a> {
         let mut inputs = Inputs::new();
         inputs.document(document, &model, &self.file.path)?;
         inputs.text(&format!("{:?}", (picture.frame, self.file.frames, self.file.turn)));
-        // Which files of a whole picture exist is seen from their names.
+        // Which files of a whole image exist is seen from their names.
         inputs.text(&format!("{part:?}"));
         Ok(inputs.hash())
     }

@@ -1,4 +1,4 @@
-//! `glossmith batch`: all combinations of lists, as pictures in a folder; what is done already stays.
+//! `glossmith batch`: all combinations of lists, as images in a folder; what is done already stays.
 
 mod file;
 mod inputs;
@@ -137,7 +137,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
             template::text(path, &file, all.len(), arguments.slices).as_bytes(),
         )?;
         say!(
-            "wrote {}: {} pictures, {} tasks each",
+            "wrote {}: {} images, {} tasks each",
             path.display(),
             all.len(),
             arguments.slices
@@ -163,15 +163,15 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
         report(&row, &mut lines, all.len())?;
         failed += usize::from(row.status == Status::Failed);
     }
-    // Where several programs render at once, none of them has all pictures.
+    // Where several programs render at once, none of them has all images.
     if part == Part::Whole && (chosen.len() == all.len() || arguments.merge) {
         sheet::write(&file, &all)?;
     }
     match failed {
         0 => Ok(()),
-        _ if failed == chosen.len() => bail!("none of the {failed} pictures could be made; the lines above say why"),
+        _ if failed == chosen.len() => bail!("none of the {failed} images could be made; the lines above say why"),
         _ => Err(PartialFailure(format!(
-            "{failed} of {} pictures could not be made; the lines above say why. Run it again for them alone",
+            "{failed} of {} images could not be made; the lines above say why. Run it again for them alone",
             chosen.len()
         ))
         .into()),

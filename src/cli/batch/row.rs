@@ -1,4 +1,4 @@
-//! The record of a picture of a batch.
+//! The record of an image of a batch.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file::Picture;
 
-/// What became of a picture.
+/// What became of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Status {
@@ -31,7 +31,7 @@ impl Status {
     }
 }
 
-/// A picture's record: printed as a line of JSON, and kept beside it.
+/// An image's record: printed as a line of JSON, and kept beside it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Row {
     /// Its number from 1.
@@ -41,11 +41,12 @@ pub(super) struct Row {
     /// What became of it.
     pub(super) status: Status,
     /// Its files.
+    #[serde(with = "crate::scene::path_text::list")]
     pub(super) files: Vec<PathBuf>,
     /// The hash of what it was made of.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) hash: Option<String>,
-    /// The hash of its files: one that was damaged since is made anew. Records of older versions have none.
+    /// The hash of its files: one that was damaged since is made again. Records of older versions have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) files_hash: Option<String>,
     /// The numbers of the first sample and the one after the last, of a part.
@@ -57,7 +58,7 @@ pub(super) struct Row {
     /// The engine's own time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) render_seconds: Option<f64>,
-    /// The estimated error of the picture's mean brightness.
+    /// The estimated error of the image's mean brightness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) noise: Option<f64>,
     /// Why it is not there.
@@ -89,7 +90,7 @@ impl Row {
         }
     }
 
-    /// The record beside a picture; none where there is none that can be read.
+    /// The record beside an image; none where there is none that can be read.
     pub(super) fn read(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }

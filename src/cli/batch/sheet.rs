@@ -1,4 +1,4 @@
-//! Contact sheets: all pictures of a batch, small, in one picture and on a page that needs no network.
+//! Contact sheets: all images of a batch, small, in one image and on a page that needs no network.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -35,7 +35,7 @@ pub(super) fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &V
     std::fs::create_dir_all(folder.join(THUMBNAILS))
         .with_context(|| format!("{}: the folder cannot be made", folder.join(THUMBNAILS).display()))?;
     let pixels = image::RgbaImage::from_raw(image.width, image.height, display(image, view));
-    let pixels = pixels.context("a picture of another size")?;
+    let pixels = pixels.context("an image of another size")?;
     let longest = image.width.max(image.height).max(1);
     let small = if longest > SIDE {
         let side = |length: u32| (length * SIDE / longest).max(1);

@@ -1,6 +1,6 @@
 //! An Open Job Description template (jobtemplate-2023-09) of a batch: what render farms run.
 //!
-//! Its tasks are pictures, or parts of their samples; a step that depends on them joins the parts and writes the contact
+//! Its tasks are images, or parts of their samples; a step that depends on them joins the parts and writes the contact
 //! sheets. Both steps call this program, so that workers need nothing else.
 
 use std::path::Path;
@@ -86,9 +86,10 @@ fn default(template: &Path, path: &Path) -> String {
         .strip_prefix(&folder)
         .ok()
         .filter(|below| !below.as_os_str().is_empty());
-    below.map_or_else(String::new, |below| {
-        format!("    default: {}\n", quoted(&below.to_string_lossy()))
-    })
+    // Names that are not Unicode have to be given with the job.
+    below
+        .and_then(Path::to_str)
+        .map_or_else(String::new, |below| format!("    default: {}\n", quoted(below)))
 }
 
 /// A text in YAML: JSON's marks and escapes are YAML's.

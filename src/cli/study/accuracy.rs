@@ -227,10 +227,7 @@ fn pareto_plot(race: &Race) -> PointPlot {
             is_logarithmic: true,
         },
         y: Axis {
-            label: format!(
-                "Bias (%), at {} and below: none that could be told",
-                small_number(least)
-            ),
+            label: format!("Bias (%); values under {} are not significant", small_number(least)),
             range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),
             is_logarithmic: true,
         },

@@ -114,17 +114,17 @@ impl CacheArguments {
 }
 
 /// A bar that shows how far a study has come, on a terminal.
-struct Bar(ProgressBar);
+pub(super) struct Bar(ProgressBar);
 
 /// Steps of the bar.
 const BAR_STEPS: f64 = 1000.0;
 
 impl Bar {
-    fn new() -> anyhow::Result<Self> {
+    pub(super) fn new() -> anyhow::Result<Self> {
         bar("{bar:40} {msg}", BAR_STEPS as u64).map(Self)
     }
 
-    fn show(&self, progress: StudyProgress) -> bool {
+    pub(super) fn show(&self, progress: StudyProgress) -> bool {
         self.0.set_position((BAR_STEPS * progress.share) as u64);
         self.0.set_message(progress.what);
         true

@@ -2,7 +2,7 @@
 //!
 //! To add an effect: its name in [`crate::job::effect`], and a line in the table here. Its code, if it has any, is
 //! switched by the constant named there. The plan, the command line, the panel, the documentation and the tests of
-//! specialised against general pictures loop over the table.
+//! specialised against general images loop over the table.
 
 mod horizon;
 mod switches;
@@ -21,7 +21,7 @@ use crate::scene::environment::Environment;
 pub use switches::{EffectSwitches, Switch, SwitchError};
 pub use table::EFFECTS;
 
-/// What the user is told about an effect, and how a scene calls for it.
+/// What the user reads about an effect, and how a scene calls for it.
 pub struct Effect {
     /// Which one.
     pub id: EffectId,
@@ -57,7 +57,7 @@ impl Effect {
     }
 }
 
-/// What a scene calls for, and what the user switched on besides. What was switched off must be taken out of the scene
+/// What a scene calls for, and what the user switched on besides. What was switched off must be removed from the scene
 /// before, see [`without_what_is_off`].
 pub fn plan(facts: &Facts<'_>) -> Plan {
     let switches = facts.document.render.effects;
@@ -68,7 +68,7 @@ pub fn plan(facts: &Facts<'_>) -> Plan {
     })
 }
 
-/// The document with the effects taken out that the user switched off.
+/// The document without the effects that the user switched off.
 pub fn without_what_is_off(document: &Document) -> Cow<'_, Document> {
     let switches: EffectSwitches = document.render.effects;
     let mut document = Cow::Borrowed(document);
@@ -89,7 +89,7 @@ pub struct Facts<'a> {
     pub slots: &'a [MaterialSettings],
     /// The same as the integrators read them.
     pub materials: &'a [Material<f32>],
-    /// What rays meet.
+    /// Geometry that rays hit.
     pub geometry: &'a Geometry,
     /// What they see far away.
     pub environment: &'a Environment,

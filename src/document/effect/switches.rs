@@ -16,7 +16,7 @@ named! {
         #[default]
         Auto, "auto", "auto", "Simulated where the scene calls for it.";
         On, "on", "on", "Its code runs whether it is needed or not: to see what it costs.";
-        Off, "off", "off", "Taken out of the scene: to see what it does to the picture.";
+        Off, "off", "off", "Removed from the scene: to see what it does to the image.";
     }
 }
 
@@ -75,7 +75,7 @@ pub enum SwitchError {
     #[error("no effect is called {0}; there are {names}", names = names(|_| true))]
     Unknown(String),
     /// It is always there.
-    #[error("nothing can be rendered without {0}; what can be taken out: {names}", names = names(|e| e.can_be(Switch::Off)))]
+    #[error("nothing can be rendered without {0}; what can be removed: {names}", names = names(|e| e.can_be(Switch::Off)))]
     Needed(String),
     /// It is simulated where it is called for, and has no code that could run besides.
     #[error("{0} has no code that could run where it is not called for; what has: {names}", names = names(|e| e.can_be(Switch::On)))]
@@ -91,8 +91,8 @@ fn names(chosen: fn(&Effect) -> bool) -> String {
     names.join(", ")
 }
 
-/// `auto`; `all`, needed or not; the names of the effects to keep, with commas between, whatever else can be taken out
-/// being taken out; or changes to what the scene calls for, such as `+anisotropy,-ground`.
+/// `auto`; `all`, needed or not; the names of the effects to keep, with commas between, all others that can be removed
+/// being removed; or changes to what the scene calls for, such as `+anisotropy,-ground`.
 impl FromStr for EffectSwitches {
     type Err = SwitchError;
 

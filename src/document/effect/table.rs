@@ -433,7 +433,7 @@ pub static EFFECTS: &[Effect] = &[
     },
     Effect {
         id: EffectId::PictureLayers,
-        label: "Picture layers (AOVs)",
+        label: "Image layers (AOVs)",
         help: "Albedo, normal and distance of what is seen, beside the light.",
         decide: |_| Decision::off("written only when an image with layers is saved"),
         remove: None,

@@ -132,17 +132,17 @@ pub struct RowStyle {
 /// What a change of a parameter calls for. See [`super::Change`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Stage {
-    /// What has been rendered is shown anew.
+    /// What has been rendered is shown again.
     Display,
     /// Rendering goes on towards another goal.
     Goal,
-    /// The picture starts over, seen by another camera.
+    /// The image starts over, seen by another camera.
     Camera,
-    /// The picture starts over at another size.
+    /// The image starts over at another size.
     Size,
-    /// The picture starts over, drawn by other numbers or another way.
+    /// The image starts over, drawn by other numbers or another way.
     Sampling,
-    /// The picture starts over under other light.
+    /// The image starts over under other light.
     Lighting,
     /// Materials are compiled.
     Materials,
@@ -175,7 +175,7 @@ pub struct Parameter<T: 'static = MaterialSettings> {
     pub flag: Option<&'static str>,
     /// The paper's symbol, or the usual one; empty where there is none.
     pub symbol: &'static str,
-    /// What it does to the picture.
+    /// What it does to the image.
     pub help: &'static str,
     /// What it takes.
     pub kind: Kind,
@@ -212,9 +212,9 @@ pub enum ParameterError {
     /// A parameter of a texture that is not there.
     #[error("{key}: there is no such texture; put one there first: --texture {target}=FILE")]
     NoTexture {
-        /// The key of what it is put on.
+        /// Key of the parameter that it textures.
         key: &'static str,
-        /// The name of what it is put on.
+        /// Name of the parameter that it textures.
         target: &'static str,
     },
     /// A value that the parameter does not take.
@@ -238,13 +238,13 @@ pub fn parameter(key: &str) -> Result<&'static Parameter, ParameterError> {
     found.ok_or_else(|| unknown_key(key))
 }
 
-/// What a picture is put on and the parameter of it, of a key such as `base.color_map.rotation`.
+/// Parameter that an image textures, and parameter of the image, of a key such as `base.color_map.rotation`.
 fn texture_key(key: &str) -> Option<(TextureTarget, &str)> {
     let (of_target, of_texture) = key.rsplit_once('.')?;
     Some((target_of_key(of_target)?, of_texture))
 }
 
-/// The parameter of a picture on a material with this key.
+/// The parameter of an image on a material with this key.
 fn texture_parameter(key: &str) -> Result<&'static Parameter<UserTexture>, ParameterError> {
     let found = TEXTURE_PARAMETERS.iter().find(|parameter| parameter.key == key);
     found.ok_or_else(|| ParameterError::UnknownKey {

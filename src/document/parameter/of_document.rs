@@ -14,7 +14,7 @@ use crate::optics::tone::ToneCurve;
 type Accessors = super::Accessors<Document>;
 
 /// Every setting that is a value of its own, in the order of the panels. What names a file, the list of area lights, and
-/// the rendered part of the picture stand beside them.
+/// the rendered part of the image stand beside them.
 pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
     let mut all = lighting();
     all.extend(camera());
@@ -116,9 +116,9 @@ fn sampling() -> Vec<Parameter<Document>> {
     use Stage::{Sampling, Size};
     vec![
         of("render.width", Size, "Width", "Columns of pixels.", count(range::SIZE), field!(Count render.width))
-            .named("Width").group("Picture size"),
+            .named("Width").group("Image size"),
         of("render.height", Size, "Height", "Rows of pixels.", count(range::SIZE), field!(Count render.height))
-            .named("Height").group("Picture size"),
+            .named("Height").group("Image size"),
         of("render.bounces", Sampling, "Bounces", "Reflections that a path may have.", count(range::BOUNCES), field!(Count render.bounces))
             .named("Bounces").group("Sampling").flag("bounces").bar(1.0, 64.0),
         of("render.strategy", Sampling, "Light sampling", "BSDF sampling, light sampling, or both (MIS). All converge to the same image.", choices::<Strategy>(), choice!(render.strategy))
@@ -141,9 +141,9 @@ fn stopping() -> Vec<Parameter<Document>> {
     use Stage::Goal;
     vec![
         of("render.samples", Goal, "Samples", "Samples a pixel after which rendering stops: noise halves with four times as many. With adaptive sampling the most of a pixel.", count(range::SAMPLES), field!(Count render.samples))
-            .named("Samples").group("Picture").flag("samples"),
+            .named("Samples").group("Image").flag("samples"),
         of("render.time", Goal, "Time limit", "Stops rendering after this time.", off(real(range::TIME_S, "s"), Value::Real(60.0)), optional!(Real render.time_s))
-            .named("Time limit").group("Picture").flag("time"),
+            .named("Time limit").group("Image").flag("time"),
         of("render.noise", Goal, "Noise limit", "Stops at this estimated relative error (RMS pixel error over mean luminance); 0.01 is 1 %.", off(real(range::NOISE, ""), Value::Real(0.01)), optional!(Real render.noise))
             .named("Noise limit").group("Accuracy").flag("noise").percent(),
         of("render.min_samples", Goal, "Least samples", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples))

@@ -398,7 +398,7 @@ fn transmits(material: &MaterialSettings) -> bool {
     material.transmits()
 }
 
-/// True where the Fresnel model tells metals from dielectrics.
+/// True where the Fresnel model distinguishes metals from dielectrics.
 fn has_metalness(material: &MaterialSettings) -> bool {
     !matches!(material.fresnel, Fresnel::None | Fresnel::Conductor) || transmits(material)
 }

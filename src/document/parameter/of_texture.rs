@@ -1,4 +1,4 @@
-//! How a picture of the user's own is put on a material.
+//! How an image of the user's own is mapped onto a material.
 
 use std::sync::LazyLock;
 
@@ -6,8 +6,8 @@ use super::accessors::{choice, field};
 use super::{Kind, Parameter, Stage, choices};
 use crate::scene::texture::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 
-/// Every parameter of a picture on a material, in the order of its rows; the keys are those inside its object in files, and on
-/// the command line behind that of what it is put on.
+/// Every parameter of an image on a material, in the order of its rows; the keys are those inside its object in files, and on
+/// the command line behind that of the parameter that it textures.
 pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<UserTexture>>> = LazyLock::new(all);
 
 type Accessors = super::Accessors<UserTexture>;

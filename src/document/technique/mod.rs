@@ -45,11 +45,11 @@ pub enum Setting {
     Bounces(u32),
     /// Whether samples go where the error is.
     Adaptive(bool),
-    /// How noise is taken out.
+    /// How the image is denoised.
     Denoise(Denoise),
-    /// An effect is taken out, or its code runs whether it is needed or not.
+    /// An effect is removed, or its code runs whether it is needed or not.
     Effect(EffectId, Switch),
-    /// Shading in f64, on the processor.
+    /// Shading in f64, on the CPU.
     Double,
 }
 
@@ -83,25 +83,25 @@ pub static GROUPS: &[Group] = &[
     Group {
         name: "strategy",
         label: "Light sampling",
-        help: "By the lobe, by the light, or by both; all converge to the same picture.",
+        help: "By the lobe, by the light, or by both; all converge to the same image.",
         members: |_| Strategy::ALL.iter().map(|s| Setting::Strategy(*s)).collect(),
     },
     Group {
         name: "sequence",
         label: "Random numbers",
-        help: "Sobol's points or independent numbers; both converge to the same picture.",
+        help: "Sobol sequence or uniform random numbers; both converge to the same image.",
         members: |_| Sequence::ALL.iter().map(|s| Setting::Sequence(*s)).collect(),
     },
     Group {
         name: "adaptive",
         label: "Adaptive sampling",
-        help: "Samples where the error is, or evenly; both converge to the same picture.",
+        help: "Samples where the error is, or evenly; both converge to the same image.",
         members: |_| [true, false].map(Setting::Adaptive).to_vec(),
     },
     Group {
         name: "denoise",
         label: "Denoising",
-        help: "The noise as it is or taken out, each way that there is; what is then wrong by bias is told.",
+        help: "Raw, or denoised in each available way; the remaining bias is measured.",
         members: |_| Denoise::ALL.iter().map(|how| Setting::Denoise(*how)).collect(),
     },
     Group {
@@ -149,7 +149,7 @@ pub static GROUPS: &[Group] = &[
     Group {
         name: "numbers",
         label: "Precision of shading",
-        help: "Shading in f64 instead of f32, on the processor. Sums are f64 in either case.",
+        help: "Shading in f64 instead of f32, on the CPU. Sums are f64 in either case.",
         members: |_| vec![Setting::Double],
     },
 ];
@@ -259,7 +259,7 @@ pub fn most_accurate(document: &Document) -> Document {
     accurate
 }
 
-/// The same for all documents that converge to the same picture: how it is reached and shown is left out.
+/// The same for all documents that converge to the same image: how it is reached and shown is left out.
 pub fn converged(document: &Document) -> Document {
     let mut document = without_what_is_off(document).into_owned();
     let default = RenderSettings::default();
@@ -448,7 +448,7 @@ pub fn techniques(text: &str, plan: &Plan) -> Result<Vec<Technique>, TechniqueEr
     }
 }
 
-/// Whether a text is understood, whatever the scene.
+/// Whether a text is understood, in any scene.
 ///
 /// # Errors
 /// [`TechniqueError`].

@@ -1,9 +1,8 @@
 //! A canvas that is filled pixel by pixel and reduced on the fly if too large.
 
-use std::path::Path;
-
-use super::decoded::Picture;
-use crate::scene::environment::{EnvironmentError, MAX_HEIGHT, MAX_WIDTH, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
+use super::decoded::{Picture, Source};
+use super::error::EnvironmentError;
+use crate::scene::environment::{MAX_HEIGHT, MAX_WIDTH, MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
 
 /// A canvas: each texel is the mean of `factor` × `factor` pixels of the file.
 pub(super) struct Canvas {
@@ -15,16 +14,43 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty canvas for a file of this size. Memory is only touched as pixels arrive: a header alone costs nothing.
+    /// An empty canvas for a file of this size, counted against the budget. Memory is only touched as pixels arrive: a header
+    /// alone costs nothing.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::check_size`], and if the budget is exceeded.
+    pub(super) fn new(source: Source<'_>, width: u64, height: u64) -> Result<Self, EnvironmentError> {
+        Self::check_size(source, width, height)?;
+        let size = [width as u32, height as u32];
+        let mut factor = 1;
+        while size[0].div_ceil(factor) > MAX_WIDTH || size[1].div_ceil(factor) > MAX_HEIGHT {
+            factor *= 2;
+        }
+        let [width, height] = size.map(|side| side.div_ceil(factor));
+        let texels = width as usize * height as usize;
+        source.within(source.budget.take((texels * size_of::<[f32; 4]>()) as u64))?;
+        Ok(Self {
+            source: size,
+            factor,
+            width,
+            height,
+            texels: vec![[0.0; 4]; texels],
+        })
+    }
+
+    /// Checks the size of a file's image.
     ///
     /// # Errors
     ///
     /// Empty sizes, and sizes beyond [`SOURCE_MAX_WIDTH`] × [`SOURCE_MAX_HEIGHT`].
-    pub(super) fn new(path: &Path, width: u64, height: u64) -> Result<Self, EnvironmentError> {
+    pub(super) fn check_size(source: Source<'_>, width: u64, height: u64) -> Result<(), EnvironmentError> {
+        let path = source.path;
         if width == 0 || height == 0 {
-            return Err(EnvironmentError::Empty {
+            return Err(MapError::Empty {
                 name: path.display().to_string(),
-            });
+            }
+            .into());
         }
         if width > u64::from(SOURCE_MAX_WIDTH) || height > u64::from(SOURCE_MAX_HEIGHT) {
             return Err(EnvironmentError::TooLarge {
@@ -33,19 +59,7 @@ impl Canvas {
                 height,
             });
         }
-        let source = [width as u32, height as u32];
-        let mut factor = 1;
-        while source[0].div_ceil(factor) > MAX_WIDTH || source[1].div_ceil(factor) > MAX_HEIGHT {
-            factor *= 2;
-        }
-        let [width, height] = source.map(|side| side.div_ceil(factor));
-        Ok(Self {
-            source,
-            factor,
-            width,
-            height,
-            texels: vec![[0.0; 4]; width as usize * height as usize],
-        })
+        Ok(())
     }
 
     /// Width and height of the file's image, in pixels.
@@ -81,7 +95,7 @@ impl Canvas {
             Vec::new()
         } else {
             vec![format!(
-                "The picture is {width} × {height}; it is used at {} × {}.",
+                "The image is {width} × {height}; it is used at {} × {}.",
                 self.width, self.height
             )]
         };

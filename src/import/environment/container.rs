@@ -1,11 +1,11 @@
 //! Environments in the containers of GPUs, KTX2 and DDS: cube maps and panoramas.
 
 use super::canvas::Canvas;
-use super::decoded::{Picture, Source, io};
+use super::decoded::{Picture, Source};
 use super::display_referred::Codes;
+use super::error::EnvironmentError;
 use crate::picture::gpu::{self, Face, Refusal, Texels};
-use crate::resource;
-use crate::scene::environment::{EnvironmentError, MAX_WIDTH};
+use crate::scene::environment::MAX_WIDTH;
 
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
 const FACE_MAX: u32 = MAX_WIDTH / 4;
@@ -13,13 +13,14 @@ const FACE_MAX: u32 = MAX_WIDTH / 4;
 /// Reads a cube as a strip of its six faces, a flat image unchanged.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
+    let bytes = source.bytes()?;
     if !gpu::is_container(&bytes) {
         return Err(EnvironmentError::WrongContent {
             path: path.to_owned(),
             expected: "a KTX2 or DDS",
         });
     }
+    source.check_decoding(&bytes)?;
     source.loading.step("decoding texels")?;
     let faces = gpu::decode(&bytes, [MAX_WIDTH, FACE_MAX]);
     let faces = faces.map_err(|refusal| {
@@ -35,7 +36,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     })?;
     let codes = Codes::new(source.encoding);
     if let [picture] = faces.as_slice() {
-        let mut canvas = Canvas::new(path, picture.width.into(), picture.height.into())?;
+        let mut canvas = Canvas::new(source, picture.width.into(), picture.height.into())?;
         for (place, color) in (0..).zip(colors(picture, &codes)) {
             canvas.add_color(place % picture.width, place / picture.width, color);
         }

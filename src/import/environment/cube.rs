@@ -6,8 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use super::decoded::{Picture, Source, io};
+use super::error::EnvironmentError;
 use crate::endings::is_picture;
-use crate::scene::environment::{EnvironmentError, MAX_HEIGHT, environment_direction};
+use crate::scene::environment::{MAX_HEIGHT, environment_direction};
 
 /// Positions of the faces in a horizontal cross, in faces from the top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];

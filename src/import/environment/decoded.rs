@@ -2,9 +2,13 @@
 
 use std::path::Path;
 
+use super::error::EnvironmentError;
+use crate::budget::{Budget, OverBudget};
 use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, transformed};
+use crate::picture::Encoded;
+use crate::resource;
 use crate::scene::Loading;
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentError};
+use crate::scene::environment::EnvironmentEncoding;
 
 /// A file to be read.
 #[derive(Clone, Copy)]
@@ -14,6 +18,47 @@ pub(super) struct Source<'a> {
     pub encoding: EnvironmentEncoding,
     /// Progress and cancellation.
     pub loading: &'a Loading,
+    /// Memory budget of the files and the map together.
+    pub budget: &'a Budget,
+}
+
+impl Source<'_> {
+    /// Contents of the file, counted against the budget.
+    ///
+    /// # Errors
+    ///
+    /// The file system's, and if the budget is exceeded or loading cancelled.
+    pub(super) fn bytes(&self) -> Result<Vec<u8>, EnvironmentError> {
+        let length = io(self.path, resource::open(self.path).and_then(|file| file.metadata()))?.len();
+        self.within(self.budget.take(length))?;
+        io(
+            self.path,
+            resource::read_watched(self.path, resource::BYTES_MAX, self.loading),
+        )
+    }
+
+    /// Checks that an image can be decoded as a whole.
+    ///
+    /// # Errors
+    ///
+    /// If the budget is exceeded.
+    pub(super) fn check_decoding(&self, bytes: &[u8]) -> Result<(), EnvironmentError> {
+        let name = self.path.to_string_lossy().into_owned();
+        let bytes = bytes.into();
+        self.within(self.budget.check(Encoded { name, bytes }.cost(u32::MAX)))
+    }
+
+    /// The error for an exceeded budget.
+    ///
+    /// # Errors
+    ///
+    /// If so.
+    pub(super) fn within(&self, taken: Result<(), OverBudget>) -> Result<(), EnvironmentError> {
+        taken.map_err(|over| EnvironmentError::OverBudget {
+            path: self.path.to_owned(),
+            over,
+        })
+    }
 }
 
 /// A decoded image: `width` × `height` texels, rows from the top, values as in the file.

@@ -5,15 +5,15 @@ use std::path::Path;
 use image::{DynamicImage, ImageError};
 
 use super::canvas::Canvas;
-use super::decoded::{Picture, Source, io};
+use super::decoded::{Picture, Source};
+use super::error::EnvironmentError;
 use super::gain_map;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
 use crate::picture::decode_image;
 use crate::picture::float_tiff;
-use crate::resource;
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentError};
+use crate::scene::environment::EnvironmentEncoding;
 
 /// Decoding of integer values.
 pub(super) struct Codes {
@@ -44,7 +44,7 @@ impl Codes {
 
     /// Warning for images with this encoding.
     pub fn warning(&self) -> Option<String> {
-        let text = "A picture for screens: nothing in it is brighter than 1, so that lamps and the sun are too dark.";
+        let text = "An image for screens: nothing in it is brighter than 1, so lamps and the sun are too dark.";
         (self.encoding == EnvironmentEncoding::Display).then(|| text.to_owned())
     }
 }
@@ -52,19 +52,20 @@ impl Codes {
 /// Reads a panorama. Whole numbers are sRGB codes or linear, as the source's encoding says; numbers with a point are linear.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
+    let bytes = source.bytes()?;
     let damaged = |detail: String| EnvironmentError::Damaged {
         path: path.to_owned(),
         detail,
     };
+    source.check_decoding(&bytes)?;
     // Some damaged files make the decoders panic.
     let floats =
         contained(|| float_tiff::decode(&bytes)).unwrap_or_else(|| Err("its pixels contradict each other".into()));
     if let Some(floats) = floats.map_err(damaged)? {
         let size = [floats.width, floats.height];
-        return of_light(path, size, |column, row| floats.rgb(column, row));
+        return of_light(source, size, |column, row| floats.rgb(column, row));
     }
-    source.loading.step("decoding the picture")?;
+    source.loading.step("decoding the image")?;
     let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
     let image = image.unwrap_or_else(|| Err(damaged("its pixels contradict each other".to_owned())))?;
     let light = match source.encoding {
@@ -76,9 +77,9 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     drop(bytes);
     if let Some(Ok(light)) = &light {
         let size = [image.width(), image.height()];
-        return of_light(path, size, |column, row| light.rgb(column, row));
+        return of_light(source, size, |column, row| light.rgb(column, row));
     }
-    let mut canvas = Canvas::new(path, image.width().into(), image.height().into())?;
+    let mut canvas = Canvas::new(source, image.width().into(), image.height().into())?;
     if matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
         for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
             canvas.add_color(column, row, pixel.0);
@@ -107,11 +108,11 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
 
 /// A panorama of linear light by column and row.
 fn of_light(
-    path: &Path,
+    source: Source<'_>,
     [width, height]: [u32; 2],
     rgb: impl Fn(u32, u32) -> [f32; 3],
 ) -> Result<Picture, EnvironmentError> {
-    let mut canvas = Canvas::new(path, width.into(), height.into())?;
+    let mut canvas = Canvas::new(source, width.into(), height.into())?;
     for row in 0..height {
         (0..width).for_each(|column| canvas.add_color(column, row, rgb(column, row)));
     }

@@ -6,16 +6,16 @@ use exr::error::Error as ExrError;
 use exr::meta::header::Header;
 
 use super::canvas::Canvas;
-use crate::scene::environment::EnvironmentError;
+use super::decoded::Source;
+use super::error::EnvironmentError;
 
 /// An empty image of the display window, and the position of the first stored pixel in it: negative for pixels outside the
 /// window.
-pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
+pub(super) fn window(source: Source<'_>, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
     let display = header.shared_attributes.display_window;
-    let canvas = Canvas::new(path, display.size.width() as u64, display.size.height() as u64)?;
-    // Only its check of the size.
-    Canvas::new(
-        path,
+    let canvas = Canvas::new(source, display.size.width() as u64, display.size.height() as u64)?;
+    Canvas::check_size(
+        source,
         header.layer_size.width() as u64,
         header.layer_size.height() as u64,
     )?;

@@ -5,7 +5,6 @@
 //! Introduction", Luminance/Chroma Images).
 
 use std::io::{BufReader, Read};
-use std::path::Path;
 
 use exr::block::chunk::{Chunk, CompressedBlock};
 use exr::compression::Compression;
@@ -17,19 +16,24 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData, Requirements};
 use exr::prelude::f16;
 
-use super::decoded::{Picture, io};
+use super::decoded::{Picture, Source, io};
+use super::error::EnvironmentError;
 use super::exr_window::{exr_error, window};
 use crate::optics::primaries::REC709;
 use crate::picture::exr_space::space;
 use crate::resource;
-use crate::scene::environment::EnvironmentError;
+
+/// Bytes per pixel of the three planes, at most.
+const PIXEL_BYTES: u64 = 12;
 
 /// Reads a file whose chroma is stored more coarsely than its luminance.
-pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
     let mut file = PeekRead::new(BufReader::new(io(path, resource::open(path))?));
     let meta_data = read_header(&mut file).map_err(|error| exr_error(path, error))?;
     let header = &meta_data.headers[0];
-    let (mut canvas, offset) = window(path, header)?;
+    let (mut canvas, offset) = window(source, header)?;
+    source.within(source.budget.check(PIXEL_BYTES * header.layer_size.area() as u64))?;
     let planes = Planes::read(&mut file, &meta_data).map_err(|error| exr_error(path, error))?;
     let space = space(header);
     // Invalid primaries count as Rec. 709, and `bring_to_rec709` warns.
@@ -106,7 +110,7 @@ impl Planes {
             };
             let first = i64::from(block.y_coordinate) - i64::from(header.own_attributes.layer_position.y());
             let first = usize::try_from(first).ok().filter(|first| *first < height);
-            let first = first.ok_or_else(|| ExrError::Invalid("scan lines out of the picture".into()))?;
+            let first = first.ok_or_else(|| ExrError::Invalid("scan lines outside the image".into()))?;
             let lines = header.compression.scan_lines_per_block().min(height - first);
             let bytes = decompress(header, block.compressed_pixels_le, first, lines)?;
             planes.take(header, &bytes, first, lines, [y, ry, by])?;

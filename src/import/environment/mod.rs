@@ -5,6 +5,7 @@ mod container;
 mod cube;
 mod decoded;
 mod display_referred;
+mod error;
 mod exr_window;
 mod gain_map;
 mod luminance_chroma;
@@ -15,10 +16,15 @@ use std::path::Path;
 
 pub use cube::are_faces;
 use decoded::{Picture, Source};
+pub use error::EnvironmentError;
 
+use crate::budget::Budget;
 use crate::endings::{ending, is_picture};
 use crate::scene::Loading;
-use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentError, EnvironmentSource};
+use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
+
+/// Bytes per texel of unfolding a cube and of the sampling tables, besides the map.
+const WORK_BYTES: u64 = 40;
 
 /// Loads or computes an environment. Takes seconds for an 8k file: do not call it on the window's thread.
 ///
@@ -53,7 +59,7 @@ pub fn load_watched(
 ) -> Result<Environment, EnvironmentError> {
     match source {
         EnvironmentSource::File(path) => load_path(path, encoding, loading),
-        _ => source.computed(),
+        _ => Ok(source.computed()?),
     }
 }
 
@@ -65,12 +71,17 @@ fn load_path(path: &Path, encoding: EnvironmentEncoding, loading: &Loading) -> R
         path,
         encoding,
         loading,
+        budget: &Budget::of_import(),
     };
+    let check_work = |texels: usize| source.within(source.budget.check(WORK_BYTES * texels as u64));
     let mut picture = if path.is_dir() {
         cube::read_folder(source, decode)?
     } else {
-        cube::unfolded(decode(source)?)
+        let picture = decode(source)?;
+        check_work(picture.texels.len())?;
+        cube::unfolded(picture)
     };
+    check_work(picture.texels.len())?;
     loading.step("the environment's distribution")?;
     repair(&mut picture);
     let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
@@ -127,7 +138,7 @@ fn repair(picture: &mut Picture) {
     report(infinite, "infinite", &format!("the largest finite one, {largest}"));
     if picture.width != 2 * picture.height {
         warnings.push(format!(
-            "The picture is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",
+            "The image is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",
             picture.width, picture.height
         ));
     }

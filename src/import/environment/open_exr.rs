@@ -18,12 +18,12 @@ use rayon::prelude::*;
 
 use super::canvas::Canvas;
 use super::decoded::{Picture, Source, io};
+use super::error::EnvironmentError;
 use super::exr_window::{exr_error, window};
 use super::luminance_chroma;
 use crate::panics::contained;
 use crate::picture::exr_space::space;
 use crate::resource;
-use crate::scene::environment::EnvironmentError;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.
@@ -61,15 +61,15 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, resource::open(path))?);
     let reader = match Reader::read_from_buffered(file, false) {
-        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
+        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(source),
         result => result.map_err(|error| exr_error(path, error))?,
     };
     if has_fine_chroma(reader.headers()) {
-        return luminance_chroma::read(path);
+        return luminance_chroma::read(source);
     }
     let layer = choose_layer(path, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
-    let (mut canvas, offset) = window(path, &header)?;
+    let (mut canvas, offset) = window(source, &header)?;
     check_supported(path, &header, file_bytes)?;
 
     let chunks = reader

@@ -8,9 +8,8 @@ use image::codecs::hdr::HdrDecoder;
 use image::{ImageDecoder, ImageError};
 
 use super::canvas::Canvas;
-use super::decoded::{Picture, Source, io};
-use crate::resource;
-use crate::scene::environment::EnvironmentError;
+use super::decoded::{Picture, Source};
+use super::error::EnvironmentError;
 
 /// Lines between two progress reports.
 const LINES_A_STEP: u32 = 256;
@@ -25,7 +24,7 @@ const RGB_FROM_XYZ: [[f32; 3]; 3] = [
 /// Reads a file line by line, so that memory grows with actual lines and a truncation is located.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
+    let bytes = source.bytes()?;
     if bytes.is_empty() {
         return Err(EnvironmentError::Truncated {
             path: path.to_owned(),
@@ -40,7 +39,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
     let (header, mut rest) = Header::split(path, &bytes)?;
     let layout = header.layout;
-    let mut canvas = Canvas::new(path, layout.width.into(), layout.height.into())?;
+    let mut canvas = Canvas::new(source, layout.width.into(), layout.height.into())?;
     let mut line = vec![0.0_f32; 3 * layout.line_length() as usize];
     for number in 0..layout.lines() {
         if number % LINES_A_STEP == 0 {

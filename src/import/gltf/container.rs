@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use gltf::json;
 use json::validation::Validate as _;
+use percent_encoding::percent_decode_str;
 use serde::Deserialize as _;
 use serde_json::Value as Json;
 
@@ -231,7 +232,7 @@ impl Document {
         if uri.contains("://") {
             return Err(self.resource(uri, "web addresses are not loaded"));
         }
-        let file = percent_decoded(uri);
+        let file = percent_decode_str(uri).decode_utf8_lossy();
         self.files.read(&file).map_err(|error| self.resource(&file, error))
     }
 
@@ -289,7 +290,7 @@ const DETAILS: [(&str, &str, &str, Check); 7] = [
         r#"{"type": "perspective"}"#,
         check::<json::Camera>,
     ),
-    ("images", "a picture", "{}", check::<json::Image>),
+    ("images", "an image", "{}", check::<json::Image>),
     ("materials", "a material", "{}", check::<json::Material>),
     ("samplers", "a sampler", "{}", check::<json::texture::Sampler>),
     ("skins", "a skin", r#"{"joints": []}"#, check::<json::Skin>),
@@ -481,17 +482,4 @@ fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &[u8]) -> Result<T, 
             reason,
         }
     })
-}
-
-/// A relative URI as a file name: %20 is a space, and so on.
-fn percent_decoded(uri: &str) -> String {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, tail @ ..] = rest {
-        let code = (*first == b'%').then(|| tail.get(..2)).flatten();
-        let code = code.and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
-        bytes.push(code.unwrap_or(*first));
-        rest = if code.is_some() { &tail[2..] } else { tail };
-    }
-    String::from_utf8_lossy(&bytes).into_owned()
 }

@@ -220,7 +220,7 @@ fn note_camera(camera: &json::Camera, seen: &ModelCamera, report: &mut ImportRep
     if perspective.is_some_and(|perspective| perspective.aspect_ratio.is_some()) {
         report.note(
             Fate::Ignored,
-            "the aspect ratio of a camera: the picture keeps its own",
+            "the aspect ratio of a camera: the image keeps its own",
             &seen.name,
         );
     }

@@ -20,11 +20,10 @@ use tobj::{LoadError, LoadOptions, Material};
 use crate::files::Files;
 use crate::model_error::ModelError;
 use crate::panics::contained;
-use crate::picture::Encoded;
+use crate::picture::{Encoded, Wanted};
 use crate::scene::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::scale::scaled_to;
 use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
 
 /// Loads the contents of an OBJ file.
@@ -319,43 +318,28 @@ impl<'a> Slots<'a> {
     /// Adds a texture file to the model and returns its index.
     fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
         let budget = &self.files.import.budget;
-        let decoded = self
-            .files
-            .read(name)
-            .map_err(|error| error.to_string())
-            .and_then(|bytes| {
-                Encoded {
-                    name: name.to_owned(),
-                    bytes: bytes.into(),
-                }
-                .decode(budget)
-            });
-        let scaled = decoded.and_then(|decoded| {
-            let note = decoded.note.filter(|_| is_color);
-            let (texture, scaled_from) = scaled_to(decoded.texture(is_color), self.side_max, is_color);
-            budget.take(texture.bytes() as u64).map_err(|over| over.to_string())?;
-            Ok((texture, scaled_from, note))
+        let wanted = Wanted {
+            is_color,
+            side_max: self.side_max,
+        };
+        let read = self.files.read(name).map_err(|error| error.to_string());
+        let scaled = read.and_then(|bytes| {
+            let (name, bytes) = (name.to_owned(), bytes.into());
+            let scaled = Encoded { name, bytes }.texture(wanted, budget)?;
+            let taken = budget.take(scaled.texture.bytes() as u64);
+            taken.map_err(|over| over.to_string()).map(|()| scaled)
         });
-        let (texture, scaled_from, note) = match scaled {
-            Ok(scaled) => scaled,
+        match scaled {
+            Ok(scaled) => {
+                scaled.report(report);
+                self.textures.push(scaled.texture);
+                Some(self.textures.len() - 1)
+            }
             Err(reason) => {
                 report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name);
-                return None;
+                None
             }
-        };
-        report.note(Fate::Used, "textures", name);
-        if let Some(note) = note {
-            report.note(Fate::Approximated, note, name);
         }
-        if let Some([width, height]) = scaled_from {
-            let what = format!(
-                "a picture of {width} × {height}, used at {} × {}",
-                texture.width, texture.height
-            );
-            report.note(Fate::Approximated, what, name);
-        }
-        self.textures.push(texture);
-        Some(self.textures.len() - 1)
     }
 }
 

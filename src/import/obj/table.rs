@@ -40,13 +40,8 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
         Nowhere("the colour of what passes through (Tf)"),
     ),
     row("illum", "2", "1", To("specular.weight"))
-        .with_note("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are told"),
-    row(
-        "sharpness",
-        "60",
-        "100",
-        Nowhere("the sharpness of a reflected picture"),
-    ),
+        .with_note("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are reported"),
+    row("sharpness", "60", "100", Nowhere("the sharpness of a reflection map")),
     row("Pr", "", "0.25", To("specular.roughness")).within(0.0, 1.0),
     row("Pm", "0", "0.25", To("base.metalness")).within(0.0, 1.0),
     row("Pc", "0", "0.25", To("coat.weight")).within(0.0, 1.0),
@@ -62,7 +57,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
     row("map_Kd", "", PICTURE, To("base.color_texture")),
     row("map_Ke", "", PICTURE, To("emission.color_texture")),
     row("map_d", "", PICTURE, To("geometry.opacity_texture"))
-        .with_note("the alpha of `map_Kd`; another picture is ignored"),
+        .with_note("the alpha of `map_Kd`; another texture is ignored"),
     row("norm", "", PICTURE, To("geometry.normal_texture")),
     row("bump", "", PICTURE, To("geometry.normal_texture")).with_note("also `map_bump`; heights are ignored"),
     row("map_Ka", "", PICTURE, Nowhere("a texture given by map_Ka")),
@@ -75,7 +70,7 @@ pub const MTL_PARAMETERS: &[FileParameter] = &[
     row("map_Pcr", "", PICTURE, Nowhere("a texture given by map_Pcr")),
     row("disp", "", PICTURE, Nowhere("a displacement (disp)")),
     row("decal", "", PICTURE, Nowhere("a decal")),
-    row("refl", "", PICTURE, Nowhere("a reflected picture (refl)")),
+    row("refl", "", PICTURE, Nowhere("a reflection map (refl)")),
 ];
 
 /// Illumination models that are shown as they are, or nearly: 2 is a highlight; 3, 5 and 8 reflect the scene besides.

@@ -4,6 +4,7 @@ mod basis;
 pub(crate) mod exr_space;
 pub(crate) mod float_tiff;
 pub(crate) mod gpu;
+mod large_png;
 mod rle_bmp;
 
 use std::borrow::Cow;
@@ -14,25 +15,35 @@ use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2
 use image::error::{LimitError, LimitErrorKind};
 use image::{DynamicImage, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
 
+use self::large_png::{Texels as Rows, size_within};
 use crate::budget::Budget;
+use crate::free_memory::LIMIT_VARIABLE;
 use crate::optics::primaries::{Matrix, NoSpace, transformed};
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::panics::contained;
 use crate::resource;
 use crate::scene::Texture;
+use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::scale::nearest_of_16;
 use crate::scene::texture::scale::scaled_to;
 use crate::scene::texture::{TextureMean, texture_mean};
 use gpu::Texels;
 
 /// Memory limit for decoding one image: 16 384 × 8 192 texels of 16 bits per channel take 1 GiB.
-const DECODED_MAX: u64 = 2 << 30;
+pub(super) const DECODED_MAX: u64 = 2 << 30;
 /// Largest expansion in texels per byte, and additional texels: a run of one colour takes PNG and WebP almost nothing.
 const GROWTH: [u64; 2] = [1 << 14, 1 << 20];
 /// Temporary bytes per texel of decoding: for 8-bit codes, and for deeper values.
 const TEXEL_COSTS: [u64; 2] = [12, 28];
+/// Smallest side to which images are reduced in order to fit the budget.
+const SIDE_LEAST: u32 = 1024;
+/// Temporary bytes per texel of a row while rows are reduced.
+const ROW_COST: u64 = 48;
 /// Temporary bytes per texel of decoding a GPU container.
 const CONTAINER_COST: u64 = 8;
+/// Place of the byte of a PNG file that says whether it is interlaced.
+const INTERLACE: usize = 28;
 /// The first bytes of an OpenEXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Largest side of an OpenEXR image, in pixels.
@@ -89,12 +100,11 @@ impl Decoded {
                 numbers.as_chunks::<4>().0.iter().flat_map(texel).collect()
             }
         };
-        let nearest = |code: &u16| ((u32::from(*code) * 255 + 32767) / 65535) as u8;
         Texture {
             name: self.name,
             width: self.width,
             height: self.height,
-            rgba8: rgba16.iter().map(nearest).collect(),
+            rgba8: rgba16.iter().copied().map(nearest_of_16).collect(),
             rgba16: if is_color { Vec::new() } else { rgba16 },
         }
     }
@@ -108,27 +118,124 @@ pub(super) struct Encoded<'a> {
     pub bytes: Cow<'a, [u8]>,
 }
 
-impl Encoded<'_> {
-    /// Approximate temporary memory for decoding in bytes, by the header.
-    pub fn cost(&self) -> u64 {
-        let [of_codes, of_numbers] = TEXEL_COSTS;
-        let texels = header(&self.name, &self.bytes).map_or(0, |header| {
-            let of_one = if header.is_deep { of_numbers } else { of_codes };
-            of_one * header.texels()
-        });
-        // Containers say their size in many ways: their blocks hold a texel a byte at most.
-        texels.max(CONTAINER_COST * self.bytes.len() as u64)
+/// Use of an image as a texture map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    pub is_color: bool,
+    /// Largest side, in texels.
+    pub side_max: u32,
+}
+
+/// A texture map at the size that is used.
+pub(super) struct Scaled {
+    pub texture: Texture,
+    /// Size of the file's image, if reduced.
+    from: Option<[u32; 2]>,
+    /// True if it was reduced more than wanted, to fit the budget.
+    is_for_memory: bool,
+    note: Option<&'static str>,
+}
+
+impl Scaled {
+    /// Reports the map under its name in the model's file.
+    pub fn report(&self, report: &mut ImportReport) {
+        let name = &self.texture.name;
+        report.note(Fate::Used, "textures", name);
+        if let Some(note) = self.note {
+            report.note(Fate::Approximated, note, name);
+        }
+        if let Some(reduction) = self.reduction() {
+            report.note(Fate::Approximated, reduction, name);
+        }
     }
 
-    /// Decodes it, if the import's budget permits.
+    /// The reduction in words, if any.
+    fn reduction(&self) -> Option<String> {
+        let [width, height] = self.from?;
+        let size = [self.texture.width, self.texture.height]
+            .map(|side| side.to_string())
+            .join(" × ");
+        let why = match self.is_for_memory {
+            true => format!(", to fit the memory of its import; allow more by {LIMIT_VARIABLE}=MIB"),
+            false => String::new(),
+        };
+        Some(format!("a picture of {width} × {height}, used at {size}{why}"))
+    }
+}
+
+impl Encoded<'_> {
+    /// Approximate memory for decoding with sides of at most `side_max` in bytes, by the header.
+    pub fn cost(&self, side_max: u32) -> u64 {
+        let header = header(&self.name, &self.bytes);
+        // Containers say their size in many ways: their blocks hold a texel a byte at most.
+        let of_container = CONTAINER_COST * self.bytes.len() as u64;
+        header.map_or(of_container, |header| header.cost(side_max).max(of_container))
+    }
+
+    /// The same at the size that fits the budget.
+    pub fn cost_within(&self, side_max: u32, budget: &Budget) -> u64 {
+        self.cost(self.side_within(side_max, budget))
+    }
+
+    /// The largest side at which the map leaves half of the budget to others and can be decoded, if any: `side_max`, halved.
+    fn side_within(&self, side_max: u32, budget: &Budget) -> u32 {
+        let Some(header) = header(&self.name, &self.bytes) else {
+            return side_max;
+        };
+        let left = budget.left();
+        let fits = |side: u32| header.kept(side) <= left / 2 && header.cost(side) <= left;
+        let [width, height] = header.size;
+        let sides = std::iter::successors(Some(side_max.min(width.max(height))), |side| Some(side / 2));
+        let mut sides = sides.take_while(|side| *side >= SIDE_LEAST);
+        sides.find(|side| fits(*side)).unwrap_or(side_max)
+    }
+
+    /// The texture map, if the import's budget permits. Rather than to exceed that, it is reduced.
     ///
     /// # Errors
     ///
     /// The reason, in a few words.
-    pub fn decode(self, budget: &Budget) -> Result<Decoded, String> {
+    pub fn texture(self, wanted: Wanted, budget: &Budget) -> Result<Scaled, String> {
         check_growth(&self.name, &self.bytes)?;
-        budget.check(self.cost()).map_err(|over| over.to_string())?;
-        decode_bytes(self.name, &self.bytes)
+        let Wanted { is_color, side_max } = wanted;
+        let side = self.side_within(side_max, budget);
+        budget.check(self.cost(side)).map_err(|over| over.to_string())?;
+        let whole = header(&self.name, &self.bytes).map(|header| header.size);
+        let (decoded, by_rows) = match self.by_rows(side, is_color)? {
+            Some(decoded) => (decoded, true),
+            None => (decode_bytes(self.name, &self.bytes)?, false),
+        };
+        let note = decoded.note.filter(|_| is_color);
+        let (texture, from) = scaled_to(decoded.texture(is_color), side, is_color);
+        let from = if by_rows { whole } else { from };
+        let is_for_memory = from.is_some() && side < side_max && whole.is_some_and(|[w, h]| w.max(h) > side);
+        Ok(Scaled {
+            texture,
+            from,
+            is_for_memory,
+            note,
+        })
+    }
+
+    /// A PNG image that is larger than `side_max`, reduced row by row.
+    fn by_rows(&self, side_max: u32, is_color: bool) -> Result<Option<Decoded>, String> {
+        let is_large = |header: Header| header.is_by_rows && header.size[0].max(header.size[1]) > side_max;
+        if !header(&self.name, &self.bytes).is_some_and(is_large) {
+            return Ok(None);
+        }
+        let reduced = contained(|| large_png::reduced(&self.bytes, side_max, is_color));
+        let reduced = reduced.unwrap_or_else(|| Err("it is damaged".to_owned()))?;
+        Ok(reduced.map(|reduced| Decoded {
+            name: self.name.clone(),
+            width: reduced.size[0],
+            height: reduced.size[1],
+            texels: match reduced.texels {
+                Rows::Codes8(codes) => Numbers::Codes8(codes),
+                Rows::Codes16(codes) => Numbers::Codes16(codes),
+            },
+            rec709_from: None,
+            note: None,
+        }))
     }
 }
 
@@ -137,11 +244,29 @@ struct Header {
     size: [u32; 2],
     /// True for more than 8 bits per channel.
     is_deep: bool,
+    /// True if rows are reduced one by one.
+    is_by_rows: bool,
 }
 
 impl Header {
     fn texels(&self) -> u64 {
         self.size.map(u64::from).iter().product()
+    }
+
+    /// Bytes of the texture map with sides of at most `side_max`.
+    fn kept(&self, side_max: u32) -> u64 {
+        let texels: u64 = size_within(self.size, side_max).map(u64::from).iter().product();
+        texels * if self.is_deep { 12 } else { 4 }
+    }
+
+    /// Bytes for decoding it.
+    fn cost(&self, side_max: u32) -> u64 {
+        let [width, height] = self.size;
+        if self.is_by_rows && width.max(height) > side_max {
+            return self.kept(side_max) + ROW_COST * u64::from(width);
+        }
+        let [of_codes, of_numbers] = TEXEL_COSTS;
+        self.texels() * if self.is_deep { of_numbers } else { of_codes }
     }
 }
 
@@ -168,45 +293,80 @@ fn header(name: &str, bytes: &[u8]) -> Option<Header> {
         return Some(Header {
             size: [side(size.0), side(size.1)],
             is_deep: true,
+            is_by_rows: false,
         });
     }
     if let Some(size) = float_tiff::size(bytes) {
-        return Some(Header { size, is_deep: true });
+        return Some(Header {
+            size,
+            is_deep: true,
+            is_by_rows: false,
+        });
     }
-    let decoder = contained(|| reader(name, bytes).ok()?.into_decoder().ok())??;
+    let reader = reader(name, bytes).ok()?;
+    let is_png = reader.format() == Some(ImageFormat::Png);
+    let decoder = contained(|| reader.into_decoder().ok())??;
     let color = decoder.color_type();
     Some(Header {
         size: decoder.dimensions().into(),
         is_deep: color.bytes_per_pixel() > color.channel_count(),
+        is_by_rows: is_png && bytes.get(INTERLACE) == Some(&0),
     })
 }
 
-/// The texture map in a file, with sides of at most `side_max`, within the import's budget.
+/// The texture map in a file, with sides of at most `side_max`, within the import's budget, which it takes from.
 ///
 /// # Errors
 ///
 /// The reason, in a few words.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
+    let scaled = read_encoded(path, budget)?.texture(Wanted { is_color, side_max }, budget)?;
+    if let Some(reduction) = scaled.reduction().filter(|_| scaled.is_for_memory) {
+        log::warn!("{}: {reduction}", path.display());
+    }
+    budget
+        .take(scaled.texture.bytes() as u64)
+        .map_err(|over| over.to_string())?;
+    Ok(scaled.texture)
+}
+
+/// The texture map in a file at its own size, for temporary use.
+///
+/// # Errors
+///
+/// The reason, in a few words.
+pub(super) fn whole_texture(path: &Path, is_color: bool, budget: &Budget) -> Result<Texture, String> {
+    let encoded = read_encoded(path, budget)?;
+    check_growth(&encoded.name, &encoded.bytes)?;
+    budget.check(encoded.cost(u32::MAX)).map_err(|over| over.to_string())?;
+    Ok(decode_bytes(encoded.name, &encoded.bytes)?.texture(is_color))
+}
+
+fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String> {
+    let length = resource::open(path)
+        .and_then(|file| file.metadata())
+        .map_err(|error| error.to_string())?
+        .len();
+    budget.check(length).map_err(|over| over.to_string())?;
     let bytes = resource::read(path, resource::BYTES_MAX).map_err(|error| error.to_string())?;
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())
         .to_string_lossy()
         .into_owned();
-    let bytes = Cow::Owned(bytes);
-    let picture = Encoded { name, bytes }.decode(budget)?.texture(is_color);
-    let (scaled, _) = scaled_to(picture, side_max, is_color);
-    budget.take(scaled.bytes() as u64).map_err(|over| over.to_string())?;
-    Ok(scaled)
+    Ok(Encoded {
+        name,
+        bytes: bytes.into(),
+    })
 }
 
-/// Mean of a texture map in a file.
+/// Mean of a texture map in a file, within the import's budget.
 ///
 /// # Errors
 ///
 /// The fault of the file.
-pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
-    Ok(texture_mean(&read_texture(path, true, u32::MAX, &Budget::default())?))
+pub fn mean_of_file(path: &Path, budget: &Budget) -> Result<TextureMean, String> {
+    Ok(texture_mean(&whole_texture(path, true, budget)?))
 }
 
 /// Decodes an image of any known format.
@@ -214,7 +374,7 @@ pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
 /// # Errors
 ///
 /// The reason, in a few words.
-fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
+pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));
     let (width, height, texels) = decoded?;

@@ -35,7 +35,7 @@ macro_rules! lobe_list {
             phong Phong = 5, "phong", "Phong",
                 "A cosine power around the mirror direction (Lafortune and Willems 1994).";
             lambert Lambert = 6, "lambert", "Lambert",
-                "Perfectly diffuse: equally bright from everywhere, whatever the roughness.";
+                "Perfectly diffuse: equally bright from everywhere, at any roughness.";
         }
     };
 }

@@ -109,7 +109,7 @@ fn against_angle<const N: usize>(
     LinePlot {
         title,
         x: axis("Angle of the view to the normal in degrees", [0.0, 90.0]),
-        // Rounding noise must not fill the picture.
+        // Rounding noise must not fill the image.
         y: axis(label, [0.0, if top > 1e-6 { 1.05 * top } else { 1.0 }]),
         is_polar: false,
         x_column: "view_angle_deg",

@@ -89,7 +89,7 @@ pub struct LinePlot {
 }
 
 impl LinePlot {
-    /// A series' name in the legend: no more than tells it from the others.
+    /// A series' name in the legend: no more than distinguishes it from the others.
     pub fn label(&self, series: &Series) -> String {
         let mut label = series.lobe.clone();
         if let Some(angle_deg) = series.view_angle_deg

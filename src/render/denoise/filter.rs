@@ -5,8 +5,12 @@ use std::ptr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use super::device_choice::{DenoiseDevice, DeviceKind};
 use super::library::{BufferHandle, DeviceHandle, FilterHandle, Functions, Library, LibraryError, message};
 
+/// `OIDN_STORAGE_HOST` and `OIDN_STORAGE_MANAGED`.
+const STORAGE_HOST: c_int = 1;
+const STORAGE_MANAGED: c_int = 3;
 /// `OIDN_FORMAT_FLOAT3`.
 const FLOAT3: c_int = 3;
 /// `OIDN_QUALITY_FAST` and `OIDN_QUALITY_HIGH`.
@@ -45,15 +49,43 @@ unsafe impl Send for Filter<'_> {}
 pub(super) struct Device<'a> {
     functions: &'a Functions,
     handle: DeviceHandle,
+    kind: DeviceKind,
 }
 
 impl<'a> Device<'a> {
-    /// The fastest device available.
-    pub(super) fn of(library: &'a Library) -> Result<Self, LibraryError> {
+    /// The first device that works of those that the choice names; the reason is logged where one does not.
+    pub(super) fn of(library: &'a Library, choice: DenoiseDevice) -> Result<Self, LibraryError> {
         let functions = &library.functions;
-        // SAFETY: 0 is `OIDN_DEVICE_TYPE_DEFAULT`; a null handle is an answer.
-        let handle = unsafe { (functions.new_device)(0) };
-        let device = Self { functions, handle };
+        // SAFETY: the library is asked for its devices, and then for each of them by its number.
+        let count = unsafe { (functions.get_num_physical_devices)() };
+        let kind = |id| DeviceKind::of(unsafe { (functions.get_physical_device_int)(id, c"type".as_ptr()) });
+        let kinds: Vec<DeviceKind> = (0..count).map(kind).collect();
+        let mut failure = LibraryError::Device("there is no device for it".to_owned());
+        for place in choice.candidates(&kinds) {
+            match Self::open(functions, place as c_int, kinds[place]) {
+                Ok(device) => {
+                    if choice == DenoiseDevice::Gpu && !device.is_gpu() {
+                        log::warn!("no GPU can denoise here, so the CPU does");
+                    }
+                    return Ok(device);
+                }
+                Err(error) => {
+                    log::warn!("the denoiser's {} device does not work: {error}", kinds[place].name());
+                    failure = error;
+                }
+            }
+        }
+        Err(failure)
+    }
+
+    fn open(functions: &'a Functions, id: c_int, kind: DeviceKind) -> Result<Self, LibraryError> {
+        // SAFETY: the number is one of the library's; a null handle is an answer.
+        let handle = unsafe { (functions.new_device_by_id)(id) };
+        let device = Self {
+            functions,
+            handle,
+            kind,
+        };
         if !handle.is_null() {
             // SAFETY: the handle is live, the name a C string. Threads bound to cores would get in our own's way.
             unsafe {
@@ -63,6 +95,16 @@ impl<'a> Device<'a> {
         }
         device.check()?;
         Ok(device)
+    }
+
+    /// Whether it is a GPU.
+    pub(super) fn is_gpu(&self) -> bool {
+        self.kind != DeviceKind::Cpu
+    }
+
+    /// Name of its kind.
+    pub(super) fn kind_name(&self) -> &'static str {
+        self.kind.name()
     }
 
     /// An integer parameter of the device.
@@ -117,22 +159,45 @@ impl<'a> Buffer<'a> {
         Ok(buffer)
     }
 
-    fn write(&self, values: &[[f32; 3]]) {
-        assert_eq!(values.len(), self.pixels, "a picture of another size");
-        // SAFETY: as many bytes as the buffer has are read from the slice.
+    /// The pixels where the host sees the buffer's own memory, as on the CPU and on GPUs that share memory with it.
+    fn in_place(&self) -> Option<*mut [f32; 3]> {
+        let functions = self.device.functions;
+        // SAFETY: the buffer is live. Of other storage the address is not the host's, and is not used.
+        let (storage, data) = unsafe {
+            let storage = (functions.get_buffer_storage)(self.handle);
+            (storage, (functions.get_buffer_data)(self.handle))
+        };
+        (matches!(storage, STORAGE_HOST | STORAGE_MANAGED) && !data.is_null()).then(|| data.cast())
+    }
+
+    /// Has `fill` write all pixels: into the buffer's memory, else with one copy.
+    fn write(&mut self, fill: impl FnOnce(&mut [[f32; 3]])) {
+        if let Some(data) = self.in_place() {
+            // SAFETY: so many pixels lie there, which nothing else uses: the filter does not run.
+            return fill(unsafe { std::slice::from_raw_parts_mut(data, self.pixels) });
+        }
+        let mut values = vec![[0.0; 3]; self.pixels];
+        fill(&mut values);
+        // SAFETY: as many bytes as the buffer has are read from the vector.
         unsafe {
-            (self.device.functions.write_buffer)(self.handle, 0, size_of_val(values), values.as_ptr().cast::<c_void>());
+            let from = values.as_ptr().cast::<c_void>();
+            (self.device.functions.write_buffer)(self.handle, 0, size_of_val(&values[..]), from);
         }
     }
 
-    fn read(&self) -> Vec<[f32; 3]> {
+    /// Has `take` read all pixels: in the buffer's memory, else in one copy.
+    fn read<A>(&self, take: impl FnOnce(&[[f32; 3]]) -> A) -> A {
+        if let Some(data) = self.in_place() {
+            // SAFETY: as in `write`.
+            return take(unsafe { std::slice::from_raw_parts(data, self.pixels) });
+        }
         let mut values = vec![[0.0; 3]; self.pixels];
         // SAFETY: as many bytes as the buffer has are written to the vector's elements.
         unsafe {
             let to = values.as_mut_ptr().cast::<c_void>();
             (self.device.functions.read_buffer)(self.handle, 0, size_of_val(&values[..]), to);
         }
-        values
+        take(&values)
     }
 }
 
@@ -247,9 +312,10 @@ impl<'a> Filter<'a> {
     }
 
     /// Sets the guides of the following runs.
-    pub(super) fn set_guides(&self, guides: Guides<'_>) {
-        self.albedo.write(&padded(guides.albedo, self.size));
-        self.normal.write(&padded(guides.normal, self.size));
+    pub(super) fn set_guides(&mut self, guides: Guides<'_>) {
+        let size = self.size;
+        self.albedo.write(|to| pad(guides.albedo, size, to));
+        self.normal.write(|to| pad(guides.normal, size, to));
     }
 
     /// Denoises an image. `input_scale` maps its middle grey to 0.18, where the filter works best. Ends with
@@ -261,7 +327,8 @@ impl<'a> Filter<'a> {
         cancel: &AtomicBool,
     ) -> Result<Vec<[f32; 3]>, LibraryError> {
         let functions = self.device.functions;
-        self.color.write(&padded(color, self.size));
+        let size = self.size;
+        self.color.write(|to| pad(color, size, to));
         // SAFETY: the filter and what it refers to are live; the flag outlives the monitor, which is taken away again.
         unsafe {
             if self.input_scale != input_scale {
@@ -275,7 +342,7 @@ impl<'a> Filter<'a> {
             (functions.set_filter_progress_monitor)(self.handle, None, ptr::null_mut());
         }
         self.device.check()?;
-        Ok(cropped(&self.output.read(), self.size))
+        Ok(self.output.read(|pixels| cropped(pixels, size)))
     }
 }
 
@@ -298,13 +365,15 @@ fn mirrored(place: usize, side: usize) -> usize {
     along.min(period - 1 - along)
 }
 
-/// An image with mirrored padding.
-fn padded(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> Vec<[f32; 3]> {
-    let [columns, rows] = padded_size([width, height]);
-    let row = |y: usize| &pixels[mirrored(y, height) * width..][..width];
-    (0..rows)
-        .flat_map(|y| (0..columns).map(move |x| row(y)[mirrored(x, width)]))
-        .collect()
+/// Writes an image with mirrored padding.
+fn pad(pixels: &[[f32; 3]], [width, height]: [usize; 2], to: &mut [[f32; 3]]) {
+    let [columns, _] = padded_size([width, height]);
+    for (y, row) in to.chunks_exact_mut(columns).enumerate() {
+        let from = &pixels[mirrored(y, height) * width..][..width];
+        for (x, pixel) in row.iter_mut().enumerate() {
+            *pixel = from[mirrored(x, width)];
+        }
+    }
 }
 
 /// An image without its padding.

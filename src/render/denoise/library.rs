@@ -7,6 +7,8 @@ use std::ffi::{CStr, OsStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+use super::device_choice::DenoiseDevice;
+
 /// Environment variable with the folder of the library.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_OIDN";
 
@@ -98,13 +100,17 @@ macro_rules! functions {
 }
 
 functions! {
-    new_device = b"oidnNewDevice\0": fn(c_int) -> DeviceHandle;
+    get_num_physical_devices = b"oidnGetNumPhysicalDevices\0": fn() -> c_int;
+    get_physical_device_int = b"oidnGetPhysicalDeviceInt\0": fn(c_int, *const c_char) -> c_int;
+    new_device_by_id = b"oidnNewDeviceByID\0": fn(c_int) -> DeviceHandle;
     commit_device = b"oidnCommitDevice\0": fn(DeviceHandle);
     release_device = b"oidnReleaseDevice\0": fn(DeviceHandle);
     set_device_bool = b"oidnSetDeviceBool\0": fn(DeviceHandle, *const c_char, bool);
     get_device_int = b"oidnGetDeviceInt\0": fn(DeviceHandle, *const c_char) -> c_int;
     get_device_error = b"oidnGetDeviceError\0": fn(DeviceHandle, *mut *const c_char) -> c_int;
     new_buffer = b"oidnNewBuffer\0": fn(DeviceHandle, usize) -> BufferHandle;
+    get_buffer_data = b"oidnGetBufferData\0": fn(BufferHandle) -> *mut c_void;
+    get_buffer_storage = b"oidnGetBufferStorage\0": fn(BufferHandle) -> c_int;
     release_buffer = b"oidnReleaseBuffer\0": fn(BufferHandle);
     write_buffer = b"oidnWriteBuffer\0": fn(BufferHandle, usize, usize, *const c_void);
     read_buffer = b"oidnReadBuffer\0": fn(BufferHandle, usize, usize, *mut c_void);
@@ -231,19 +237,12 @@ impl Library {
             version: [0; 3],
             device: "",
         };
-        let [version, kind] = {
-            let device = super::filter::Device::of(&library)?;
-            [c"version", c"type"].map(|name| device.int(name))
+        let (version, device) = {
+            let device = super::filter::Device::of(&library, DenoiseDevice::chosen())?;
+            (device.int(c"version"), device.kind_name())
         };
         library.version = [version / 10_000, version / 100 % 100, version % 100];
-        library.device = match kind {
-            1 => "CPU",
-            2 => "SYCL",
-            3 => "CUDA",
-            4 => "HIP",
-            5 => "Metal",
-            _ => "unknown device",
-        };
+        library.device = device;
         if library.version[..2] < MIN_VERSION[..] {
             return Err(LibraryError::TooOld {
                 path: library.path.clone(),

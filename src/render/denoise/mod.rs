@@ -3,6 +3,7 @@
 //! Both halves of the samples are denoised separately, each guided by the first-hit guides of its own samples. The result is
 //! their mean. The halves' common part and their difference give the error estimate ([`crate::analysis::denoised`]).
 
+mod device_choice;
 pub mod fetch;
 mod filter;
 mod library;
@@ -12,6 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
+pub use device_choice::DenoiseDevice;
 use filter::{Device, Filter};
 pub use filter::{Guides, Quality};
 pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};
@@ -37,17 +39,28 @@ pub struct Denoiser {
 }
 
 impl Denoiser {
-    /// A denoiser on the library's fastest device.
+    /// A denoiser on the chosen device.
     ///
     /// # Errors
     /// [`LibraryError`] in one line with the remedy.
     pub fn open() -> Result<Self, LibraryError> {
-        let device = Arc::new(Device::of(Library::get()?)?);
         Ok(Self {
-            device,
+            device: Arc::new(Device::of(Library::get()?, DenoiseDevice::chosen())?),
             filters: Vec::new(),
             pixels_max: PIXELS_MAX,
         })
+    }
+
+    /// Goes over to the CPU, after an error of the GPU.
+    fn leave_gpu(&mut self, error: &LibraryError) -> Result<(), LibraryError> {
+        log::warn!(
+            "the {} device stopped denoising ({error}), so the CPU denoises from now on",
+            self.device.kind_name()
+        );
+        DenoiseDevice::Cpu.choose();
+        self.filters.clear();
+        self.device = Arc::new(Device::of(Library::get()?, DenoiseDevice::Cpu)?);
+        Ok(())
     }
 
     /// The same with bands of at most `pixels_max` pixels.
@@ -63,11 +76,26 @@ impl Denoiser {
         self.denoise_cancellable(noisy, mode, &AtomicBool::new(false))
     }
 
-    /// The same; cancelled soon after `cancel` becomes true.
+    /// The same; cancelled soon after `cancel` becomes true. Where a GPU fails, the CPU denoises.
     ///
     /// # Errors
     /// [`LibraryError::Cancelled`] if so; if the library fails.
     pub fn denoise_cancellable(
+        &mut self,
+        noisy: &Noisy,
+        mode: Denoise,
+        cancel: &AtomicBool,
+    ) -> Result<Denoised, LibraryError> {
+        match self.denoise_on_device(noisy, mode, cancel) {
+            Err(error @ LibraryError::Device(_)) if self.device.is_gpu() => {
+                self.leave_gpu(&error)?;
+                self.denoise_on_device(noisy, mode, cancel)
+            }
+            outcome => outcome,
+        }
+    }
+
+    fn denoise_on_device(
         &mut self,
         noisy: &Noisy,
         mode: Denoise,

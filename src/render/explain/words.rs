@@ -61,7 +61,7 @@ impl PathAccount {
             text += &format!("; limiting fireflies took a luminance of {}", short(self.clamped));
         }
         if self.is_dropped {
-            text += "; left out of the picture, as it is negative or not finite";
+            text += "; left out of the image, as it is negative or not finite";
         }
         text
     }

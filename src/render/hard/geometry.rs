@@ -31,7 +31,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "geometry",
         danger: "a ray offset of a fixed length swallows a model of 1e-6 and does nothing for one of 1e6",
         made: "a teapot scaled by 1e-6, 1e-3, 1e3 and 1e6 through its node",
-        must: "the picture of the unscaled one, numbers drawn alike: mean difference over mean",
+        must: "the image of the unscaled one, numbers drawn alike: mean difference over mean",
         naive: || format!("an offset of 1e-4 is {:.0} radii", 1e-4 / 1e-6),
         measure: "error",
         limit: SAME_PICTURE,
@@ -45,7 +45,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "geometry",
         danger: "f32 places 1e5 from the origin are 0.008 apart: the model crumbles",
         made: "a teapot moved by 1e5 along each axis and along all through its node",
-        must: "the picture of the unmoved one, numbers drawn alike: mean difference over mean",
+        must: "the image of the unmoved one, numbers drawn alike: mean difference over mean",
         naive: || {
             format!(
                 "vertices off by {:.1e}",
@@ -65,7 +65,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "geometry",
         danger: "a model of 1e-6 at 1e5: places differ in their twelfth digit, f64 transforms leave four of them",
         made: "a teapot scaled by 1e-6 or 1e6 and moved by 1e5 along all axes through its node",
-        must: "the picture of the unscaled, unmoved one, numbers drawn alike: mean difference over mean",
+        must: "the image of the unscaled, unmoved one, numbers drawn alike: mean difference over mean",
         naive: || format!("vertices off by {:.0} radii", 0.004 / 1e-6),
         measure: "error",
         limit: SAME_PICTURE,
@@ -184,7 +184,7 @@ pub(super) const CASES: &[HardCase] = &[
         name: "rays-leave-their-surface",
         group: "geometry",
         danger: "a place on a surface is rounded to beside it: a ray from there meets the surface that it left",
-        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1; rays leaving hits at all \
+        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1. Rays leave hits at all \
                angles down to 1e-5 from the plane, outwards and inwards",
         must: "outwards nothing is met, inwards the mesh is; others are counted",
         naive: || {
@@ -298,7 +298,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "geometry",
         danger: "rays caught between surfaces that nearly touch, offsets into the next glass, paths of 64 bounces cut off",
         made: "ten instances of a clear sphere of index 1.1 inside each other, each 0.95 of the last; white furnace",
-        must: "the mean of the picture is white",
+        must: "the mean of the image is white",
         naive: || "0.96²⁰ = 0.44 where reflected light is dropped".to_owned(),
         measure: "error",
         limit: WHITE,

@@ -77,7 +77,7 @@ pub(super) const CASES: &[HardCase] = &[
     HardCase {
         name: "nothing-left-to-normalise",
         group: "lobe",
-        danger: "R = 1 with D = 0 or V = −n: w = 0, and 0/0 is NaN in the picture for ever",
+        danger: "R = 1 with D = 0 or V = −n: w = 0, and 0/0 is NaN in the image for ever",
         made: "R = 1 and 1 − 1e-7, D = 0, V = n and V = −n to the bit (n along the axis of the sphere's map)",
         must: "unit directions with finite weight; others are counted",
         naive: || {
@@ -208,7 +208,7 @@ pub(super) const CASES: &[HardCase] = &[
         name: "view-below-the-shading-normal",
         group: "lobe",
         danger: "a smooth mesh's normal leans away from the viewer: negative cosines, energy out of nothing",
-        made: "interpolated normals 90° to 180° from the view, bent back as for pictures; every lobe, R at its ends",
+        made: "interpolated normals 90° to 180° from the view, bent back as for images; every lobe, R at its ends",
         must: "unit directions above the true surface, finite weights and densities; others are counted",
         naive: || {
             let wo = vec3(-0.995, 0.0, 0.1_f32).normalize();

@@ -30,8 +30,8 @@ macro_rules! cases {
             group: "lobe",
             danger: "terms that cancel lose the digits that f32 has to lose",
             made: "a million random pairs (10 000 in a quick run) of material, any value of every parameter, and of \
-                   view, normals and light; where one rounding of the light's direction changes the f64 value by more \
-                   than 2e-5 is a singularity, and left out",
+                   view, normals and light. Singularities are left out: there one rounding of the light's direction \
+                   changes the f64 value by more than 2e-5",
             must: "largest error of the material's value, relative to it (or to 1e-3 of white), against f64",
             naive: || "–".to_owned(),
             measure: "error",

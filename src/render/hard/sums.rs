@@ -35,7 +35,7 @@ pub(super) const CASES: &[HardCase] = &[
     HardCase {
         name: "white-box-lambert",
         group: "sums",
-        danger: "64 bounces between white walls multiply 64 roundings and whatever a sample loses",
+        danger: "64 bounces between white walls multiply 64 roundings and what a sample loses",
         made: "the inside of a closed cube, Lambertian and white, that emits 1/65; paths of 64 bounces, two strategies",
         must: "the mean is 1",
         naive: || format!("0.99⁶⁴ = {:.2} where each bounce loses 1 %", 0.99_f64.powi(64)),
@@ -69,7 +69,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "sums",
         danger: "a short period or a hash that collides: samples that repeat add nothing, and show",
         made: "a pixel's number for samples all over 2³², both sequences, computed backwards",
-        must: "each number tells its sample, so that no two of 2³² share one; those that do not are counted",
+        must: "each number names its sample, so that no two of 2³² share one; those that do not are counted",
         naive: || format!("{} of 10⁵ repeat under 16-bit state", 100_000 - 65_536),
         measure: "count",
         limit: 0.0,
@@ -80,7 +80,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "sums",
         danger: "pixels, samples and dimensions next to each other draw related numbers: patterns in the noise",
         made: "65 536 samples each of neighbouring pixels, seeds and dimensions, both numbers of both sequences",
-        must: "the largest correlation of 96 pairs, in standard deviations of independent numbers",
+        must: "the largest correlation of 96 pairs, in standard deviations of uniform random numbers",
         naive: || "a seed of x + 1024 · y: neighbours differ in one bit".to_owned(),
         measure: "sigma",
         limit: 5.0,
@@ -91,7 +91,7 @@ pub(super) const CASES: &[HardCase] = &[
         group: "sums",
         danger: "numbers made with floats (fract(sin(x) · 43758)) differ from adapter to adapter",
         made: "a million (100 000 in a quick run) random pixels, seeds, samples and dimensions, both sequences",
-        must: "the engine's bits are the processor's; those that are not are counted",
+        must: "the engine's bits are the CPU's; those that are not are counted",
         naive: || {
             let sine = (12.9898_f32 * 1000.0).sin();
             let exact = (f64::from(12.9898_f32) * 1000.0).sin();

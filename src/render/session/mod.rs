@@ -18,7 +18,7 @@ use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
 use crate::document::change::Change;
 use crate::document::{Denoise, Document};
-use crate::gpu::{GpuDevice, GpuError, Moment};
+use crate::gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::scene::texture::UserTextureFile;
@@ -78,6 +78,17 @@ impl Session {
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         Ok(Self::around(Engine::open(choice, true)?, assets))
+    }
+
+    /// Opens an adapter for a kind of traversal.
+    ///
+    /// # Errors
+    ///
+    /// [`GpuError`] if the adapter cannot render, or not this way.
+    pub fn on_adapter(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, SessionError> {
+        let device = adapter.open(traversal)?;
+        let opened = super::engine::gpu(device, "chosen by you".to_owned())?;
+        Ok(Self::around(opened, Assets::default()))
     }
 
     fn around((engine, info): (Engine, EngineInfo), assets: Assets) -> Self {

@@ -57,14 +57,14 @@ impl Session {
             Some(Ok(engine)) => self.engine = Engine::Gpu(Box::new(engine)),
             _ => {
                 (self.engine, self.info) = cpu(format!("the GPU failed: {cause}"));
-                return "going on with the processor".to_owned();
+                return "going on with the CPU".to_owned();
             }
         }
         if let Some((moment, times @ 1..)) = self.losing {
             self.lose_when(moment, times);
         }
         format!(
-            "going on with the GPU opened anew ({} of {REPLACEMENTS} times)",
+            "going on with the GPU opened again ({} of {REPLACEMENTS} times)",
             self.losses
         )
     }

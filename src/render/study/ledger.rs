@@ -266,8 +266,8 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
         Setting::Strategy(other),
     ));
     let (label, other) = match render.sequence {
-        Sequence::Sobol => ("Sobol's points", Sequence::Independent),
-        Sequence::Independent => ("Independent numbers", Sequence::Sobol),
+        Sequence::Sobol => ("Sobol sequence", Sequence::Independent),
+        Sequence::Independent => ("Uniform random numbers", Sequence::Sobol),
     };
     rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
     let fewer = if render.bounces > 4 { 4 } else { 1 };
@@ -292,7 +292,7 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
             }
         }
     });
-    let label = "Kernel made for the scene".to_owned();
+    let label = "Specialised kernel".to_owned();
     rivals.push(rival(KERNEL, label, "the general one".to_owned(), general));
     // Settings without effect on this scene have no entry.
     rivals.retain(|rival| rival.document != *document);
@@ -392,7 +392,7 @@ fn denoising(
         words: String::new(),
     };
     entry.words = format!(
-        "{} ms a picture; of the squared error of {:.0} samples a pixel {} % is left; bias {} %",
+        "{} ms per image; of the squared error of {:.0} spp {} % is left; bias {} %",
         digits(entry.ms),
         session.progress().mean_samples,
         digits(100.0 * (1.0 + entry.noise_share)),
@@ -436,11 +436,11 @@ fn words(entry: &Entry) -> String {
     }
     let change = &entry.picture_change;
     parts.push(if entry.is_picture_kept {
-        "leaves the picture as it is".to_owned()
+        "leaves the image as it is".to_owned()
     } else if change.is_resolved() {
-        format!("changes the picture by {} %", digits(100.0 * change.value))
+        format!("changes the image by {} %", digits(100.0 * change.value))
     } else {
-        format!("changes the picture by less than {} %", digits(100.0 * change.high))
+        format!("changes the image by less than {} %", digits(100.0 * change.high))
     });
     let against = match entry.kind {
         EntryKind::Effect => String::new(),
@@ -531,7 +531,7 @@ mod tests {
         let text = words(&measured());
         assert_eq!(
             text,
-            "Exact Fresnel (instead of Schlick's): +2 % time, changes the picture by 0.3 %"
+            "Exact Fresnel (instead of Schlick's): +2 % time, changes the image by 0.3 %"
         );
         let entry = Entry {
             kind: EntryKind::Effect,
@@ -544,7 +544,7 @@ mod tests {
         };
         assert_eq!(
             words(&entry),
-            "Ground: −25 % time, removes 80 % of the noise, leaves the picture as it is"
+            "Ground: −25 % time, removes 80 % of the noise, leaves the image as it is"
         );
         let entry = Entry {
             ms_quartiles: [-0.1, 0.3],

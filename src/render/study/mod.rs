@@ -1,6 +1,7 @@
 //! Studies of cost and accuracy: a race of techniques, a ledger of effects and settings, and scaling with size. All are
 //! measured on the rendering engine, by its own clock, in interleaved trials.
 
+pub mod benchmark;
 mod convergence;
 pub mod ledger;
 pub mod race;
@@ -33,8 +34,11 @@ pub enum StudyError {
     #[error(transparent)]
     File(#[from] FileError),
     /// The image is (nearly) black, so that relative errors are undefined.
-    #[error("the picture is black: errors relative to its brightness mean nothing. Give the scene some light")]
+    #[error("the image is black: errors relative to its brightness mean nothing. Give the scene some light")]
     Black,
+    /// The system's temporary folder cannot be written to.
+    #[error("the temporary folder cannot be written to: {0}; make room in it, or name another one by TMPDIR")]
+    Folder(String),
     /// The study was stopped.
     #[error("the study was stopped")]
     Stopped,

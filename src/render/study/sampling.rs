@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median};
+use super::{Machine, Steps, StudyError, Watch, median, quantile};
 use crate::document::{AreaLight, Document, Strategy};
 use crate::gpu::sampling::SamplingMeter;
 use crate::gpu::{AdapterKind, GpuDevice};
@@ -45,6 +45,8 @@ pub struct SamplingOptions {
     pub roughness: f32,
     /// Number of interleaved trials.
     pub turns: usize,
+    /// Whether whole frames are measured, too. Without them a row's `frame_ms` is NaN.
+    pub has_frames: bool,
     /// Time limit of one measurement; slower images are measured in part and scaled.
     pub budget: Duration,
 }
@@ -57,6 +59,7 @@ impl SamplingOptions {
             size: SIZE,
             roughness: 0.3,
             turns: 21,
+            has_frames: true,
             budget: Duration::from_millis(130),
         }
     }
@@ -73,6 +76,8 @@ pub struct SamplingRow {
     pub samples: u32,
     /// Drawing the directions alone, random numbers and rays left out, milliseconds.
     pub sampling_ms: f64,
+    /// Quartiles of `sampling_ms` over the trials.
+    pub sampling_quartiles_ms: [f64; 2],
     /// The same with rays against a triangle.
     pub with_rays_ms: f64,
     /// The path tracer's whole frame.
@@ -156,7 +161,11 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
     for (index, samples) in SAMPLES.into_iter().enumerate() {
         let kernels = kernels(&mut meter, &shapes, samples, options, &mut steps)?;
         steps.finish(1.0);
-        let frames = frames(&mut session, &shapes, samples, options, &mut steps)?;
+        let frames = if options.has_frames {
+            frames(&mut session, &shapes, samples, options, &mut steps)?
+        } else {
+            vec![f64::NAN; shapes.len()]
+        };
         steps.finish(1.0);
         report.numbers_ms[index] = kernels.numbers_ms;
         report.measured_share[index] = kernels.measured_share;
@@ -168,6 +177,7 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
                 lobe: *lobe,
                 samples,
                 sampling_ms,
+                sampling_quartiles_ms: kernel.quartiles_ms,
                 with_rays_ms,
                 frame_ms,
                 against_geometric: kernel.against_geometric,
@@ -189,6 +199,8 @@ struct Kernels {
 struct KernelTimes {
     /// Time beyond the random numbers of directions, and of directions with rays, in milliseconds.
     stages_ms: [f64; 2],
+    /// Quartiles of the directions' time.
+    quartiles_ms: [f64; 2],
     /// Directions against those of the geometric lobe with the smooth curve.
     against_geometric: f64,
 }
@@ -248,6 +260,7 @@ fn kernels(
             .collect();
         KernelTimes {
             stages_ms: [median(&directions), median(&beyond_numbers(stages, 2))].map(|seconds| scale * seconds),
+            quartiles_ms: [0.25, 0.75].map(|share| scale * quantile(&directions, share)),
             against_geometric: median(&ratios),
         }
     };
@@ -344,6 +357,7 @@ mod tests {
             lobe,
             samples: 100,
             sampling_ms: 1.0,
+            sampling_quartiles_ms: [1.0; 2],
             with_rays_ms: 1.0,
             frame_ms: 1.0,
             against_geometric,

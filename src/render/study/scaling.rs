@@ -8,8 +8,10 @@ use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without
 use crate::document::Document;
 use crate::named::named;
 use crate::optics::vector::Vec3;
-use crate::render::{EngineChoice, Session};
-use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
+use crate::render::{EngineChoice, Session, SessionError};
+use crate::scene::environment::{
+    Environment, EnvironmentSource, MapError, environment_direction, environment_radiance,
+};
 use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 
@@ -17,7 +19,7 @@ named! {
     /// The scaled quantity.
     Growing {
         Triangles, "triangles", "Triangles", "The triangles of the model.";
-        Pixels, "pixels", "Pixels", "The pixels of the picture.";
+        Pixels, "pixels", "Pixels", "The pixels of the image.";
         Bounces, "bounces", "Bounces at most", "The longest path.";
         Texels, "texels", "Texels of the environment", "The texels of the environment.";
     }
@@ -160,7 +162,7 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
             let original = session
                 .assets()
                 .environment(&document.lighting.environment, document.lighting.environment_encoding)?;
-            let resampled = resampled(&original, height).map_err(crate::render::SessionError::from)?;
+            let resampled = resampled(&original, height).map_err(|error| SessionError::Environment(error.into()))?;
             session.assets().keep_environment(source.clone(), resampled);
             grown.lighting.environment = source;
             return Ok((grown, 2 * u64::from(height).pow(2)));
@@ -170,10 +172,7 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
 }
 
 /// The same environment at another resolution.
-fn resampled(
-    environment: &Environment,
-    height: u32,
-) -> Result<Environment, crate::scene::environment::EnvironmentError> {
+fn resampled(environment: &Environment, height: u32) -> Result<Environment, MapError> {
     let width = 2 * height;
     let texel = |index: u32| {
         let place = [index % width, index / width].map(|i| f64::from(i) + 0.5);

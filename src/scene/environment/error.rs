@@ -1,96 +1,14 @@
-//! Errors of environments, in one line each.
+//! Errors of environment maps, in one line each.
 
-use std::path::PathBuf;
-
-use crate::scene::loading::Cancelled;
-
-/// Errors of an environment. The message names the file, the fault and the remedy.
+/// Errors of an environment map.
 #[derive(Debug, thiserror::Error)]
-pub enum EnvironmentError {
+pub enum MapError {
     /// An empty name.
-    #[error("no environment was named: give studio, sky, furnace, or a picture's file")]
+    #[error("no environment was named: give studio, sky, furnace, or an image file")]
     NoName,
-    /// The file system refused.
-    #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Error of the system.
-        source: std::io::Error,
-    },
-    /// An ending that is not known.
-    #[error(
-        "the environment {} is neither a .hdr nor an .exr, .ktx2 or .dds file, nor a PNG, JPEG, TIFF or WebP picture: convert it \
-         to one of them, or use studio, sky or furnace",
-        path.display()
-    )]
-    UnknownExtension {
-        /// The file.
-        path: PathBuf,
-    },
-    /// A folder without the faces of a cube.
-    #[error(
-        "the environment {} is a folder without six pictures whose names end in px, nx, py, ny, pz, nz (or right, left, \
-         top, bottom, front, back): name a file in it",
-        path.display()
-    )]
-    NoFaces {
-        /// The folder.
-        path: PathBuf,
-    },
-    /// The content does not match the extension.
-    #[error(
-        "{} is not {expected} file although its name says so: its first bytes are different; check where it came from",
-        path.display()
-    )]
-    WrongContent {
-        /// The file.
-        path: PathBuf,
-        /// The format, with its article.
-        expected: &'static str,
-    },
-    /// The file ends too early.
-    #[error("{} is cut short: {detail}; copy or download it again", path.display())]
-    Truncated {
-        /// The file.
-        path: PathBuf,
-        /// Position of the end.
-        detail: String,
-    },
-    /// The decoder found a contradiction.
-    #[error("{} is damaged: {detail}; copy or download it again, or re-save it", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// Message of the decoder.
-        detail: String,
-    },
-    /// A valid file with an unsupported feature.
-    #[error("{} uses {feature}, which is not supported: {remedy}", path.display())]
-    Unsupported {
-        /// The file.
-        path: PathBuf,
-        /// The unsupported feature, in words.
-        feature: String,
-        /// Remedy, as an instruction to the user.
-        remedy: &'static str,
-    },
-    /// Larger than the largest size.
-    #[error(
-        "{} is {width} × {height}, larger than the {} × {} that are read: scale it down",
-        path.display(), super::SOURCE_MAX_WIDTH, super::SOURCE_MAX_HEIGHT
-    )]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Width in pixels.
-        width: u64,
-        /// Height in pixels.
-        height: u64,
-    },
-    /// Loading was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
+    /// A file, which is not computed but read.
+    #[error("the environment {0} is a file: read it")]
+    IsFile(String),
     /// No pixels.
     #[error("the environment {name} has no pixels: it needs at least one; save it again at its full size")]
     Empty {

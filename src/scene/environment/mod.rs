@@ -25,10 +25,11 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::memory::{in_large_pages, prefetch};
+use crate::scene::path_text::path_of_text;
 
 pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};
-pub use error::EnvironmentError;
+pub use error::MapError;
 pub use procedural::{
     SkyParams, furnace, overcast, portrait, product, rim, sky, studio, sun_direction, sun_irradiance, warehouse,
 };
@@ -159,8 +160,8 @@ impl EnvironmentSource {
     ///
     /// # Errors
     ///
-    /// One line, if it cannot be computed; [`EnvironmentError::NoName`] for a file.
-    pub fn computed(&self) -> Result<Environment, EnvironmentError> {
+    /// One line, if it cannot be computed; [`MapError::IsFile`] for a file.
+    pub fn computed(&self) -> Result<Environment, MapError> {
         match self {
             Self::Product => product(),
             Self::Studio => studio(),
@@ -170,19 +171,19 @@ impl EnvironmentSource {
             Self::Overcast => overcast(),
             Self::Sky => sky(&SkyParams::default()),
             Self::Furnace => furnace(),
-            Self::File(_) => Err(EnvironmentError::NoName),
+            Self::File(path) => Err(MapError::IsFile(path.display().to_string())),
         }
     }
 }
 
 impl FromStr for EnvironmentSource {
-    type Err = EnvironmentError;
-    fn from_str(text: &str) -> Result<Self, EnvironmentError> {
+    type Err = MapError;
+    fn from_str(text: &str) -> Result<Self, MapError> {
         if text.is_empty() {
-            return Err(EnvironmentError::NoName);
+            return Err(MapError::NoName);
         }
         let built_in = BUILT_IN.iter().find(|built_in| built_in.name == text);
-        Ok(built_in.map_or_else(|| Self::File(PathBuf::from(text)), |found| found.source.clone()))
+        Ok(built_in.map_or_else(|| Self::File(path_of_text(text)), |found| found.source.clone()))
     }
 }
 
@@ -232,16 +233,16 @@ impl Environment {
     /// Builds the sampling tables over `texels` (`width` × `height`, finite and not negative).
     ///
     /// # Errors
-    /// [`EnvironmentError::Empty`] if there are no texels or not `width` × `height` of them.
+    /// [`MapError::Empty`] if there are no texels or not `width` × `height` of them.
     pub fn from_texels(
         name: impl Into<String>,
         width: u32,
         height: u32,
         texels: Vec<[f32; 4]>,
-    ) -> Result<Self, EnvironmentError> {
+    ) -> Result<Self, MapError> {
         let name = name.into();
         if texels.is_empty() || texels.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(EnvironmentError::Empty { name });
+            return Err(MapError::Empty { name });
         }
         let map = Map {
             width,

@@ -548,7 +548,7 @@ fn fitting(
     for ((picture, original), whole) in fitted.iter().zip(pictures).zip(whole) {
         if words(picture) < whole {
             warnings.push(format!(
-                "{}: the picture {} is used at {} × {} instead of {} × {}: together the pictures are more than {} \
+                "{}: the texture {} is used at {} × {} instead of {} × {}: together the textures are more than {} \
                  MiB; export smaller ones to choose which",
                 model.name,
                 picture.name,

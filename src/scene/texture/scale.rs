@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::vector::Vec3;
 use crate::scene::model::Texture;
 
 /// A channel of a texel, in [0, 1]; `place` counts channels from the first texel on.
@@ -14,60 +14,189 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
     }
 }
 
-/// A map of half the width and height by box filtering; colours are filtered linearly.
-pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
-    let (width, height) = ((picture.width / 2).max(1), (picture.height / 2).max(1));
-    let decode = |[r, g, b, a]: [f64; 4]| {
-        let color = vec3(r, g, b);
-        (if is_color { linear_from_srgb(color) } else { color }, a)
-    };
-    let span = |i: u32, from: u32, to: u32| (i * from / to)..((i + 1) * from / to).max(i * from / to + 1);
-    let mut rgba8 = Vec::with_capacity((4 * width * height) as usize);
-    let mut rgba16 = Vec::new();
-    for y in 0..height {
-        for x in 0..width {
-            if let Some(one) = same(picture, span(y, picture.height, height), span(x, picture.width, width)) {
-                rgba8.extend_from_slice(&picture.rgba8[4 * one..4 * one + 4]);
-                rgba16.extend_from_slice(picture.rgba16.get(4 * one..4 * one + 4).unwrap_or_default());
-                continue;
-            }
-            let (mut color, mut alpha, mut count) = (Vec3::zero(), 0.0, 0.0);
-            for row in span(y, picture.height, height) {
-                for column in span(x, picture.width, width) {
-                    let place = 4 * (row * picture.width + column) as usize;
-                    let texel = [0, 1, 2, 3].map(|channel| fraction(picture, place + channel));
-                    let (c, a) = decode(texel);
-                    (color, alpha, count) = (color + c, alpha + a, count + 1.0);
-                }
-            }
-            let mean = color / count;
-            let [r, g, b] = if is_color { srgb_from_linear(mean) } else { mean }.to_f64();
-            let code = |value: f64, most: f64| (most * value).round().clamp(0.0, most);
-            let rgba = [r, g, b, alpha / count];
-            rgba8.extend(rgba.map(|value| code(value, 255.0) as u8));
-            if !picture.rgba16.is_empty() {
-                rgba16.extend(rgba.map(|value| code(value, 65535.0) as u16));
-            }
+/// A number of a channel as texture maps store it.
+pub trait Code: Copy + PartialEq {
+    /// The largest number.
+    const MOST: usize;
+    /// The number as an index.
+    fn index(self) -> usize;
+    /// The number nearest to a fraction in [0, 1].
+    fn nearest(fraction: f64) -> Self;
+}
+
+impl Code for u8 {
+    const MOST: usize = 255;
+    fn index(self) -> usize {
+        self.into()
+    }
+    fn nearest(fraction: f64) -> Self {
+        (255.0 * fraction).round().clamp(0.0, 255.0) as Self
+    }
+}
+
+impl Code for u16 {
+    const MOST: usize = 65535;
+    fn index(self) -> usize {
+        self.into()
+    }
+    fn nearest(fraction: f64) -> Self {
+        (65535.0 * fraction).round().clamp(0.0, 65535.0) as Self
+    }
+}
+
+/// Conversion between codes and the values whose mean is taken: linear for colours.
+struct Scale<C> {
+    /// Value of each code.
+    values: Vec<f64>,
+    /// Code of the darkest value in each of equal intervals; empty if values are proportional to codes.
+    starts: Vec<C>,
+    /// Smallest value of each code but the first.
+    limits: Vec<f64>,
+}
+
+impl<C: Code> Scale<C> {
+    fn new(is_color: bool) -> Self {
+        let fraction = |code: usize| code as f64 / C::MOST as f64;
+        if !is_color {
+            return Self {
+                values: (0..=C::MOST).map(fraction).collect(),
+                starts: Vec::new(),
+                limits: Vec::new(),
+            };
+        }
+        let linear = |fraction: f64| linear_from_srgb(Vec3::<f64>::splat(fraction)).x;
+        let intervals = 16 * (C::MOST + 1);
+        let start = |place: usize| {
+            let value = place as f64 / intervals as f64;
+            C::nearest(srgb_from_linear(Vec3::<f64>::splat(value)).x)
+        };
+        Self {
+            values: (0..=C::MOST).map(|code| linear(fraction(code))).collect(),
+            starts: (0..=intervals).map(start).collect(),
+            limits: (0..C::MOST)
+                .map(|code| linear((code as f64 + 0.5) / C::MOST as f64))
+                .collect(),
         }
     }
+
+    fn value(&self, code: C) -> f64 {
+        self.values[code.index()]
+    }
+
+    /// The code nearest to a value in [0, 1].
+    fn code(&self, value: f64) -> C {
+        let Some(last) = self.starts.len().checked_sub(1) else {
+            return C::nearest(value);
+        };
+        let start = self.starts[((last as f64 * value) as usize).min(last)].index();
+        let above = self.limits[start..].iter().take_while(|limit| value >= **limit).count();
+        C::nearest((start + above) as f64 / C::MOST as f64)
+    }
+}
+
+/// Reduction of a map to half its width and height, row by row, by box filtering; colours are filtered linearly.
+pub struct Halving<C> {
+    from: [usize; 2],
+    to: [usize; 2],
+    colors: Scale<C>,
+    alphas: Scale<C>,
+    /// Rows of the next reduced row, as far as they are there.
+    rows: Vec<[C; 4]>,
+    /// Number of reduced rows.
+    made: usize,
+}
+
+impl<C: Code> Halving<C> {
+    /// The reduction of a map of width and height `from`.
+    pub fn new(from: [u32; 2], is_color: bool) -> Self {
+        Self {
+            from: from.map(|side| side as usize),
+            to: half(from).map(|side| side as usize),
+            colors: Scale::new(is_color),
+            alphas: Scale::new(false),
+            rows: Vec::new(),
+            made: 0,
+        }
+    }
+
+    /// Takes the next row; the reduced row that it completes, if any.
+    pub fn put(&mut self, row: &[[C; 4]]) -> Option<Vec<[C; 4]>> {
+        self.rows.extend_from_slice(row);
+        let [width, height] = self.from;
+        if self.rows.len() < width * span(self.made, height, self.to[1]).len() {
+            return None;
+        }
+        let reduced = (0..self.to[0]).map(|x| self.mean(span(x, width, self.to[0]))).collect();
+        self.rows.clear();
+        self.made += 1;
+        Some(reduced)
+    }
+
+    /// Mean of some columns of the collected rows.
+    fn mean(&self, columns: Range<usize>) -> [C; 4] {
+        let texels = || {
+            self.rows
+                .chunks_exact(self.from[0])
+                .flat_map(|row| &row[columns.clone()])
+        };
+        let first = self.rows[columns.start];
+        // Large maps of little content mostly have equal texels.
+        if texels().all(|texel| *texel == first) {
+            return first;
+        }
+        let (mut sums, mut count) = ([0.0; 4], 0.0);
+        for [r, g, b, a] in texels() {
+            let color = [*r, *g, *b].map(|code| self.colors.value(code));
+            sums.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
+            sums[3] += self.alphas.value(*a);
+            count += 1.0;
+        }
+        let [r, g, b, a] = sums.map(|sum| sum / count);
+        let [r, g, b] = [r, g, b].map(|value| self.colors.code(value));
+        [r, g, b, self.alphas.code(a)]
+    }
+}
+
+/// Half a width and height.
+pub fn half(size: [u32; 2]) -> [u32; 2] {
+    size.map(|side| (side / 2).max(1))
+}
+
+/// The part of `from` texels that the texel `place` of `to` covers.
+fn span(place: usize, from: usize, to: usize) -> Range<usize> {
+    place * from / to..(place + 1) * from / to
+}
+
+/// The code of 8 bits nearest to one of 16.
+pub fn nearest_of_16(code: u16) -> u8 {
+    ((u32::from(code) * 255 + 32767) / 65535) as u8
+}
+
+/// A map of half the width and height.
+pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
+    let size = [picture.width, picture.height];
+    let [width, height] = half(size);
+    let rgba16 = halved_codes(&picture.rgba16, size, is_color);
     Texture {
         name: picture.name.clone(),
         width,
         height,
-        rgba8,
+        rgba8: match rgba16.is_empty() {
+            true => halved_codes(&picture.rgba8, size, is_color),
+            false => rgba16.iter().copied().map(nearest_of_16).collect(),
+        },
         rgba16,
     }
 }
 
-/// The common value of some texels, if they are equal: large maps of little content mostly are.
-fn same(picture: &Texture, mut rows: Range<u32>, columns: Range<u32>) -> Option<usize> {
-    let place = |row: u32, column: u32| (row * picture.width + column) as usize;
-    let texels8 = picture.rgba8.as_chunks::<4>().0;
-    let texels16 = picture.rgba16.as_chunks::<4>().0;
-    let first = place(rows.start, columns.start);
-    let is_same = |other: usize| texels8[other] == texels8[first] && texels16.get(other) == texels16.get(first);
-    let all = rows.all(|row| columns.clone().all(|column| is_same(place(row, column))));
-    all.then_some(first)
+fn halved_codes<C: Code>(codes: &[C], size: [u32; 2], is_color: bool) -> Vec<C> {
+    if codes.is_empty() {
+        return Vec::new();
+    }
+    let mut halving = Halving::new(size, is_color);
+    let rows = codes.as_chunks::<4>().0.chunks_exact(size[0] as usize);
+    let texels: Vec<[C; 4]> = rows.filter_map(|row| halving.put(row)).flatten().collect();
+    texels.into_flattened()
 }
 
 /// A map halved until its sides are at most `side_max`, and the original size if it was larger.
@@ -105,5 +234,36 @@ mod tests {
                 assert_eq!(other[..3], texel[..3], "{is_color}");
             }
         }
+    }
+    /// The tables give what the formulas give, at every code and between.
+    #[test]
+    fn means_of_colors_are_rounded_in_srgb() {
+        let (eight, sixteen) = (Scale::<u8>::new(true), Scale::<u16>::new(true));
+        for step in 0..=100_000 {
+            let value = f64::from(step) / 100_000.0;
+            let exact = srgb_from_linear(Vec3::<f64>::splat(value)).x;
+            assert!(
+                (255.0 * exact - f64::from(eight.code(value))).abs() < 0.5 + 1e-6,
+                "{value}"
+            );
+            assert!(
+                (65535.0 * exact - f64::from(sixteen.code(value))).abs() < 0.5 + 1e-3,
+                "{value}"
+            );
+        }
+        for code in 0..=u8::MAX {
+            assert_eq!(eight.code(eight.value(code)), code);
+        }
+        // Sides that are odd: every row and column counts once.
+        let picture = Texture {
+            name: String::new(),
+            width: 3,
+            height: 5,
+            rgba8: (0..15).flat_map(|place| [10 * place, 0, 0, 255]).collect(),
+            rgba16: Vec::new(),
+        };
+        let reduced = halved(&picture, false);
+        assert_eq!([reduced.width, reduced.height], [1, 2]);
+        assert_eq!([reduced.rgba8[0], reduced.rgba8[4]], [25, 100]);
     }
 }

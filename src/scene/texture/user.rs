@@ -10,7 +10,7 @@ named! {
     /// Material parameter of a texture map.
     TextureTarget {
         BaseColor, "base-color", "Base colour", "Multiplies the base colour.";
-        Roughness, "roughness", "Roughness", "Multiplies the roughness; its values are meant for GGX, as those of most pictures are.";
+        Roughness, "roughness", "Roughness", "Multiplies the roughness; its values are meant for GGX, as those of most textures are.";
         Metalness, "metalness", "Metalness", "Multiplies the metalness.";
         Normal, "normal", "Normal", "Bends the normal.";
         Opacity, "opacity", "Opacity", "Multiplies the opacity.";
@@ -24,7 +24,7 @@ named! {
     #[derive(Default)]
     TextureChannel {
         #[default]
-        Auto, "auto", "Automatic", "Alpha for an opacity, where the picture has one; green for the roughness and blue for the metalness of a picture that is named for several; else red.";
+        Auto, "auto", "Automatic", "Alpha for an opacity, if the texture has one; green for the roughness and blue for the metalness of a texture named for several; else red.";
         Red, "red", "Red", "The red channel.";
         Green, "green", "Green", "The green channel.";
         Blue, "blue", "Blue", "The blue channel.";
@@ -51,7 +51,7 @@ named! {
         Auto, "auto", "Automatic", "By the model's texture coordinates; as a box where it has none.";
         First, "first", "Coordinates", "By the model's first set of texture coordinates.";
         Second, "second", "Second coordinates", "By the model's second set of texture coordinates.";
-        Box, "box", "Box", "From six sides, each part of the surface from the side that it faces; at a scale of 1 the picture is as large as the model.";
+        Box, "box", "Box", "From six sides, each part of the surface from the side that it faces; at a scale of 1 the texture is as large as the model.";
     }
 }
 

@@ -71,7 +71,7 @@ fn call(surface: &Surface, exact: &str) -> String {
     let rgba = |[r, g, b]: [f32; 3]| format!("({r}, {g}, {b}, 1.0)");
     let mut base = surface.base_color;
     if surface.transmission_weight >= 0.5 && surface.metalness < 0.5 {
-        // What is refracted has the base color there, once a passage.
+        // What is refracted has the base colour there, once a passage.
         base = surface.transmission_color.map(f32::sqrt);
     }
     let inputs = [

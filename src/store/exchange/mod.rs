@@ -30,6 +30,7 @@ use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::import::ModelError;
 use crate::import::endings::ending;
 use crate::scene::Loading;
+use crate::scene::path_text::path_of_text;
 
 pub use self::materialx::{SURFACES, SurfaceKind};
 pub use self::snippet::Language;
@@ -234,7 +235,7 @@ pub enum ExchangeError {
         /// Their names.
         names: String,
     },
-    /// A material that cannot be told in this format.
+    /// A material that this format cannot hold.
     #[error("{}: {reason}", path.display())]
     Unsuitable {
         /// The file.
@@ -381,7 +382,7 @@ pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> 
 /// # Errors
 /// What is wrong with the file, or what the names are.
 pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialSettings>, ExchangeError> {
-    let path = Path::new(name_or_path);
+    let path = &path_of_text(name_or_path);
     if holds_materials(path)
         && let Opened::Material(loaded) = open(path, options)?
     {
@@ -425,7 +426,7 @@ impl Prepared {
     }
 }
 
-/// Makes the file of a subject and tells what becomes of it. `input` is only named in the report.
+/// Makes the file of a subject and reports what becomes of it. `input` is only named in the report.
 ///
 /// # Errors
 /// Why it has no place there.

@@ -8,7 +8,7 @@ use crate::store::opened::{self, Opened};
 use crate::store::preset::material_text;
 use crate::store::project::own_text;
 
-/// Materials, projects and pictures with a document inside.
+/// Materials, projects and images with a document inside.
 pub struct Native;
 
 impl Format for Native {

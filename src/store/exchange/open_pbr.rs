@@ -9,7 +9,7 @@ pub(super) const NITS: f32 = 1000.0;
 pub(super) enum Value {
     /// A number.
     Number(f32),
-    /// A color, linear.
+    /// A colour, linear.
     Color([f32; 3]),
 }
 

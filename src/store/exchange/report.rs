@@ -1,11 +1,12 @@
 //! What became of a material on its way into another program's format, as a value and in words.
 
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Serialize;
 
 use crate::document::MaterialSettings;
+use crate::scene::path_text;
 
 /// What became of a part of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -63,7 +64,7 @@ impl Residual {
         }
     }
 
-    /// The largest difference of a reflectance, over angles and colors.
+    /// The largest difference of a reflectance, over angles and colours.
     pub fn reflectance(residual: f64) -> Self {
         Self {
             residual,
@@ -129,7 +130,7 @@ pub struct MaterialReport {
     /// The material, and the one that the file shows; none where it shows no material.
     #[serde(skip)]
     pub looks: Option<Box<[MaterialSettings; 2]>>,
-    /// How far pictures of a ball with the one and the other are apart, where they were rendered: the root mean square of
+    /// How far images of a ball with the one and the other are apart, where they were rendered: the root mean square of
     /// the difference over the mean brightness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<f64>,
@@ -166,17 +167,12 @@ pub struct Report {
     /// The file or the shipped material that was read.
     pub input: String,
     /// The file that was written.
-    #[serde(serialize_with = "as_text")]
+    #[serde(serialize_with = "path_text::serialize")]
     pub output: PathBuf,
     /// The name of its format.
     pub format: &'static str,
     /// What became of the materials.
     pub materials: Vec<MaterialReport>,
-}
-
-/// A name of a file as JSON can have it: what is no Unicode is replaced.
-fn as_text<S: serde::Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(&path.to_string_lossy())
 }
 
 impl Report {

@@ -11,7 +11,7 @@ use crate::optics::fresnel::{
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::vector::Vec3;
 
-/// A material as other programs know it. Colors are linear Rec. 709 in [0, 1].
+/// A material as other programs know it. Colours are linear Rec. 709 in [0, 1].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Name in lists.
@@ -82,17 +82,17 @@ pub struct Takes {
     pub ior: bool,
     /// The widths of a stretched highlight that it shows, as GGX's α, the longer one first.
     pub widths: fn(&Surface) -> [f32; 2],
-    /// A coat; of its index and color where `coat_details` says so.
+    /// A coat; of its index and colour where `coat_details` says so.
     pub coat: bool,
-    /// The coat's index of refraction and color.
+    /// The coat's index of refraction and colour.
     pub coat_details: bool,
     /// Refraction.
     pub transmission: bool,
     /// Absorption inside.
     pub absorption: bool,
-    /// Pictures that vary a parameter over the surface.
+    /// Images that vary a parameter over the surface.
     pub textures: bool,
-    /// The user's own pictures, of which the format tells more itself.
+    /// The user's own images, of which the format reports more itself.
     pub own_textures: bool,
 }
 
@@ -368,7 +368,7 @@ impl Surface {
         }
     }
 
-    /// The brightest channel of the emission and the color that makes the emission of it; white where there is none.
+    /// The brightest channel of the emission and the colour that makes the emission of it; white where there is none.
     pub fn strength_and_color(&self) -> (f32, [f32; 3]) {
         let brightest = self.emission.into_iter().fold(0.0_f32, f32::max);
         let color = self.emission.map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });

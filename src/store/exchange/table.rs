@@ -25,7 +25,7 @@ impl Format for Table {
             });
         }
         let mut text = format!(
-            "# {}\n# The specular lobe alone, without Fresnel's factor and colors; value has the cosine in it, both are per \
+            "# {}\n# The specular lobe alone, without Fresnel's factor and colours; value has the cosine in it, both are per \
              steradian.\nview_deg,light_deg,light_azimuth_deg,value,density\n",
             carried::comment(material)
         );

@@ -26,16 +26,16 @@ impl Panel for CameraPanel {
         widgets::group(ui, "Lens", |ui| self.photographic.show(ui, desk));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
         widgets::group(ui, "View", |ui| view(ui, desk));
-        widgets::group(ui, "Picture", |ui| picture(ui, desk));
+        widgets::group(ui, "Image", |ui| picture(ui, desk));
         widgets::group(ui, "Accuracy", |ui| desk.settings(ui, "Accuracy"));
         widgets::group(ui, "Sampling", |ui| desk.settings(ui, "Sampling"));
     }
 }
 
-/// How radiance becomes a picture, and the table of colours that it goes through last.
+/// How radiance becomes an image, and the table of colours that it goes through last.
 fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.settings(ui, "View");
-    let help = "A table of colours (.cube) that the picture goes through last: a look. Pictures of light (.exr, .hdr) stay as they are.";
+    let help = "A look-up table of colours (.cube), applied last. Linear images (.exr, .hdr) stay as they are.";
     let file = desk.document.view.lut.clone();
     let name = Name::new("Table of colours", "LUT", help);
     widgets::row(ui, name, |ui| {
@@ -50,7 +50,7 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
             ui,
             Icon::Close,
             "Remove the table of colours",
-            "Shows the picture without it",
+            "Shows the image without it",
         )
         .clicked()
         {
@@ -174,7 +174,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 /// What the viewport renders and what is saved, and when rendering ends.
 fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let name = Name::new("Picture size", "Size", "What the viewport renders, and what is saved.");
+    let name = Name::new("Image size", "Size", "What the viewport renders, and what is saved.");
     let response = widgets::row(ui, name, |ui| {
         widgets::choice(ui, "size", &mut desk.shared.resolution, &RESOLUTIONS)
     });
@@ -188,5 +188,5 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
     });
     widgets::comes_and_goes(ui, |ui| region::show(ui, desk));
-    desk.settings(ui, "Picture");
+    desk.settings(ui, "Image");
 }

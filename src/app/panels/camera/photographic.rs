@@ -16,7 +16,7 @@ const SENSORS: [(f64, &str, &str); 5] = [
 ];
 /// Millimetres in a unit of the scene, which glTF says is a metre.
 const MM_PER_UNIT: f64 = 1000.0;
-/// Width to height of the pictures to choose from.
+/// Width to height of the images to choose from.
 const ASPECTS: [([u32; 2], &str); 7] = [
     ([1, 1], "1 : 1"),
     ([4, 3], "4 : 3"),
@@ -57,7 +57,7 @@ impl Photographic {
         widgets::comes_and_goes(ui, |ui| self.f_number(ui, desk));
         let frames = ui.checkbox(&mut desk.shared.shows_safe_frames, "Safe frames");
         frames.on_hover_text(
-            "Marks what every screen shows: actions within 93 %, titles within 90 % of the picture (EBU R 95).",
+            "Marks what every screen shows: actions within 93 %, titles within 90 % of the image (EBU R 95).",
         );
     }
 
@@ -127,7 +127,7 @@ fn fov_deg(focal_length_mm: f64, sensor_height_mm: f64) -> f64 {
     2.0 * (0.5 * sensor_height_mm / focal_length_mm).atan().to_degrees()
 }
 
-/// The picture's width to height, where its size is the document's: a choice changes the height.
+/// The image's width to height, where its size is the document's: a choice changes the height.
 pub(super) fn aspect(ui: &mut Ui, desk: &mut Desk<'_>) {
     let render = &desk.document.render;
     let height = |[across, down]: [u32; 2]| {

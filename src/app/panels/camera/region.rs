@@ -1,13 +1,13 @@
-//! The part of the picture that is rendered, by numbers.
+//! The part of the image that is rendered, by numbers.
 
 use egui::Ui;
 
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 
-/// What the switch begins with: the middle of the picture.
+/// What the switch begins with: the middle of the image.
 const AT_FIRST: [f64; 4] = [0.25, 0.25, 0.75, 0.75];
-/// The least width and height, shares of the picture.
+/// The least width and height, shares of the image.
 const LEAST: f64 = 0.01;
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -40,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         let name = Name::new(
             full,
             label,
-            "Share of the picture's width or height, from its left or upper edge.",
+            "Share of the image's width or height, from its left or upper edge.",
         );
         if widgets::row(ui, name, |ui| widgets::number(ui, &mut percent, &style)).changed {
             *side = (0.01 * percent).clamp(0.0, 1.0);

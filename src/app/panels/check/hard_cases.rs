@@ -1,4 +1,4 @@
-//! The hard cases, a line each with its verdict and, where it renders one, its picture.
+//! The hard cases, a line each with its verdict and, where it renders one, its image.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,7 +16,7 @@ use crate::render::display::display;
 use crate::render::hard::{HardError, HardOptions, HardRow, Stage, catalogue};
 use crate::render::priority::work_apart;
 
-/// Side of a case's picture in points.
+/// Side of a case's image in points.
 const PICTURE_SIDE: f32 = 40.0;
 
 /// How a run stands: the rows so far, and what is being run or went wrong.
@@ -46,7 +46,7 @@ pub(super) struct HardState {
     stop: Arc<AtomicBool>,
     /// What a run that was stopped had found.
     stopped: Option<Standing>,
-    /// Pictures by case, as textures of this run.
+    /// Images by case, as textures of this run.
     textures: Vec<(&'static str, TextureHandle)>,
 }
 

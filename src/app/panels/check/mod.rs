@@ -1,5 +1,6 @@
 //! The proof on this machine: what `glossmith check` does, as a table.
 
+mod benchmark;
 mod hard_cases;
 
 use std::sync::Arc;
@@ -7,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use egui::Ui;
 
+use benchmark::BenchmarkState;
 use hard_cases::HardState;
 
 use super::Panel;
@@ -27,13 +29,14 @@ enum Standing {
     Failed(String),
 }
 
-/// The checks and the hard cases.
+/// The checks, the hard cases and the benchmark.
 #[derive(Default)]
 pub(super) struct CheckPanel {
     worker: Option<Background<CheckOptions, Standing>>,
     stop: Arc<AtomicBool>,
     thorough: bool,
     hard: HardState,
+    benchmark: BenchmarkState,
 }
 
 impl Drop for CheckPanel {
@@ -48,7 +51,7 @@ impl Panel for CheckPanel {
         let state = self;
         widgets::note(
             ui,
-            "Proves on this machine that the picture is right: samples against densities, energy, engines and strategies \
+            "Proves on this machine that the image is right: samples against densities, energy, engines and strategies \
              against each other. The viewport goes on meanwhile.",
         );
         if state.worker.is_none() {
@@ -90,6 +93,12 @@ impl Panel for CheckPanel {
         });
         ui.separator();
         hard_cases::show(ui, &mut state.hard, engine);
+        ui.separator();
+        benchmark::show(ui, &mut state.benchmark, desk);
+    }
+
+    fn tick(&mut self, desk: &mut Desk<'_>) {
+        self.benchmark.tick(desk);
     }
 }
 

@@ -11,7 +11,7 @@ use crate::app::kit::words::about;
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
-/// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
+/// Longest side of the image that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;
 
 /// What the panel remembers.
@@ -24,8 +24,8 @@ pub(super) struct LedgerState {
 
 impl LedgerState {
     /// Measures when the panel is shown next.
-    pub(super) fn wish(&mut self) {
-        self.worker.wish();
+    pub(super) fn request(&mut self) {
+        self.worker.request();
     }
 
     /// See [`StudyWorker::tick`].
@@ -41,7 +41,7 @@ impl LedgerState {
 
 /// The button that measures, and how far it is.
 pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState) {
-    let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
+    let help = "What each effect and setting costs in time, and does to noise and image: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, slice } = state;
     let options = |desk: &Desk<'_>| {
@@ -71,7 +71,7 @@ pub(super) fn show(ui: &mut Ui, found: &Ledger) {
 fn line(ui: &mut Ui, entry: &Entry) {
     let help = format!(
         "{:.3} ms of {:.3} ms a sample of every pixel ({:.1} % of the frame); half of the turns lie between {:.3} and \
-         {:.3} ms.\nNoise: {:+.0} %. Picture: {:.3} % ({:.3} to {:.3}).",
+         {:.3} ms.\nNoise: {:+.0} %. Image: {:.3} % ({:.3} to {:.3}).",
         entry.ms,
         entry.ms_with,
         100.0 * entry.share_of_frame,

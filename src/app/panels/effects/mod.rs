@@ -73,7 +73,7 @@ impl Panel for EffectsPanel {
 
     fn hear(&mut self, command: Command) {
         if command == Command::Measure {
-            self.ledger.wish();
+            self.ledger.request();
         }
     }
 }

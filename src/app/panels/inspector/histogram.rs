@@ -1,4 +1,4 @@
-//! How many pixels of the picture have which brightness on the screen.
+//! How many pixels of the image have which brightness on the screen.
 
 use egui::{Color32, Rect, Sense, Ui, pos2, vec2};
 
@@ -9,12 +9,12 @@ use crate::render::worker::Picture;
 
 /// Columns of the histogram.
 const BINS: usize = 64;
-/// Roughly how many pixels of a large picture are counted.
+/// Roughly how many pixels of a large image are counted.
 const PIXELS_MAX: usize = 1 << 18;
 /// Height of the chart, points.
 const HEIGHT: f32 = 90.0;
 
-/// The counts of the picture that is shown.
+/// The counts of the image that is shown.
 #[derive(Default)]
 pub(super) struct Brightness {
     serial: Option<u64>,
@@ -40,7 +40,7 @@ impl Default for Counts {
 }
 
 impl Counts {
-    /// The histogram of displayed bytes; of large pictures only every n-th pixel is counted.
+    /// The histogram of displayed bytes; of large images only every n-th pixel is counted.
     fn of(rgba: &[u8]) -> Self {
         let stride = (rgba.len() / 4).div_ceil(PIXELS_MAX).max(1);
         let mut counts = [[0_u32; BINS]; 3];
@@ -64,7 +64,7 @@ impl Counts {
 }
 
 impl Brightness {
-    /// Shows the picture's own, unless the viewport shows a map of it.
+    /// Shows the image's own, unless the viewport shows a map of it.
     pub(super) fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         if picture.map.is_none() && self.serial != Some(picture.serial) {
             self.counts = Counts::of(&picture.rgba);
@@ -72,7 +72,7 @@ impl Brightness {
         }
         let size = vec2(ui.available_width(), HEIGHT);
         let (place, response) = ui.allocate_exact_size(size, Sense::hover());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, "Histogram of the picture"));
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, "Histogram of the image"));
         ui.painter().rect_filled(place, 3.0, ui.visuals().extreme_bg_color);
         for (columns, color) in self.counts.columns.iter().zip(colors(ui.visuals().dark_mode)) {
             self.columns(ui, place, columns, color);

@@ -1,4 +1,4 @@
-//! The inspector: what is known of a pixel, and how bright the picture is.
+//! The inspector: what is known of a pixel, and how bright the image is.
 
 mod histogram;
 
@@ -34,7 +34,7 @@ impl Panel for InspectorPanel {
         choose(ui, desk, &picture);
         widgets::comes_and_goes(ui, |ui| match desk.shared.look.pixel([picture.width, picture.height]) {
             Some(pixel) => values(ui, desk, &picture, pixel),
-            None => widgets::note(ui, "Move the pointer over the picture. I stays at a pixel."),
+            None => widgets::note(ui, "Move the pointer over the image. I stays at a pixel."),
         });
         widgets::group(ui, "Histogram", |ui| self.brightness.show(ui, &picture));
     }

@@ -10,7 +10,7 @@ use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
 /// What the buttons beside a light's name ask for.
-enum Wish {
+enum Asked {
     Remove,
     Solo,
 }
@@ -45,11 +45,11 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let soloed = soloed(&lights);
     // Of several the chosen one has its rows: all together would be a scroll of a metre.
     let is_alone = lights.len() == 1;
-    let mut wished = None;
+    let mut asked = None;
     for (index, light) in lights.iter_mut().enumerate() {
         let title = format!("Area light {}", index + 1);
-        let wish = header(ui, desk, index, &title, light, soloed == Some(index));
-        wished = wish.map(|wish| (wish, index)).or(wished);
+        let now = header(ui, desk, index, &title, light, soloed == Some(index));
+        asked = now.map(|now| (now, index)).or(asked);
         let is_open = is_alone || desk.shared.selection.light == Some(index);
         widgets::comes_and_goes(ui, |ui| {
             if is_open {
@@ -60,15 +60,15 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         });
     }
-    match wished {
-        Some((Wish::Solo, index)) => {
+    match asked {
+        Some((Asked::Solo, index)) => {
             let is_over = soloed == Some(index);
             for (other, light) in lights.iter_mut().enumerate() {
                 light.is_muted = !is_over && other != index;
             }
             desk.edits.note("Solo area light", "");
         }
-        Some((Wish::Remove, index)) => {
+        Some((Asked::Remove, index)) => {
             lights.remove(index);
             // What another light was to be picked for would become its neighbour's.
             desk.shared.picks = None;
@@ -116,13 +116,13 @@ fn header(
     title: &str,
     light: &mut AreaLight,
     is_soloed: bool,
-) -> Option<Wish> {
+) -> Option<Asked> {
     let of_light = title.to_lowercase();
     let button = |ui: &mut Ui, word: &str, is_on: bool, help: &str| {
         let button = ui.add(Button::new(word).selected(is_on)).on_hover_text(help);
         button.accessible_name(format!("{word} {of_light}")).clicked()
     };
-    let mut wish = None;
+    let mut asked = None;
     ui.horizontal(|ui| {
         let chosen = &mut desk.shared.selection.light;
         let is_chosen = *chosen == Some(index);
@@ -135,7 +135,7 @@ fn header(
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = format!("Remove {}", title.to_lowercase());
             if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
-                wish = Some(Wish::Remove);
+                asked = Some(Asked::Remove);
             }
             if button(
                 ui,
@@ -143,7 +143,7 @@ fn header(
                 is_soloed,
                 "Mutes all other area lights; again: lets all shine.",
             ) {
-                wish = Some(Wish::Solo);
+                asked = Some(Asked::Solo);
             }
             let help = "Mute: light off and hidden.";
             if button(ui, "Mute", light.is_muted, help) {
@@ -152,7 +152,7 @@ fn header(
             }
         });
     });
-    wish
+    asked
 }
 
 fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {

@@ -15,7 +15,7 @@ use crate::app::services::environments::environment_label;
 use crate::document::{Background, GroundKind};
 use crate::scene::environment::{BUILT_IN, EnvironmentSource};
 
-/// Size of an environment's picture in the list, points.
+/// Size of an environment's image in the list, points.
 const PICTURE: egui::Vec2 = vec2(48.0, 24.0);
 /// Most files in the list.
 const FILES_MAX: usize = 6;
@@ -112,12 +112,12 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
         (
             Kind::Transparent,
             "Transparent",
-            "Nothing: the picture's opacity is 0 there.",
+            "Nothing: the image's opacity is 0 there.",
         ),
         (
             Kind::Color,
             "Colour",
-            "One colour, whatever the light; reflections still show the environment.",
+            "One colour, in any light; reflections still show the environment.",
         ),
     ];
     let mut kind = match desk.document.lighting.background {

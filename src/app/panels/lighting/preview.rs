@@ -17,7 +17,7 @@ const SNAP_DEG: f32 = 15.0;
 /// Share of the pointer's way that counts with shift.
 const FINE: f32 = 0.1;
 
-/// The picture as it is shown, and what is done to it.
+/// The image as it is shown, and what is done to it.
 #[derive(Default)]
 pub(super) struct Preview {
     texture: Option<TextureHandle>,
@@ -90,7 +90,7 @@ impl Preview {
         }
     }
 
-    /// The small picture under the strength that the document has.
+    /// The thumbnail under the strength that the document has.
     fn upload(&mut self, ui: &Ui, scene: &Scene, desk: &Desk<'_>) {
         let lighting = &desk.document.lighting;
         let source = &scene.document.lighting.environment;
@@ -125,7 +125,7 @@ impl Preview {
             .as_ref()
             .is_some_and(|(of, ..)| *of == scene.document.lighting.environment);
         if let Some(texture) = self.texture.as_ref().filter(|_| is_current) {
-            // The map's left edge lies at the shift, and goes on at the left of the picture.
+            // The map's left edge lies at the shift, and goes on at the left of the image.
             let part = |from: f32, to: f32, u: f32| {
                 let x = |share: f32| place.left() + share * place.width();
                 let at = Rect::from_min_max(pos2(x(from), place.top()), pos2(x(to), place.bottom()));
@@ -137,7 +137,7 @@ impl Preview {
         }
         if let Some([u, v]) = scene.job.environment.brightest {
             let at = place.min + vec2((u + shift).rem_euclid(1.0), v) * place.size();
-            // Where the ring crosses the picture's side, its other half is on the other side.
+            // Where the ring crosses the image's side, its other half is on the other side.
             for turns in [-1.0, 0.0, 1.0] {
                 let at = at + vec2(turns * place.width(), 0.0);
                 painter.circle_stroke(at, RING, Stroke::new(3.5, Color32::from_black_alpha(150)));

@@ -22,7 +22,7 @@ use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, l
 use crate::plot::lobe_view_picture;
 use crate::render::background::Background;
 
-/// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.
+/// Images are drawn this much larger than they are shown on a screen of one pixel a point.
 const ZOOM: f64 = 1.5;
 
 /// Opacity of a figure while its successor is being computed.

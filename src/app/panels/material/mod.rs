@@ -79,7 +79,7 @@ impl Panel for MaterialPanel {
         name(ui, desk, &mut material);
         ui.add_space(theme::GAP);
         let mut groups: Vec<&'static str> = Vec::new();
-        // The switches of textures stand beside their pictures.
+        // The switches of textures stand beside their images.
         let is_shown = |parameter: &&Parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(&before);
         for parameter in PARAMETERS.iter() {
             if !groups.contains(&parameter.group) {

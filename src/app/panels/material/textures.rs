@@ -17,7 +17,7 @@ use crate::scene::{AlphaMode, Model, Texture};
 /// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;
 
-/// A picture that a target looks up.
+/// An image that a target looks up.
 enum Picture {
     /// One of the model's.
     OfModel(Arc<Model>, usize),
@@ -26,7 +26,7 @@ enum Picture {
 }
 
 /// What a row's buttons ask for.
-enum Wish {
+enum Asked {
     Choose,
     Remove,
 }
@@ -67,13 +67,13 @@ pub(super) fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
 pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
     let name = format!("Texture of the {}", target.label().to_lowercase());
     let help = format!(
-        "{}\nPuts a picture of your own here; or drop one on the window.",
+        "{}\nChoose an image of your own, or drop one on the window.",
         target.help()
     );
     icons::button(ui, Icon::Texture, &name, &help)
 }
 
-/// The texture's row, with how a user's own one is put on. One that is not there has its place beside the parameter, but
+/// The texture's row, with how a user's own one is mapped. One that is not there has its place beside the parameter, but
 /// for that of the normal, which has a row.
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
@@ -119,7 +119,7 @@ fn row(
     };
     let name = Name::new(&full, target.label(), help);
     let is_own = material.user_textures.get(target).is_some();
-    let mut wish = None;
+    let mut asked = None;
     let response = widgets::row(ui, name, |ui| {
         let mut is_on = material.uses_texture(target);
         let response = match (switch, picture) {
@@ -133,9 +133,9 @@ fn row(
             (_, None) => {
                 let response = ui
                     .button("Choose…")
-                    .on_hover_text("Puts a picture of your own here; or drop one on the window");
+                    .on_hover_text("Assigns a texture of your own; or drop one on the window");
                 if response.clicked() {
-                    wish = Some(Wish::Choose);
+                    asked = Some(Asked::Choose);
                 }
                 return response;
             }
@@ -143,7 +143,7 @@ fn row(
         if response.changed() {
             *material.uses_texture_mut(target) = is_on;
         }
-        menu(ui, &of_target, is_own, &mut wish);
+        menu(ui, &of_target, is_own, &mut asked);
         response
     });
     if response.changed
@@ -152,26 +152,26 @@ fn row(
         desk.edits
             .note(parameter.full_name(), format!("{}/{}", desk.shared.slot, parameter.key));
     }
-    match wish {
-        Some(Wish::Remove) => {
+    match asked {
+        Some(Asked::Remove) => {
             material.user_textures.set(target, None);
             desk.edits.note(format!("Remove the {of_target} texture"), "");
         }
-        Some(Wish::Choose) => desk.actions.push(Action::ChooseTexture(target)),
+        Some(Asked::Choose) => desk.actions.push(Action::ChooseTexture(target)),
         None => {}
     }
 }
 
-fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
+fn menu(ui: &mut Ui, of_target: &str, is_own: bool, asked: &mut Option<Asked>) {
     let name = format!("Menu of the {of_target} texture");
     let more = icons::button(ui, Icon::More, &name, "Replace, remove");
     egui::Popup::menu(&more).show(|ui| {
         if ui
             .button("Replace…")
-            .on_hover_text("Another picture of your own")
+            .on_hover_text("Another texture of your own")
             .clicked()
         {
-            *wish = Some(Wish::Choose);
+            *asked = Some(Asked::Choose);
         }
         let remove = ui.add_enabled(is_own, egui::Button::new("Remove"));
         let remove = remove.on_hover_text("The model's texture comes back, where it has one");
@@ -179,12 +179,12 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
             .on_disabled_hover_text("It is the model's; its switch leaves it out")
             .clicked()
         {
-            *wish = Some(Wish::Remove);
+            *asked = Some(Asked::Remove);
         }
     });
 }
 
-/// How a picture of the user's own lies on the material.
+/// How an image of the user's own lies on the material.
 fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let Some(mut texture) = material.user_textures.get(target).cloned() else {
         return;
@@ -290,7 +290,7 @@ impl Picture {
         shown.inner
     }
 
-    /// The picture, where it is there, and what its small copy is remembered by.
+    /// The image, where it is there, and what its small copy is remembered by.
     fn texels(&self) -> Option<(&Texture, egui::Id)> {
         match self {
             Self::OfModel(model, texture) => {
@@ -310,7 +310,7 @@ fn about(picture: &Texture) -> String {
     format!("{}\n{} × {}", picture.name, picture.width, picture.height)
 }
 
-/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
+/// An image reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
 fn small_copy(picture: &Texture) -> egui::ColorImage {
     let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
     let pixels = (0..width * height).map(|i| {

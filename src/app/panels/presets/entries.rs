@@ -1,4 +1,4 @@
-//! What the browser shows: each thing with its key, name and picture, in groups.
+//! What the browser shows: each thing with its key, name and image, in groups.
 
 use std::path::{Path, PathBuf};
 
@@ -120,7 +120,7 @@ impl Entry {
         has(&self.name) || has(group) || has(&kept.tags_of(&self.key))
     }
 
-    /// Width of its picture over the height.
+    /// Width of its image over the height.
     pub(super) fn aspect(&self) -> f32 {
         match self.kind {
             EntryKind::Environment(_) => 2.0,

@@ -46,7 +46,7 @@ impl Panel for PresetsPanel {
 }
 
 impl PresetsPanel {
-    /// Search, tags, and the size of the pictures.
+    /// Search, tags, and the size of the images.
     fn header(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         keys::search_field(ui, &mut self.search, "Search", "Search presets");
         ui.horizontal(|ui| {
@@ -55,8 +55,8 @@ impl PresetsPanel {
                 .show_value(false)
                 .step_by(4.0);
             ui.add(slider)
-                .on_hover_text("Size of the pictures; the smallest make a list.")
-                .accessible_name("Size of the pictures");
+                .on_hover_text("Size of the thumbnails; the smallest make a list.")
+                .accessible_name("Size of the thumbnails");
             let tags: Vec<String> = kept.all_tags().into_iter().map(str::to_owned).collect();
             if self.tag.as_ref().is_some_and(|tag| !tags.contains(tag)) {
                 self.tag = None;

@@ -124,7 +124,7 @@ impl ScenePanel {
     }
 }
 
-/// A line of the tree over the width that is left; a faint one is not shown in the picture. What kind of thing it is tells
+/// A line of the tree over the width that is left; a faint one is not shown in the image. What kind of thing it is shows
 /// it from others of its name.
 fn line(ui: &mut Ui, kind: &str, name: &str, is_selected: bool, is_faint: bool) -> Response {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);

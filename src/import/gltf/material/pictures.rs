@@ -11,9 +11,8 @@ use rayon::prelude::*;
 use super::{Materials, Reference};
 use crate::files::Import;
 use crate::gltf::image;
-use crate::picture::Encoded;
+use crate::picture::{Encoded, Wanted};
 use crate::scene::report::Fate;
-use crate::scene::texture::scale::scaled_to;
 use crate::scene::{Filter, Slot, Texture, TextureRef, Wrap};
 
 /// An image used by slots.
@@ -36,12 +35,12 @@ impl Materials<'_> {
         let mut beside: Vec<(usize, Encoded<'_>)> = Vec::new();
         let mut cost = 0;
         for (place, image) in images.into_iter().enumerate() {
-            if loading.step(format!("picture {} of {count}", place + 1)).is_err() {
+            if loading.step(format!("texture {} of {count}", place + 1)).is_err() {
                 break;
             }
             match image::encoded(document, image) {
                 Ok(encoded) => {
-                    let of_this = encoded.cost();
+                    let of_this = encoded.cost_within(self.texture_side_max, budget);
                     if cost + of_this > budget.left() {
                         self.decode_beside(std::mem::take(&mut beside), &mut decoded);
                         cost = 0;
@@ -62,34 +61,20 @@ impl Materials<'_> {
         let side_max = self.texture_side_max;
         let decode = |(image, encoded): (usize, Encoded<'_>)| {
             let is_color = self.is_color(image);
-            let wanted = loading.check().map_err(|cancelled| cancelled.to_string());
-            let picture = wanted.and_then(|()| encoded.decode(budget));
-            let scaled = picture.map(|picture| {
-                let note = picture.note.filter(|_| is_color);
-                (scaled_to(picture.texture(is_color), side_max, is_color), note)
-            });
-            (image, scaled)
+            let wanted = Wanted { is_color, side_max };
+            let scaled = loading.check().map_err(|cancelled| cancelled.to_string());
+            (image, scaled.and_then(|()| encoded.texture(wanted, budget)))
         };
         let results: Vec<_> = pictures.into_par_iter().map(decode).collect();
         for (image, result) in results {
             let kept = result.and_then(|scaled| {
-                let bytes = scaled.0.0.bytes() as u64;
-                budget.take(bytes).map_err(|over| over.to_string()).map(|()| scaled)
+                let taken = budget.take(scaled.texture.bytes() as u64);
+                taken.map_err(|over| over.to_string()).map(|()| scaled)
             });
             match kept {
-                Ok(((texture, scaled_from), note)) => {
-                    self.report.note(Fate::Used, "textures", &texture.name);
-                    if let Some(note) = note {
-                        self.report.note(Fate::Approximated, note, &texture.name);
-                    }
-                    if let Some([width, height]) = scaled_from {
-                        let what = format!(
-                            "a picture of {width} × {height}, used at {} × {}",
-                            texture.width, texture.height
-                        );
-                        self.report.note(Fate::Approximated, what, &texture.name);
-                    }
-                    decoded.insert(image, texture);
+                Ok(scaled) => {
+                    scaled.report(&mut self.report);
+                    decoded.insert(image, scaled.texture);
                 }
                 Err(reason) => self.miss(image, &reason),
             }
@@ -123,7 +108,7 @@ impl Materials<'_> {
         if found.is_none() {
             self.report.note(
                 Fate::Missing,
-                "a texture without a picture",
+                "a texture without an image",
                 &format!("texture {texture}"),
             );
         }

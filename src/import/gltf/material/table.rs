@@ -24,7 +24,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "occlusionTexture" TEXTURE => Nowhere "an occlusion texture, which path tracing needs none of" "";
         "alphaMode" r#""BLEND""# => To "geometry.opacity_texture" "";
         "alphaCutoff" "0.25" => To "the model's slot" "";
-        "doubleSided" "true" => To "the model's slot" "every surface has two sides; open ones of one side are told";
+        "doubleSided" "true" => To "the model's slot" "every surface has two sides; open ones of one side are reported";
     }
     "/pbrMetallicRoughness/" {
         "baseColorFactor" "[0.5, 0.25, 0, 0.5]" => To "base.color, geometry.opacity" "";

@@ -221,7 +221,7 @@ impl State<'_> {
             Err(panic) => Some(panic),
         };
         if let Some(why) = why {
-            self.message(Level::Error, format!("{why} (going on with the processor)"));
+            self.message(Level::Error, format!("{why} (going on with the CPU)"));
             self.guarded(|state| state.session().map(|_| ()));
         }
         self.report_engine();
@@ -266,7 +266,7 @@ impl State<'_> {
             self.stage = None;
             return false;
         }
-        self.message(Level::Warning, "going on with the processor".to_owned());
+        self.message(Level::Warning, "going on with the CPU".to_owned());
         let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone())
             .map(for_window)
             .and_then(|mut session| {

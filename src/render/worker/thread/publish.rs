@@ -66,7 +66,7 @@ impl State<'_> {
                 self.guarded(|state| state.publish(image, outcome.noisy.image, outcome.samples_per_pixel));
             }
             Err(why) => {
-                self.message(Level::Warning, format!("{why}; pictures are shown as they are"));
+                self.message(Level::Warning, format!("{why}; images are shown as they are"));
                 self.guarded(Self::publish_picture);
             }
         }

@@ -7,7 +7,7 @@ mod studio;
 
 use rayon::prelude::*;
 
-use super::{Environment, EnvironmentError, environment_direction};
+use super::{Environment, MapError, environment_direction};
 use crate::optics::vector::Vec3;
 
 pub use rooms::{overcast, portrait, product, rim, warehouse};
@@ -19,7 +19,7 @@ pub use studio::studio;
 /// # Errors
 ///
 /// None in practice; the signature is that of the other environments.
-pub fn furnace() -> Result<Environment, EnvironmentError> {
+pub fn furnace() -> Result<Environment, MapError> {
     Environment::from_texels("furnace", 4, 2, vec![[1.0; 4]; 8])
 }
 

@@ -1,7 +1,7 @@
 //! Rooms to photograph in, each a page of numbers: large warm and cool lamps that wrap around an object of about unit size at
 //! the origin, walls and a floor that reflect them. The object is seen from +Z, slightly above.
 
-use super::super::{Environment, EnvironmentError};
+use super::super::{Environment, MapError};
 use super::soft_box::{SoftBox, mix, room_with, smoothstep};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
@@ -281,7 +281,7 @@ const WAREHOUSE: [SoftBox; 8] = [
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn product() -> Result<Environment, EnvironmentError> {
+pub fn product() -> Result<Environment, MapError> {
     room_with("product", &PRODUCT, |direction| PRODUCT_WALLS.radiance(direction))
 }
 
@@ -289,7 +289,7 @@ pub fn product() -> Result<Environment, EnvironmentError> {
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn portrait() -> Result<Environment, EnvironmentError> {
+pub fn portrait() -> Result<Environment, MapError> {
     room_with("portrait", &PORTRAIT, |direction| PORTRAIT_WALLS.radiance(direction))
 }
 
@@ -297,7 +297,7 @@ pub fn portrait() -> Result<Environment, EnvironmentError> {
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn rim() -> Result<Environment, EnvironmentError> {
+pub fn rim() -> Result<Environment, MapError> {
     room_with("rim", &RIM, |direction| RIM_WALLS.radiance(direction))
 }
 
@@ -305,7 +305,7 @@ pub fn rim() -> Result<Environment, EnvironmentError> {
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn warehouse() -> Result<Environment, EnvironmentError> {
+pub fn warehouse() -> Result<Environment, MapError> {
     room_with("warehouse", &WAREHOUSE, |direction| WAREHOUSE_WALLS.radiance(direction))
 }
 
@@ -314,7 +314,7 @@ pub fn warehouse() -> Result<Environment, EnvironmentError> {
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn overcast() -> Result<Environment, EnvironmentError> {
+pub fn overcast() -> Result<Environment, MapError> {
     let sun = vec3(-0.55, 0.62, 0.56).normalize();
     let texels = texels_of(512, 256, |direction| {
         let height = direction.y.max(0.0);

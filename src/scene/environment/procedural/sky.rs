@@ -6,7 +6,7 @@ use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
 use serde::{Deserialize, Serialize};
 
 use super::super::distribution::texel_solid_angle;
-use super::super::{Environment, EnvironmentError, environment_direction};
+use super::super::{Environment, MapError, environment_direction};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -77,8 +77,8 @@ pub fn sun_irradiance(params: &SkyParams) -> [f64; 3] {
 /// The sky's map, 2048 × 1024.
 ///
 /// # Errors
-/// [`EnvironmentError::SkyParameter`] if a parameter is out of its range.
-pub fn sky(params: &SkyParams) -> Result<Environment, EnvironmentError> {
+/// [`MapError::SkyParameter`] if a parameter is out of its range.
+pub fn sky(params: &SkyParams) -> Result<Environment, MapError> {
     let model = Model::new(params)?;
     let ground = model.ground_radiance(params);
     let mut texels = texels_of(WIDTH, HEIGHT, |direction| {
@@ -95,18 +95,18 @@ struct Model {
 }
 
 impl Model {
-    fn new(params: &SkyParams) -> Result<Self, EnvironmentError> {
+    fn new(params: &SkyParams) -> Result<Self, MapError> {
         let model_params = ModelParams {
             elevation: params.sun_elevation_deg.to_radians() as f32,
             turbidity: params.turbidity as f32,
             albedo: params.ground_albedo.map(|albedo| albedo as f32),
         };
         let state = SkyState::new(&model_params).map_err(|error| {
-            EnvironmentError::SkyParameter(format!("this sky cannot be computed: {error}; keep it in that range"))
+            MapError::SkyParameter(format!("this sky cannot be computed: {error}; keep it in that range"))
         })?;
         if !params.sun_azimuth_deg.is_finite() {
             let message = "this sky cannot be computed: the sun's azimuth is not a number; give it in degrees";
-            return Err(EnvironmentError::SkyParameter(message.to_owned()));
+            return Err(MapError::SkyParameter(message.to_owned()));
         }
         Ok(Self {
             state,

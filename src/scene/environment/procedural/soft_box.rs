@@ -1,6 +1,6 @@
 //! Soft boxes: rectangular lamps behind cloth, of which rooms to photograph in are made.
 
-use super::super::{Environment, EnvironmentError};
+use super::super::{Environment, MapError};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -26,7 +26,7 @@ pub(super) fn room_with(
     name: &str,
     boxes: &[SoftBox],
     walls: impl Fn(Vec3<f64>) -> Vec3<f64> + Sync,
-) -> Result<Environment, EnvironmentError> {
+) -> Result<Environment, MapError> {
     let texels = texels_of(WIDTH, HEIGHT, |direction| {
         let over = |behind, soft_box: &SoftBox| soft_box.over(behind, direction);
         boxes.iter().fold(walls(direction), over).to_f32()

@@ -1,7 +1,7 @@
 //! A photographer's studio: soft boxes around a dark room, made for a glossy object of about unit size at the origin
 //! that is seen from +Z, slightly above.
 
-use super::super::{Environment, EnvironmentError};
+use super::super::{Environment, MapError};
 use super::soft_box::{SoftBox, mix, room_with, smoothstep};
 use crate::optics::vector::{Vec3, vec3};
 
@@ -61,7 +61,7 @@ const BOXES: [SoftBox; 5] = [KEY, FILL, TOP, RIGHT_RIM, LEFT_RIM];
 ///
 /// # Errors
 /// None in practice; the signature is that of the other environments.
-pub fn studio() -> Result<Environment, EnvironmentError> {
+pub fn studio() -> Result<Environment, MapError> {
     room_with("studio", &BOXES, room)
 }
 

@@ -53,7 +53,7 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     let transmission = surface.transmission_weight * (1.0 - surface.metalness);
     let absorbs = transmission > 0.0 && surface.transmission_depth > 0.0;
     let [r, g, b] = match (transmission > 0.5, absorbs) {
-        // What is refracted has the base color there.
+        // What is refracted has the base colour there.
         (true, true) => [1.0; 3],
         (true, false) => surface.transmission_color,
         _ => surface.base_color,

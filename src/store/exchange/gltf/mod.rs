@@ -14,6 +14,7 @@ use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown
 use crate::document::ImportLobe;
 use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, MaterialSettings};
+use crate::import::Budget;
 use crate::import::resource;
 use crate::import::{gltf_from_widths, load, load_with};
 use crate::scene::texture::texture_mean;
@@ -58,6 +59,8 @@ impl Format for Gltf {
             Some(document) => load_with(&document.model, &document.import)?,
             None => load(&ModelSource::Sphere)?,
         };
+        let budget = Budget::of_import();
+        let _ = budget.take((model.bytes() as u64).min(budget.left()));
         let used = model
             .mesh
             .slots
@@ -75,7 +78,7 @@ impl Format for Gltf {
             };
             let mut material = material.clone();
             let of_own = match model.slots.get(slot) {
-                Some(_) => own::hand_over(&mut model, slot, &mut material),
+                Some(_) => own::hand_over(&mut model, slot, &mut material, &budget),
                 None => Vec::new(),
             };
             let material = &material;
@@ -225,7 +228,7 @@ fn is_near(wanted: &Json, found: &Json) -> bool {
     }
 }
 
-/// A file that grows: its numbers and pictures, and what refers to them.
+/// A file that grows: its numbers and images, and what refers to them.
 #[derive(Default)]
 struct Builder {
     bytes: Vec<u8>,

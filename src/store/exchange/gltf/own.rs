@@ -1,4 +1,4 @@
-//! Textures of the user's own as pictures of a glTF file, as far as the format can say how they are put on.
+//! Textures of the user's own as images of a glTF file, as far as the format can say how they are mapped.
 
 use crate::document::MaterialSettings;
 use crate::import::Budget;
@@ -9,11 +9,11 @@ use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture, slots
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
 use crate::store::exchange::report::Entry;
 
-/// Puts a material's own textures into the model's slot where the file can have them, and takes them from the material;
-/// what became of each.
-pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings) -> Vec<Entry> {
+/// Puts a material's own textures into the model's slot where the file can have them, within the budget, and takes them
+/// from the material; what became of each.
+pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings, budget: &Budget) -> Vec<Entry> {
     let mut entries = Vec::new();
-    // A picture for each target that can be had and said.
+    // An image for each target that can be had and said.
     let mut pictures: Vec<(TextureTarget, UserTexture, Texture)> = Vec::new();
     for &target in TextureTarget::ALL {
         let Some(texture) = material
@@ -23,13 +23,13 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
         else {
             continue;
         };
-        match picture(model, slot, target, texture) {
+        match picture(model, slot, (target, texture), budget) {
             Ok(picture) => pictures.push((target, texture.clone(), picture)),
             Err(why) => entries.push(dropped(target, &why)),
         }
     }
     let taken = |target: TextureTarget| pictures.iter().position(|(of, ..)| *of == target);
-    // Roughness and metalness are channels of one picture.
+    // Roughness and metalness are channels of one image.
     match (taken(TextureTarget::Roughness), taken(TextureTarget::Metalness)) {
         (Some(roughness), Some(metalness)) => {
             let [(_, rough, a), (_, metal, b)] = [&pictures[roughness], &pictures[metalness]];
@@ -41,13 +41,13 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
                 }
             } else {
                 let why =
-                    "it has another size or place than that of the roughness, and the format has one picture for both";
+                    "it has another size or place than that of the roughness, and the format has one texture for both";
                 entries.push(dropped(TextureTarget::Metalness, why));
             }
         }
         (None, None) => {}
         _ if model.slots[slot].metallic_roughness_texture.is_some() && material.textures.roughness => {
-            let why = "the format has one picture for roughness and metalness, and one of them is the model's";
+            let why = "the format has one texture for roughness and metalness, and one of them is the model's";
             pictures.retain(|(target, ..)| {
                 let is_half = [TextureTarget::Roughness, TextureTarget::Metalness].contains(target);
                 if is_half {
@@ -96,8 +96,13 @@ fn dropped(target: TextureTarget, why: &str) -> Entry {
     Entry::dropped(words(target), why)
 }
 
-/// A picture with all that is done to its numbers done.
-fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &UserTexture) -> Result<Texture, String> {
+/// An image with all that is done to its numbers done.
+fn picture(
+    model: &Model,
+    slot: usize,
+    (target, texture): (TextureTarget, &UserTexture),
+    budget: &Budget,
+) -> Result<Texture, String> {
     let has_coordinates = slots_with_coordinates(model).get(slot).copied().unwrap_or(false);
     let is_box = texture.projection == TextureProjection::Box
         || (texture.projection == TextureProjection::Auto && !has_coordinates);
@@ -105,12 +110,12 @@ fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &UserText
         return Err("the format has no projection from the sides of a box".to_owned());
     }
     if target == TextureTarget::Opacity {
-        return Err("the format has opacity in the picture of the base colour alone".to_owned());
+        return Err("the format has opacity in the texture of the base colour alone".to_owned());
     }
     if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
-        return Err("the format does not turn normals with their picture".to_owned());
+        return Err("the format does not turn normals with their texture".to_owned());
     }
-    let read = read_texture(&texture.file, target.is_color(), u32::MAX, &Budget::default())?;
+    let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
     let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
     Ok(Texture {
@@ -147,7 +152,7 @@ fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, 
         _ => decoded([r, g, b]).to_f64()[channel],
     };
     let code = code(put_on(number));
-    // What shares the picture with it is left as it is.
+    // What shares the image with it is left as it is.
     match target {
         TextureTarget::Roughness => [255, code, 255, 255],
         TextureTarget::Metalness => [255, 255, code, 255],

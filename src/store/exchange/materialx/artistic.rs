@@ -1,4 +1,4 @@
-//! Metals by their reflection seen head-on and a color towards the edge, as Standard Surface has them (Gulbrandsen 2014): the
+//! Metals by their reflection seen head-on and a colour towards the edge, as Standard Surface has them (Gulbrandsen 2014): the
 //! index and the absorption follow, and by these the tint at 82 degrees that Glossmith knows.
 
 use crate::optics::fresnel::{fresnel_conductor, fresnel_schlick};
@@ -6,7 +6,7 @@ use crate::optics::vector::Vec3;
 
 /// The cosine at which edges are tinted.
 const COSINE: f64 = 1.0 / 7.0;
-/// Steps of the search for a color: each halves what is left.
+/// Steps of the search for a colour: each halves what is left.
 const STEPS: u32 = 40;
 
 /// What Schlick's reflection at the edge is multiplied by, for a channel of the metal.
@@ -20,7 +20,7 @@ fn tint_of_channel(head_on: f64, edge: f64) -> f64 {
     there / fresnel_schlick(Vec3::splat(r), COSINE).x
 }
 
-/// The tint of a metal's edge by the color that Standard Surface has for it.
+/// The tint of a metal's edge by the colour that Standard Surface has for it.
 pub(super) fn edge_tint(head_on: [f32; 3], edge_color: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| {
         let tint = tint_of_channel(f64::from(head_on[i]), f64::from(edge_color[i]).clamp(0.0, 1.0));
@@ -28,7 +28,7 @@ pub(super) fn edge_tint(head_on: [f32; 3], edge_color: [f32; 3]) -> [f32; 3] {
     })
 }
 
-/// The color for the edge that gives a tint, or the one that comes nearest: the tint grows with it.
+/// The colour for the edge that gives a tint, or the one that comes nearest: the tint grows with it.
 pub(super) fn edge_color(head_on: [f32; 3], tint: [f32; 3]) -> [f32; 3] {
     std::array::from_fn(|i| {
         let (mut low, mut high) = (0.0, 1.0);

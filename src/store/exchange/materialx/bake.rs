@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use roxmltree::Document;
 
-use super::graph::{shaders, worth};
+use super::graph::{Images, shaders, worth};
 use crate::scene::Loading;
 
 /// The program of MaterialX, and the folder that it lies in where [`TOOLS_VARIABLE`] does not say another.
@@ -17,7 +17,7 @@ const PROGRAM: &str = "baketextures";
 const TOOLS_FOLDER: &str = "format-tools";
 /// The variable that names the folder of the formats' tools.
 const TOOLS_VARIABLE: &str = "GLOSSMITH_TOOLS";
-/// Side of the pictures whose means are taken, pixels.
+/// Side of the images whose means are taken, pixels.
 const SIDE: &str = "128";
 /// Longest time that it may take.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -103,13 +103,12 @@ fn bake(path: &Path) -> Result<Values, String> {
     })?;
     let document = Document::parse(&text).map_err(|error| error.to_string())?;
     let mut values = Values::new();
+    let loading = Loading::default();
+    let images = Images::in_folder(folder.path(), &loading);
     for (shader, material) in shaders(document.root_element()) {
         let name = material.unwrap_or(shader).attribute("name").unwrap_or_default();
         for input in shader.children().filter(|node| node.has_tag_name("input")) {
-            if let (Some(key), Ok(Some(found))) = (
-                input.attribute("name"),
-                worth(input, folder.path(), &Loading::default()),
-            ) {
+            if let (Some(key), Ok(Some(found))) = (input.attribute("name"), worth(input, &images)) {
                 values.insert((name.to_owned(), key.to_owned()), found.color());
             }
         }

@@ -1,15 +1,18 @@
-//! What inputs of a MaterialX document are worth: constants, pictures by their mean, and what the usual nodes compute of these.
+//! What inputs of a MaterialX document are worth: constants, images by their mean, and what the usual nodes compute of these.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use roxmltree::Node;
 
+use crate::import::Budget;
 use crate::import::picture::mean_of_file;
 use crate::import::resource::Reach;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::scene::Loading;
+use crate::scene::texture::TextureMean;
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
@@ -23,7 +26,7 @@ const LUMINANCE: [f32; 3] = [0.2722287, 0.6740818, 0.0536895];
 pub(super) struct Worth {
     /// The value; one number stands in all four places.
     pub(super) value: [f32; 4],
-    /// The pictures of whose means it is made.
+    /// The images of whose means it is made.
     pub(super) pictures: Vec<PathBuf>,
     /// Something was computed of these means.
     pub(super) is_computed: bool,
@@ -44,7 +47,7 @@ impl Worth {
     }
 }
 
-/// Why it cannot be told what an input is worth.
+/// Why the value of an input is unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Unknown {
     /// A node of this kind computes it.
@@ -123,20 +126,55 @@ fn of_interface<'a>(place: Node<'a, 'a>) -> Option<Node<'a, 'a>> {
     child(graph, name)
 }
 
-/// What an input is worth; nothing where it has no value of its own. Pictures are looked for from `folder`.
+/// Images that a document names: each is read once, within one budget.
+pub(super) struct Images<'p> {
+    /// Folder of the document.
+    folder: &'p Path,
+    /// Cancellation, and images that were refused.
+    loading: &'p Loading,
+    budget: Budget,
+    means: RefCell<HashMap<PathBuf, Result<TextureMean, String>>>,
+}
+
+impl<'p> Images<'p> {
+    /// Images of a document in a folder, none read.
+    pub(super) fn in_folder(folder: &'p Path, loading: &'p Loading) -> Self {
+        Self {
+            folder,
+            loading,
+            budget: Budget::of_import(),
+            means: RefCell::default(),
+        }
+    }
+
+    /// Mean of an image by its name in the document.
+    fn mean(&self, file: &Path) -> Result<TextureMean, String> {
+        if let Some(known) = self.means.borrow().get(file) {
+            return known.clone();
+        }
+        let path = self.folder.join(file);
+        let reached = Reach::of_folder(self.folder).check(&path, self.loading);
+        let wanted = self.loading.check().map_err(|cancelled| cancelled.to_string());
+        let mean = wanted
+            .and_then(|()| reached.map_err(|error| error.to_string()))
+            .and_then(|()| mean_of_file(&path, &self.budget));
+        self.means.borrow_mut().insert(file.to_owned(), mean.clone());
+        mean
+    }
+}
+
+/// What an input is worth; nothing where it has no value of its own.
 ///
 /// # Errors
-/// Why that cannot be told.
-pub(super) fn worth(input: Node<'_, '_>, folder: &Path, loading: &Loading) -> Result<Option<Worth>, Unknown> {
+/// Why that is unknown.
+pub(super) fn worth(input: Node<'_, '_>, images: &Images<'_>) -> Result<Option<Worth>, Unknown> {
     let steps = Cell::new(0);
-    Graph { folder, loading, steps }.input(input, 0)
+    Graph { images, steps }.input(input, 0)
 }
 
 /// A document's nodes, followed.
 struct Graph<'p> {
-    folder: &'p Path,
-    /// Who hears which pictures were refused.
-    loading: &'p Loading,
+    images: &'p Images<'p>,
     /// How many inputs were followed.
     steps: Cell<usize>,
 }
@@ -202,10 +240,10 @@ impl Graph<'_> {
         Ok(Some(found))
     }
 
-    /// The mean of a picture.
+    /// The mean of an image.
     fn picture(&self, node: Node<'_, '_>) -> Result<Worth, Unknown> {
         let Some(input) = child(node, "file") else {
-            return Err(Unknown::missing("a picture without a file"));
+            return Err(Unknown::missing("an image without a file"));
         };
         let input = of_interface(input).unwrap_or(input);
         let name = input.attribute("value").unwrap_or_default();
@@ -216,12 +254,10 @@ impl Graph<'_> {
             .collect();
         let prefix: String = prefixes.into_iter().rev().collect();
         let file = PathBuf::from(format!("{prefix}{name}"));
-        let path = self.folder.join(&file);
-        let reached = Reach::of_folder(self.folder).check(&path, self.loading);
-        let mean = reached
-            .map_err(|error| error.to_string())
-            .and_then(|()| mean_of_file(&path));
-        let mean = mean.map_err(|reason| Unknown::Missing(format!("{}: {reason}", file.display())))?;
+        let mean = self
+            .images
+            .mean(&file)
+            .map_err(|reason| Unknown::Missing(format!("{}: {reason}", file.display())))?;
         let is_encoded = colorspace(input).is_some_and(|space| space.starts_with("srgb"));
         let [r, g, b, a] = mean.codes;
         let [r, g, b] = if is_encoded { mean.linear } else { [r, g, b] };
@@ -403,7 +439,10 @@ mod tests {
         let text = format!("<materialx>{elements}</materialx>");
         let document = Document::parse(&text).expect("well-formed");
         let last = document.root_element().last_element_child().expect("an element");
-        worth(child(last, "x").expect("an input"), folder, &Loading::default())
+        worth(
+            child(last, "x").expect("an input"),
+            &Images::in_folder(folder, &Loading::default()),
+        )
     }
 
     fn constant(elements: &str) -> [f32; 4] {
@@ -414,7 +453,7 @@ mod tests {
 
     /// Name, type and value of an input.
     type Given<'a> = (&'a str, &'a str, &'a str);
-    /// A node's kind, its inputs, which output is taken, and the color that it has.
+    /// A node's kind, its inputs, which output is taken, and the colour that it has.
     type Case<'a> = (&'a str, &'a [Given<'a>], &'a str, [f32; 3]);
 
     /// A node with inputs, and a surface that takes one of its outputs.

@@ -21,7 +21,9 @@ const COLORSPACE: &str = "colorspace";
 /// Which of them can't be read, and why.
 pub(super) fn whole_text(path: &Path, text: String, loading: &Loading) -> Result<String, String> {
     let mut files = vec![path.to_owned()];
-    expanded(path, text, &mut files, loading)
+    let text = expanded(path, text, &mut files, loading)?;
+    // Included elements may have prefixes that their own document declared.
+    Ok(if files.len() > 1 { strict(&text) } else { text })
 }
 
 fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>, loading: &Loading) -> Result<String, String> {

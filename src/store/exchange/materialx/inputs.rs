@@ -46,7 +46,7 @@ impl Inputs {
         self.color(name)[0]
     }
 
-    /// Brings what is set into its range, and tells that and what goes nowhere.
+    /// Brings what is set into its range, and reports that and what goes nowhere.
     pub fn settle(&mut self) {
         let mut entries = Vec::new();
         for (name, value) in self.values.clone() {

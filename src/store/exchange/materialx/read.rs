@@ -1,4 +1,4 @@
-//! Documents of MaterialX, read: the surfaces of several models with one value for each input. Pictures are taken by their mean.
+//! Documents of MaterialX, read: the surfaces of several models with one value for each input. Images are taken by their mean.
 //! What a graph computes is computed ([`super::graph`]) or baked ([`super::bake`]), else named in the report.
 
 use std::path::Path;
@@ -6,10 +6,9 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use super::bake::Baker;
-use super::graph::{Unknown, child, shaders, source_of, worth};
+use super::graph::{Images, Unknown, child, shaders, source_of, worth};
 use super::include::whole_text;
 use super::inputs::Inputs;
-use super::strict::strict;
 use super::surfaces::SurfaceKind;
 use super::{CARRIER, MaterialX};
 use crate::document::MaterialSettings;
@@ -33,8 +32,6 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
         reason,
     };
     let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned(), &options.loading).map_err(wrong)?;
-    // What was included may have brought prefixes along.
-    let text = strict(&text);
     let document = xml::parse(&text).map_err(wrong)?;
     let root = document.root_element();
     if !root.has_tag_name("materialx") {
@@ -43,8 +40,9 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
     let mut subject = Subject::default();
     let mut refused = Vec::new();
     let mut baker = Baker::of(path);
+    let images = Images::in_folder(path.parent().unwrap_or(Path::new(".")), &options.loading);
     for (shader, material) in shaders(root) {
-        match read_surface(shader, material, (path, &options.loading), &mut baker) {
+        match read_surface(shader, material, &images, &mut baker) {
             Ok((surface, losses)) => {
                 let (material, losses) = exact_or_shown(&surface, losses, material, shader, &options);
                 subject.materials.push(material);
@@ -107,17 +105,10 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
     let text = String::from_utf8(written.bytes).ok()?;
     let document = Document::parse(&text).ok()?;
     let (shader, material) = shaders(document.root_element()).into_iter().next()?;
-    let nowhere = Path::new("");
-    Some(
-        read_surface(
-            shader,
-            material,
-            (nowhere, &Loading::default()),
-            &mut Baker::of(nowhere),
-        )
-        .ok()?
-        .0,
-    )
+    let (nowhere, loading) = (Path::new(""), Loading::default());
+    let images = Images::in_folder(nowhere, &loading);
+    let (surface, _) = read_surface(shader, material, &images, &mut Baker::of(nowhere)).ok()?;
+    Some(surface)
 }
 
 /// Whether two surfaces are the same but for the digits that other programs write.
@@ -155,7 +146,7 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
 fn read_surface(
     shader: Node<'_, '_>,
     material: Option<Node<'_, '_>>,
-    (path, loading): (&Path, &Loading),
+    images: &Images<'_>,
     baker: &mut Baker<'_>,
 ) -> Result<(Surface, Vec<Entry>), String> {
     let named = material.unwrap_or(shader);
@@ -164,9 +155,7 @@ fn read_surface(
     let node = shader.tag_name().name();
     let kind = SurfaceKind::named(node).ok_or_else(|| format!("{name} is a {node}"))?;
     let mut inputs = kind.unset();
-    let turn_deg = read_inputs(shader, (path, loading), &mut inputs, &mut |input| {
-        baker.mean(own_name, input)
-    });
+    let turn_deg = read_inputs(shader, images, &mut inputs, &mut |input| baker.mean(own_name, input));
     inputs.losses.extend(material.into_iter().flat_map(others_of_material));
     let (mut surface, losses) = kind.surface(inputs);
     surface.name = name.to_owned();
@@ -182,15 +171,14 @@ fn others_of_material<'a>(material: Node<'a, 'a>) -> impl Iterator<Item = Entry>
     others.map(|name| Entry::dropped(name, "of a material its surface alone is read"))
 }
 
-/// Fills in the inputs that have a value, by whatever way, and gives the turn of the tangent in degrees. `baked` is asked for
+/// Fills in the inputs that have a value, in any way, and gives the turn of the tangent in degrees. `baked` is asked for
 /// what is not computed here.
 fn read_inputs(
     shader: Node<'_, '_>,
-    (path, loading): (&Path, &Loading),
+    images: &Images<'_>,
     inputs: &mut Inputs,
     baked: &mut dyn FnMut(&str) -> Result<[f32; 3], String>,
 ) -> f32 {
-    let folder = path.parent().unwrap_or(Path::new("."));
     let mut turn_deg = 0.0;
     for input in shader.children().filter(|node| node.has_tag_name("input")) {
         let Some(name) = input.attribute("name") else { continue };
@@ -205,7 +193,7 @@ fn read_inputs(
             }
             continue;
         }
-        match worth(input, folder, loading) {
+        match worth(input, images) {
             Ok(Some(found)) => {
                 let pictures: Vec<String> = found.pictures.iter().map(|file| file.display().to_string()).collect();
                 let of = if found.is_computed {

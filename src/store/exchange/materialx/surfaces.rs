@@ -97,7 +97,7 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
     }
 }
 
-/// The coat's color, with what the coat takes besides by reflecting back what comes out of the base (`coat_darkening`).
+/// The coat's colour, with what the coat takes besides by reflecting back what comes out of the base (`coat_darkening`).
 fn darkening_coat_color(inputs: &Inputs) -> [f32; 3] {
     let color = inputs.color("coat_color");
     let weight = inputs.number("coat_weight").clamp(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! What becomes of each input of the surfaces that are read: the tables in docs/FORMATS.md, by which the report tells what
+//! What becomes of each input of the surfaces that are read: the tables in docs/FORMATS.md, by which the report lists what
 //! is left out or out of range.
 
 use crate::import::FileParameter;

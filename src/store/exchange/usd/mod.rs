@@ -1,4 +1,4 @@
-//! USD as text: each material with a UsdPreviewSurface for whatever reads USD, and MaterialX's OpenPBR for what reads that.
+//! USD as text: each material with a UsdPreviewSurface for any reader of USD, and MaterialX's OpenPBR for what reads that.
 
 mod read;
 

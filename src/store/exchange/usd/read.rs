@@ -147,7 +147,7 @@ fn without_strings(line: &str) -> String {
 }
 
 impl Read {
-    /// The exact parameters where they are there and show what the preview shows; else what that shows. `shown_by` tells
+    /// The exact parameters where they are there and show what the preview shows; else what that shows. `shown_by` says
     /// what the preview of exact parameters is.
     pub fn material(
         self,

@@ -1,5 +1,5 @@
-//! The scene that renderers are compared on, as files that any of them reads: a teapot under a sky with a small sun and two
-//! soft boxes, and a ground.
+//! Scenes of the benchmark, as files that any renderer reads: a teapot under a sky with a small sun and two soft boxes, and a
+//! ground.
 
 use std::f64::consts::{PI, TAU};
 use std::fs::File;
@@ -7,8 +7,32 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
-use glossmith::scene::mesh::Mesh;
 use rayon::prelude::*;
+
+use crate::document::{Document, MaterialSettings};
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Lobe;
+use crate::scene::camera::PixelFilter;
+use crate::scene::environment::EnvironmentSource;
+use crate::scene::mesh::Mesh;
+use crate::scene::{ModelSource, teapot};
+
+/// Segments of a patch of the teapot, and the names of the meshes by their numbers of triangles.
+const MESHES: [(u32, &str); 3] = [(9, "6k"), (28, "60k"), (90, "600k")];
+/// Complex index of refraction of gold.
+pub const GOLD: [[f32; 3]; 2] = [[0.143, 0.375, 1.442], [3.983, 2.386, 1.603]];
+/// Camera position.
+pub const EYE: [f64; 3] = [3.744_755_1, 4.459_777_26, 7.494_526_51];
+/// Point that the camera looks at.
+pub const TARGET: [f64; 3] = [0.25, 1.45, 0.0];
+/// Vertical angle of view in degrees.
+pub const FOV_DEG: f64 = 45.0;
+/// Path segments at most, the camera ray included.
+pub const DEPTH: u32 = 8;
+/// Half the side of the ground, about as large as the one that Glossmith adds.
+const GROUND_HALF_SIDE: f64 = 64.0;
+/// Materials of the scenes.
+const MATERIALS: [&str; 5] = ["metal 0.09", "metal 0.25", "diffuse", "plastic", "glass"];
 
 /// Columns and rows of the sky.
 const SKY: [usize; 2] = [2048, 1024];
@@ -93,7 +117,7 @@ fn sky_at(column: usize, row: usize) -> [f32; 3] {
 }
 
 /// Writes the sky.
-pub fn write_sky(path: &Path) -> exr::error::UnitResult {
+fn write_sky(path: &Path) -> exr::error::UnitResult {
     let [width, height] = SKY;
     let texels: Vec<[f32; 3]> = (0..width * height)
         .into_par_iter()
@@ -106,7 +130,7 @@ pub fn write_sky(path: &Path) -> exr::error::UnitResult {
 }
 
 /// Writes a mesh as PLY with its normals.
-pub fn write_ply(path: &Path, mesh: &Mesh) -> io::Result<()> {
+fn write_ply(path: &Path, mesh: &Mesh) -> io::Result<()> {
     let mut file = BufWriter::new(File::create(path)?);
     writeln!(
         file,
@@ -136,12 +160,110 @@ pub fn write_ply(path: &Path, mesh: &Mesh) -> io::Result<()> {
 }
 
 /// A square at the height of the teapot's bottom, of this half side.
-pub fn ground(half_side: f64) -> Mesh {
+fn ground(half_side: f64) -> Mesh {
     let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
     Mesh {
         positions: corners.map(|[x, z]| DVec3::new(x, 0.0, z) * half_side).to_vec(),
         normals: vec![Vec3::Y; 4],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
+    }
+}
+
+/// A scene of the benchmark.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    /// Material: a name of the table in docs/PERFORMANCE.md.
+    pub material: &'static str,
+    /// Mesh by its number of triangles: `6k`, `60k` or `600k`.
+    pub mesh: &'static str,
+    /// Whether the teapot stands on a ground.
+    pub ground: bool,
+}
+
+impl Scene {
+    /// All scenes: five materials, three meshes, two on a ground.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let scene = |material, mesh, ground| Self { material, mesh, ground };
+        let of_materials = MATERIALS.into_iter().map(move |material| scene(material, "60k", false));
+        let of_meshes = ["6k", "600k"]
+            .into_iter()
+            .map(move |mesh| scene(MATERIALS[0], mesh, false));
+        let on_ground = [MATERIALS[0], "diffuse"]
+            .into_iter()
+            .map(move |material| scene(material, "60k", true));
+        of_materials.chain(of_meshes).chain(on_ground)
+    }
+
+    /// Name in tables.
+    pub fn name(&self) -> String {
+        let ground = if self.ground { ", ground" } else { "" };
+        format!("{}, {}{ground}", self.material, self.mesh)
+    }
+
+    /// Writes the files that the scenes name: sky, meshes, ground.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn write_files(folder: &Path) -> exr::error::UnitResult {
+        write_sky(&folder.join("sky.exr"))?;
+        for (segments, name) in MESHES {
+            write_ply(&folder.join(format!("{name}.ply")), &teapot::mesh(segments))?;
+        }
+        Ok(write_ply(&folder.join("ground.ply"), &ground(GROUND_HALF_SIDE))?)
+    }
+
+    /// Document of the scene, `size` pixels square, with its files in `folder`.
+    pub fn document(&self, folder: &Path, size: u32) -> Document {
+        let mut document = Document {
+            model: ModelSource::File(folder.join(format!("{}.ply", self.mesh))),
+            ground: self.ground,
+            materials: vec![self.material()],
+            ..Document::default()
+        };
+        document.lighting.environment = EnvironmentSource::File(folder.join("sky.exr"));
+        document.camera.position = Some(EYE);
+        document.camera.target = Some(TARGET);
+        document.camera.fov_deg = FOV_DEG;
+        let render = &mut document.render;
+        (render.width, render.height) = (size, size);
+        render.bounces = DEPTH - 2;
+        render.filter = PixelFilter::Box;
+        render.adaptive = Some(false);
+        document
+    }
+
+    fn material(&self) -> MaterialSettings {
+        let metal = MaterialSettings {
+            lobe: Lobe::Ggx,
+            fresnel: Fresnel::Conductor,
+            roughness: 0.3,
+            eta: GOLD[0],
+            k: GOLD[1],
+            ..MaterialSettings::default()
+        };
+        let dielectric = MaterialSettings {
+            metalness: 0.0,
+            fresnel: Fresnel::Dielectric,
+            ..metal.clone()
+        };
+        match self.material {
+            "metal 0.25" => MaterialSettings {
+                roughness: 0.5,
+                ..metal
+            },
+            "diffuse" => MaterialSettings::diffuse("diffuse", [0.8; 3]),
+            "plastic" => MaterialSettings {
+                roughness: 0.1_f32.sqrt(),
+                base_color: [0.6, 0.1, 0.1],
+                ..dielectric
+            },
+            "glass" => MaterialSettings {
+                transmission_weight: 1.0,
+                base_color: [1.0; 3],
+                ..dielectric
+            },
+            _ => metal,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench peers [-- --quick --rates --turns N --only WORDS]`: all lines of the table, or those that hold
-//! these words, as `diffuse | 60k, ground`. Millions of samples a second, of the quickest render of each renderer, and (not
+//! these words, as `diffuse, 60k, ground`. Millions of samples a second, of the quickest render of each renderer, and (not
 //! with `--rates`) seconds to a relative mean squared error of 0.003, from the mean time and the error of its renders. All
 //! of them take turns, as a machine's pace changes. Our renders, with even samples and with adaptive ones, end about there;
 //! Mitsuba's time is told from what was timed. From where a render ends to the goal its error is taken to fall as that of
@@ -11,37 +11,18 @@
 //! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
 //! only Glossmith is measured.
 
-mod scene;
-
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glossmith::analysis::error::{RELATIVE_FLOOR, relative_mean_squared_error};
-use glossmith::document::{Document, MaterialSettings};
+use glossmith::document::Document;
 use glossmith::job::film::Image;
-use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::Lobe;
+use glossmith::render::study::benchmark::GOAL;
+use glossmith::render::study::benchmark::scene::{DEPTH, EYE, FOV_DEG, GOLD, Scene, TARGET};
 use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::camera::PixelFilter;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{ModelSource, teapot};
 use serde_json::{Value, json};
-
-/// Segments of a patch of the teapot, and how many triangles these make.
-const MESHES: [(u32, &str); 3] = [(9, "6k"), (28, "60k"), (90, "600k")];
-/// What the error is to come down to.
-const GOAL: f64 = 0.003;
-/// Indices of refraction of gold.
-const GOLD: [[f32; 3]; 2] = [[0.143, 0.375, 1.442], [3.983, 2.386, 1.603]];
-const EYE: [f64; 3] = [3.744_755_1, 4.459_777_26, 7.494_526_51];
-const TARGET: [f64; 3] = [0.25, 1.45, 0.0];
-const FOV_DEG: f64 = 45.0;
-/// About as large as the ground that Glossmith adds.
-const GROUND_HALF_SIDE: f64 = 64.0;
-/// Segments of a path, the camera's ray among them.
-const DEPTH: u32 = 8;
 
 /// Linear RGB of its pixels.
 type Picture = Vec<[f32; 3]>;
@@ -83,13 +64,6 @@ const SCOUT_SEED: u32 = 999;
 const SCOUTS: u32 = 5;
 const NEAR: f64 = 0.1;
 
-/// A line of the table.
-struct Case {
-    material: &'static str,
-    mesh: &'static str,
-    ground: bool,
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let is_asked = |option: &str| std::env::args().any(|argument| argument == option);
     let given = |option: &str| std::env::args().skip_while(|argument| argument != option).nth(1);
@@ -102,11 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let only = given("--only").unwrap_or_default();
     let folder = tempfile::tempdir()?;
-    scene::write_sky(&folder.path().join("sky.exr"))?;
-    for (segments, name) in MESHES {
-        scene::write_ply(&folder.path().join(format!("{name}.ply")), &teapot::mesh(segments))?;
-    }
-    scene::write_ply(&folder.path().join("ground.ply"), &scene::ground(GROUND_HALF_SIDE))?;
+    Scene::write_files(folder.path())?;
     let peer = mitsuba(folder.path(), &json!({ "what": "variant" }));
     match &peer {
         Ok(answer) => println!("Mitsuba {}, {}", answer["version"], answer["variant"]),
@@ -116,28 +86,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| material | triangles | M samples/s | Mitsuba's | ratio | s to relMSE {GOAL} | Mitsuba's | ratio | adaptive | ratio |"
     );
     println!("|{}", " --- |".repeat(10));
-    let materials = ["metal 0.09", "metal 0.25", "diffuse", "plastic", "glass"];
-    let case = |material, mesh, ground| Case { material, mesh, ground };
-    let of_materials = materials.into_iter().map(|material| case(material, "60k", false));
-    let of_meshes = ["6k", "600k"].into_iter().map(|mesh| case(materials[0], mesh, false));
-    let on_ground = [materials[0], "diffuse"]
-        .into_iter()
-        .map(|material| case(material, "60k", true));
-    let cases = of_materials.chain(of_meshes).chain(on_ground);
-    for case in cases.filter(|case| case.name().contains(&only)) {
+    for case in Scene::all().filter(|case| case.name().contains(&only)) {
         compare(folder.path(), &case, &extent, peer.is_ok())?;
     }
     Ok(())
 }
 
-impl Case {
-    fn name(&self) -> String {
-        let ground = if self.ground { ", ground" } else { "" };
-        format!("{} | {}{ground}", self.material, self.mesh)
-    }
-}
-
-fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
+fn compare(folder: &Path, case: &Scene, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
     let (size, samples) = (extent.size, extent.samples);
     let reference = match extent.reference {
         Some(samples) => Some(glossmith(folder, case, size, samples, REFERENCE_SEED)?.1),
@@ -170,7 +125,11 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
         }
     };
     let beside = |ours: f64, theirs: f64| format!(" {ours:.2} | {} | {} |", of_peer(theirs), of_peer(ours / theirs));
-    let mut line = format!("| {} |{}", case.name(), beside(rate(our_seconds), rate(their_seconds)));
+    let mut line = format!(
+        "| {} |{}",
+        case.name().replacen(", ", " | ", 1),
+        beside(rate(our_seconds), rate(their_seconds))
+    );
     if let ([even, adaptive], Some(reference)) = (&to_goal[..], &reference) {
         let their_time = seconds_to_goal(&theirs, reference);
         line += &beside(seconds_to_goal(&even.renders, reference), their_time);
@@ -207,7 +166,7 @@ fn relative_error(pictures: &[&Picture], reference: &Picture) -> f64 {
 /// Our renders to the goal: with as many samples everywhere as it takes, or adaptive ones to the noise that it takes.
 struct ToGoal<'a> {
     folder: &'a Path,
-    case: &'a Case,
+    case: &'a Scene,
     size: u32,
     is_adaptive: bool,
     /// Samples a pixel, or one over the square of the noise: the error is about inverse to it.
@@ -219,7 +178,7 @@ impl<'a> ToGoal<'a> {
     /// Finds what effort it takes, by renders that count for nothing else.
     fn new(
         folder: &'a Path,
-        case: &'a Case,
+        case: &'a Scene,
         size: u32,
         is_adaptive: bool,
         reference: &Picture,
@@ -250,7 +209,7 @@ impl<'a> ToGoal<'a> {
             let samples = self.effort.round().max(1.0) as u32;
             return glossmith(self.folder, self.case, self.size, samples, seed);
         }
-        let mut document = document(self.folder, self.case, self.size);
+        let mut document = self.case.document(self.folder, self.size);
         let render = &mut document.render;
         (render.seed, render.adaptive, render.samples) = (seed, Some(true), u32::MAX);
         render.min_samples = ADAPTIVE_SAMPLES_MIN;
@@ -259,58 +218,9 @@ impl<'a> ToGoal<'a> {
     }
 }
 
-fn document(folder: &Path, case: &Case, size: u32) -> Document {
-    let mut document = Document {
-        model: ModelSource::File(folder.join(format!("{}.ply", case.mesh))),
-        ground: case.ground,
-        ..Document::default()
-    };
-    let metal = MaterialSettings {
-        lobe: Lobe::Ggx,
-        fresnel: Fresnel::Conductor,
-        roughness: 0.3,
-        eta: GOLD[0],
-        k: GOLD[1],
-        ..MaterialSettings::default()
-    };
-    let dielectric = MaterialSettings {
-        metalness: 0.0,
-        fresnel: Fresnel::Dielectric,
-        ..metal.clone()
-    };
-    document.materials = vec![match case.material {
-        "metal 0.25" => MaterialSettings {
-            roughness: 0.5,
-            ..metal
-        },
-        "diffuse" => MaterialSettings::diffuse("diffuse", [0.8; 3]),
-        "plastic" => MaterialSettings {
-            roughness: 0.1_f32.sqrt(),
-            base_color: [0.6, 0.1, 0.1],
-            ..dielectric
-        },
-        "glass" => MaterialSettings {
-            transmission_weight: 1.0,
-            base_color: [1.0; 3],
-            ..dielectric
-        },
-        _ => metal,
-    }];
-    document.lighting.environment = EnvironmentSource::File(folder.join("sky.exr"));
-    document.camera.position = Some(EYE);
-    document.camera.target = Some(TARGET);
-    document.camera.fov_deg = FOV_DEG;
-    let render = &mut document.render;
-    (render.width, render.height) = (size, size);
-    render.bounces = DEPTH - 2;
-    render.filter = PixelFilter::Box;
-    render.adaptive = Some(false);
-    document
-}
-
 /// A render with so many samples a pixel.
-fn glossmith(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
-    let mut document = document(folder, case, size);
+fn glossmith(folder: &Path, case: &Scene, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
+    let mut document = case.document(folder, size);
     document.render.samples = samples;
     document.render.seed = seed;
     timed(&document)
@@ -328,7 +238,7 @@ fn timed(document: &Document) -> Result<Render, Box<dyn Error>> {
 }
 
 /// The same by Mitsuba.
-fn peer(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
+fn peer(folder: &Path, case: &Scene, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
     let picture = folder.join("mitsuba.exr");
     let question = json!({
         "what": "render", "material": case.material, "mesh": case.mesh, "size": size, "samples": samples, "seed": seed,

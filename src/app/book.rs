@@ -1,0 +1,217 @@
+//! The pages of the book in `docs/`, as they were when the program was built: the manual needs no network and no files.
+
+macro_rules! pages {
+    ($($path:literal)*) => {
+        /// Pages of the book: path in `docs/`, and text.
+        pub const PAGES: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../docs/", $path)))),*];
+    };
+}
+
+pages! {
+    "SUMMARY.md"
+    "README.md"
+    "install.md"
+    "tutorials/first-material.md"
+    "tutorials/your-model.md"
+    "tutorials/geometric-lobe.md"
+    "tutorials/accuracy.md"
+    "tutorials/automate.md"
+    "how-to/textures.md"
+    "how-to/glass.md"
+    "how-to/lights.md"
+    "how-to/ground.md"
+    "how-to/turntable.md"
+    "how-to/match.md"
+    "how-to/compare.md"
+    "how-to/export.md"
+    "how-to/farm.md"
+    "how-to/explain.md"
+    "how-to/profile.md"
+    "reference/window.md"
+    "reference/render.md"
+    "reference/commands.md"
+    "reference/materials.md"
+    "reference/settings.md"
+    "reference/effects.md"
+    "reference/output.md"
+    "reference/files.md"
+    "FORMATS.md"
+    "CONVENTIONS.md"
+    "MATHEMATICS.md"
+    "mathematics/lobe.md"
+    "mathematics/layers.md"
+    "mathematics/estimation.md"
+    "STABILITY.md"
+    "PERFORMANCE.md"
+    "FIGURES.md"
+}
+
+/// The address of the list of all pages.
+pub const CONTENTS: &str = "SUMMARY.md";
+/// Addresses of what the sheets over the window are about: a page with an anchor or without.
+pub const OF_SHEETS: [&str; 6] = [KEYS, UNSAVED, EXPLAIN, EXPORT, MODEL_FILE, TURNTABLE];
+pub(in crate::app) const KEYS: &str = "reference/window.md#keyboard-and-files";
+pub(in crate::app) const UNSAVED: &str = "reference/window.md#unsaved-work";
+pub(in crate::app) const EXPLAIN: &str = "how-to/explain.md";
+pub(in crate::app) const EXPORT: &str = "how-to/export.md";
+pub(in crate::app) const MODEL_FILE: &str = "FORMATS.md#models";
+pub(in crate::app) const TURNTABLE: &str = "how-to/turntable.md";
+
+/// Scheme of links from page to page, as [`sections`] writes them.
+pub(in crate::app) const SCHEME: &str = "book:";
+
+/// A heading with the text below it, up to the next heading.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Section {
+    /// Number of `#`.
+    pub level: usize,
+    /// The heading without marks.
+    pub heading: String,
+    /// The name that links give it.
+    pub anchor: String,
+    /// Markdown without images and comments, tables as lists.
+    pub text: String,
+}
+
+/// The heading's anchor as GitHub and mdBook make it.
+pub fn anchor(heading: &str) -> String {
+    let kept = heading.to_lowercase().replace(' ', "-");
+    kept.chars()
+        .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
+        .collect()
+}
+
+/// Page and anchor of an address; the anchor is empty without one.
+pub fn parts(address: &str) -> (&str, &str) {
+    address.split_once('#').unwrap_or((address, ""))
+}
+
+/// The sections of a page; none if the book has no such page.
+pub fn sections(path: &str) -> Vec<Section> {
+    let Some((_, page)) = PAGES.iter().find(|(name, _)| *name == path) else {
+        return Vec::new();
+    };
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let mut sections: Vec<Section> = Vec::new();
+    let mut is_code = false;
+    let mut head = None;
+    for line in page.lines() {
+        is_code ^= line.starts_with("```");
+        let marks = line.len() - line.trim_start_matches('#').len();
+        if marks > 0 && !is_code {
+            let heading = line[marks..].trim().replace('`', "");
+            let anchor = anchor(&heading);
+            sections.push(Section {
+                level: marks,
+                heading,
+                anchor,
+                text: String::new(),
+            });
+            continue;
+        }
+        let Some(section) = sections.last_mut() else { continue };
+        if is_code {
+            section.text += line;
+        } else if line.starts_with('|') {
+            section.text += &row(&cells(line), &mut head, folder);
+        } else {
+            head = None;
+            if !line.starts_with("<!--") {
+                section.text += &linked(line, folder);
+            }
+        }
+        section.text.push('\n');
+    }
+    sections
+}
+
+/// The cells of a line of a table.
+fn cells(line: &str) -> Vec<String> {
+    let inner = line.trim().trim_matches('|').replace("\\|", "\u{1}");
+    inner.split('|').map(|cell| cell.trim().replace('\u{1}', "|")).collect()
+}
+
+/// A line of a table as an item of a list: it wraps in a narrow window. The first line of a table becomes its head.
+fn row(cells: &[String], head: &mut Option<Vec<String>>, folder: &str) -> String {
+    let Some(head) = head else {
+        *head = Some(cells.to_vec());
+        return String::new();
+    };
+    let mut texts = cells.iter().map(|cell| linked(cell, folder));
+    let first = texts.next().unwrap_or_default();
+    if first.trim_start_matches([':', '-']).is_empty() {
+        return String::new();
+    }
+    // Bold does not go over code and links, which are marked as they are.
+    let mut text = match first.contains(['`', '[', '*']) {
+        true => format!("- {first}"),
+        false => format!("- **{first}**"),
+    };
+    for (name, cell) in head.iter().skip(1).zip(texts).filter(|(_, cell)| !cell.is_empty()) {
+        text += &match cells.len() {
+            0..=2 => format!(": {cell}"),
+            _ => format!("; {name}: {cell}"),
+        };
+    }
+    text
+}
+
+/// The line with links that [`SCHEME`] marks where they lead to a page of the book; images by their descriptions.
+fn linked(line: &str, folder: &str) -> String {
+    let mut text = String::new();
+    let mut rest = line;
+    while let Some((before, after)) = rest.split_once("](") {
+        let Some((target, after)) = after.split_once(')') else {
+            break;
+        };
+        rest = after;
+        match before.rfind("![") {
+            Some(image) if !before[image..].contains(']') => {
+                text += &before[..image];
+                text += &format!("(image: {})", &before[image + 2..]);
+            }
+            _ => text += &format!("{before}]({})", resolved(target, folder)),
+        }
+    }
+    text + rest
+}
+
+/// A link's target: with [`SCHEME`] and from `docs/` on where it is a page of the book.
+fn resolved(target: &str, folder: &str) -> String {
+    let (file, anchor) = parts(target);
+    let mut path: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    for part in file.split('/') {
+        match part {
+            ".." => drop(path.pop()),
+            part => path.push(part),
+        }
+    }
+    let path = path.join("/");
+    let is_page = PAGES.iter().any(|(name, _)| *name == path);
+    match (is_page, anchor) {
+        (true, "") => format!("{SCHEME}{path}"),
+        (true, anchor) => format!("{SCHEME}{path}#{anchor}"),
+        _ => target.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_from_page_to_page() {
+        let line =
+            "See [how](../PERFORMANCE.md#estimation), ![a pot](../pictures/pot.png) and [that](https://example.org).";
+        let expected = "See [how](book:PERFORMANCE.md#estimation), (image: a pot) and [that](https://example.org).";
+        assert_eq!(linked(line, "tutorials"), expected);
+    }
+
+    #[test]
+    fn tables_are_lists() {
+        let mut head = None;
+        let lines = ["| a | b | c |", "| --- | --- | --- |", "| x | `y\\|z` | |"];
+        let text: Vec<_> = lines.iter().map(|line| row(&cells(line), &mut head, "")).collect();
+        assert_eq!(text, ["", "", "- **x**; b: `y|z`"]);
+    }
+}

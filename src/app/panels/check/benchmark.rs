@@ -1,0 +1,91 @@
+//! The benchmark: what `glossmith benchmark` does, as a table, and its result for the clipboard.
+
+use std::path::PathBuf;
+
+use egui::Ui;
+
+use crate::app::desk::Desk;
+use crate::app::kit::widgets;
+use crate::app::study::StudyWorker;
+use crate::render::EngineChoice;
+use crate::render::study::benchmark::report::{EngineReport, Report, number};
+use crate::render::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
+
+/// Name of the program's file.
+const PROGRAM: &str = "glossmith";
+
+/// State of the section.
+#[derive(Default)]
+pub(super) struct BenchmarkState {
+    worker: StudyWorker<Report>,
+    quick: bool,
+}
+
+impl BenchmarkState {
+    /// As [`StudyWorker::tick`].
+    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+        self.worker.tick(desk);
+    }
+}
+
+/// Shows the section.
+pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
+    widgets::note(
+        ui,
+        "Measures every engine and adapter: rates, time to a clean image, kernels, checks. Takes three minutes.",
+    );
+    ui.checkbox(&mut state.quick, "Quick")
+        .on_hover_text("Small images and few scenes, to see that it works.");
+    let quick = state.quick;
+    let help = "Pauses the viewport and measures this machine.";
+    state.worker.controls(ui, desk, "Run the benchmark", help, |_| {
+        let options = BenchmarkOptions {
+            engine: EngineChoice::Auto,
+            seconds: SECONDS[usize::from(quick)],
+            quick,
+            program: program(),
+        };
+        Box::new(move |watch| benchmark(&options, watch))
+    });
+    let Some(report) = state.worker.found() else { return };
+    if ui
+        .button("Copy the result")
+        .on_hover_text("Copies the result as JSON, to hand on and to compare.")
+        .clicked()
+        && let Ok(text) = serde_json::to_string_pretty(&*report)
+    {
+        ui.ctx().copy_text(text);
+    }
+    report.engines.iter().for_each(|engine| table(ui, engine));
+}
+
+/// The program's file; `None` in another program, such as a test.
+fn program() -> Option<PathBuf> {
+    let path = std::env::current_exe().ok()?;
+    (path.file_stem()? == PROGRAM).then_some(path)
+}
+
+fn table(ui: &mut Ui, engine: &EngineReport) {
+    ui.add_space(4.0);
+    ui.strong(engine.name());
+    for proof in &engine.proofs {
+        let text = format!("{}: {} passed, {} failed", proof.what, proof.passed, proof.failed.len());
+        ui.label(text).on_hover_text(proof.failed.join("\n"));
+    }
+    let grid = egui::Grid::new(("benchmark", engine.name()))
+        .num_columns(3)
+        .striped(true);
+    grid.show(ui, |ui| {
+        for row in &engine.rows {
+            ui.label(format!("{}, {}", row.step, row.case));
+            let [low, high] = row.value.quartiles.map(number);
+            ui.label(number(row.value.median))
+                .on_hover_text(format!("quartiles {low} to {high}"));
+            ui.weak(&row.unit);
+            ui.end_row();
+        }
+    });
+    for left in &engine.left_out {
+        widgets::note(ui, format!("{} {}: {}", left.step, left.case, left.why));
+    }
+}

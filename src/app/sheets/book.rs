@@ -1,0 +1,136 @@
+//! The manual: pages of the [`book`](crate::app::book) in a window beside the panels, so that one can follow a tutorial.
+
+use egui::{Align, Order, RichText, ScrollArea, Ui};
+use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
+
+use crate::app::book::{self, CONTENTS, SCHEME, Section};
+use crate::app::kit::theme;
+
+/// Size of the window at first, points.
+const SIZE: [f32; 2] = [480.0, 560.0];
+/// Sizes of the headings of a page, of its parts, and of theirs, points.
+const HEADING_SIZES: [f32; 3] = [20.0, 16.0, 14.0];
+/// For how many frames a heading is brought into view: texts above it are laid out in the first.
+const SCROLL_FRAMES: u32 = 3;
+
+fn asked_id() -> egui::Id {
+    egui::Id::unique("asked page of the manual")
+}
+
+/// Opens the manual at an address in this frame.
+pub(in crate::app) fn ask(ctx: &egui::Context, address: &'static str) {
+    ctx.data_mut(|data| data.insert_temp(asked_id(), address));
+}
+
+/// A button that opens the manual at an address.
+pub(in crate::app) fn help_button(ui: &mut Ui, about: &str, address: &'static str) {
+    let button = ui.add(egui::Button::new("?").frame(false));
+    let button = button.accessible_name(format!("Manual: {about}"));
+    if button.on_hover_text("Opens the manual at this page (F1).").clicked() {
+        ask(ui.ctx(), address);
+    }
+}
+
+/// The heading of a sheet, with the button behind it.
+pub(in crate::app) fn heading(ui: &mut Ui, title: &str, address: &'static str) {
+    ui.horizontal(|ui| {
+        ui.heading(title);
+        help_button(ui, title, address);
+    });
+}
+
+/// The window.
+#[derive(Default)]
+pub(in crate::app) struct Manual {
+    /// Addresses that were opened, the shown one last; empty if it is closed.
+    addresses: Vec<String>,
+    sections: Vec<Section>,
+    cache: CommonMarkCache,
+    /// Frames that are left to bring the anchor into view.
+    scrolls: u32,
+}
+
+impl Manual {
+    fn open(&mut self, address: String) {
+        let (page, _) = book::parts(&address);
+        self.sections = book::sections(page);
+        self.cache = CommonMarkCache::default();
+        for link in self
+            .sections
+            .iter()
+            .flat_map(|section| section.text.split("](").skip(1))
+        {
+            let target = link.split(')').next().unwrap_or_default();
+            if target.starts_with(SCHEME) {
+                self.cache.add_link_hook(target);
+            }
+        }
+        self.scrolls = SCROLL_FRAMES;
+        self.addresses.push(address);
+    }
+
+    /// Shows it where it is open, over the sheets if one covers the window.
+    pub(in crate::app) fn show(&mut self, ctx: &egui::Context, is_covered: bool) {
+        if let Some(address) = ctx.data_mut(|data| data.remove_temp::<&'static str>(asked_id())) {
+            self.open(address.to_owned());
+        }
+        let Some(address) = self.addresses.last().cloned() else {
+            return;
+        };
+        let mut is_open = true;
+        let area = ctx.content_rect();
+        let shown = egui::Window::new("Manual")
+            .open(&mut is_open)
+            .order(if is_covered { Order::Tooltip } else { Order::Middle })
+            .default_size(SIZE)
+            .default_pos(area.right_top() + egui::vec2(-SIZE[0] - 24.0, 48.0))
+            .show(ctx, |ui| self.page(ui, &address));
+        if let Some(address) = shown.and_then(|shown| shown.inner.flatten()) {
+            self.open(address);
+        }
+        if !is_open {
+            self.addresses.clear();
+        }
+    }
+
+    /// The page; the address that was chosen on it.
+    fn page(&mut self, ui: &mut Ui, address: &str) -> Option<String> {
+        let mut next = None;
+        ui.horizontal(|ui| {
+            if ui.button("Contents").clicked() {
+                next = Some(CONTENTS.to_owned());
+            }
+            let back = ui.add_enabled(self.addresses.len() > 1, egui::Button::new("Back"));
+            if back.on_hover_text("Goes to the page before.").clicked() {
+                self.addresses.pop();
+                next = self.addresses.pop();
+            }
+        });
+        ui.separator();
+        let (page, anchor) = book::parts(address);
+        let scrolls = self.scrolls > 0;
+        self.scrolls = self.scrolls.saturating_sub(1);
+        ScrollArea::vertical()
+            .id_salt((page, self.addresses.len()))
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                for (number, section) in self.sections.iter().enumerate() {
+                    ui.push_id(number, |ui| {
+                        let size = HEADING_SIZES[(section.level - 1).min(2)];
+                        let heading = ui.label(RichText::new(&section.heading).heading().size(size));
+                        if scrolls && !anchor.is_empty() && section.anchor == anchor {
+                            heading.scroll_to_me(Some(Align::TOP));
+                            ui.ctx().request_repaint();
+                        }
+                        CommonMarkViewer::new().show(ui, &mut self.cache, &section.text);
+                        let clicked = self.cache.link_hooks().iter().find(|(_, is_clicked)| **is_clicked);
+                        if let Some((link, _)) = clicked {
+                            next = Some(link.trim_start_matches(SCHEME).to_owned());
+                        }
+                        ui.add_space(theme::GAP);
+                    });
+                }
+            });
+        next
+    }
+}

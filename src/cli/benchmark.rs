@@ -1,0 +1,76 @@
+//! `glossmith benchmark`: this machine in numbers, to hand on and to compare.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::answer::Answer;
+use super::study::Bar;
+use crate::render::EngineChoice;
+use crate::render::study::benchmark::compare::compare;
+use crate::render::study::benchmark::report::Report;
+use crate::render::study::benchmark::{BenchmarkOptions, SECONDS, benchmark, kernel::compile_on};
+use crate::say::put;
+
+/// Arguments of `glossmith benchmark`.
+#[derive(Debug, Args)]
+pub struct BenchmarkArguments {
+    /// The engine to measure; auto stands for the CPU and every adapter of the machine.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    engine: EngineChoice,
+    /// About how long to measure [default: 180, with --quick 20].
+    #[arg(long, value_name = "SECONDS", value_parser = super::parse::number_in(1.0..=36_000.0), allow_negative_numbers = true)]
+    seconds: Option<f64>,
+    /// Measure little and small: to see that it works.
+    #[arg(long)]
+    quick: bool,
+    /// Measure nothing, and print two results side by side, with ratios and what of them is noise.
+    #[arg(long, value_names = ["A.json", "B.json"], num_args = 2, conflicts_with_all = ["engine", "seconds", "quick"])]
+    compare: Option<Vec<PathBuf>>,
+    /// Print the seconds that an adapter takes to compile: for the measurement itself.
+    #[arg(long, value_name = "ADAPTER", hide = true)]
+    compile_on: Option<String>,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+/// Measures this machine, or compares two results.
+///
+/// # Errors
+/// A file that cannot be read or written, or is no result.
+pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
+    arguments.answer.check_writable()?;
+    if let Some(adapter) = &arguments.compile_on {
+        put!("{}", compile_on(adapter)?.as_secs_f64());
+        return Ok(());
+    }
+    let (text, is_written) = match &arguments.compare {
+        Some(paths) => {
+            let reports = paths
+                .iter()
+                .map(|path| Report::read(path))
+                .collect::<Result<Vec<_>, _>>()?;
+            let comparison = compare(&reports[0], &reports[1]);
+            (comparison.text(), arguments.answer.write(&comparison))
+        }
+        None => {
+            let report = measured(arguments)?;
+            (report.text(), arguments.answer.write(&report))
+        }
+    };
+    if arguments.answer.has_words() {
+        put!("{}", text.trim_end());
+    }
+    is_written
+}
+
+fn measured(arguments: &BenchmarkArguments) -> anyhow::Result<Report> {
+    let options = BenchmarkOptions {
+        engine: arguments.engine,
+        seconds: arguments.seconds.unwrap_or(SECONDS[usize::from(arguments.quick)]),
+        quick: arguments.quick,
+        program: std::env::current_exe().ok(),
+    };
+    let bar = Bar::new()?;
+    Ok(benchmark(&options, &mut |progress| bar.show(progress))?)
+}

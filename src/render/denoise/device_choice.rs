@@ -1,0 +1,101 @@
+//! Choice of the device that denoises.
+
+use std::str::FromStr;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use crate::named::{Named, named};
+
+named! {
+    /// Device that the user asks for.
+    #[derive(Default)]
+    DenoiseDevice {
+        #[default]
+        Auto, "auto", "Automatic", "The fastest by the library's own estimate.";
+        Gpu, "gpu", "GPU", "A GPU (CUDA, HIP, SYCL, Metal); the CPU where none works.";
+        Cpu, "cpu", "CPU", "The CPU.";
+    }
+}
+
+impl FromStr for DenoiseDevice {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::by_name(text).ok_or_else(|| format!("images are denoised on auto, gpu or cpu, not {text}"))
+    }
+}
+
+/// The process-wide choice, as a number.
+static CHOSEN: AtomicU32 = AtomicU32::new(DenoiseDevice::Auto as u32);
+
+impl DenoiseDevice {
+    /// Holds for all denoisers that are opened from now on.
+    pub fn choose(self) {
+        CHOSEN.store(self as u32, Relaxed);
+    }
+
+    /// The latest choice.
+    pub fn chosen() -> Self {
+        let number = CHOSEN.load(Relaxed);
+        let is_it = |choice: &&Self| **choice as u32 == number;
+        Self::ALL.iter().find(is_it).copied().unwrap_or_default()
+    }
+
+    /// Devices to try in order, by their places in the library's list, which begins with the fastest.
+    pub(super) fn candidates(self, kinds: &[DeviceKind]) -> Vec<usize> {
+        let places = |is_wanted: fn(DeviceKind) -> bool| (0..kinds.len()).filter(move |place| is_wanted(kinds[*place]));
+        let is_cpu = |kind| kind == DeviceKind::Cpu;
+        match self {
+            Self::Auto => (0..kinds.len()).collect(),
+            Self::Gpu => places(|kind| kind != DeviceKind::Cpu).chain(places(is_cpu)).collect(),
+            Self::Cpu => places(is_cpu).collect(),
+        }
+    }
+}
+
+/// Kind of a device, as the library numbers it (`OIDNDeviceType`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum DeviceKind {
+    Cpu,
+    Sycl,
+    Cuda,
+    Hip,
+    Metal,
+    Unknown,
+}
+
+impl DeviceKind {
+    pub(super) fn of(number: i32) -> Self {
+        match number {
+            1 => Self::Cpu,
+            2 => Self::Sycl,
+            3 => Self::Cuda,
+            4 => Self::Hip,
+            5 => Self::Metal,
+            _ => Self::Unknown,
+        }
+    }
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "CPU",
+            Self::Sycl => "SYCL",
+            Self::Cuda => "CUDA",
+            Self::Hip => "HIP",
+            Self::Metal => "Metal",
+            Self::Unknown => "unknown device",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn devices_are_tried_in_the_library_s_order_and_the_cpu_last_where_a_gpu_is_asked_for() {
+        let kinds = [DeviceKind::Cuda, DeviceKind::Cpu, DeviceKind::Sycl];
+        assert_eq!(DenoiseDevice::Auto.candidates(&kinds), [0, 1, 2]);
+        assert_eq!(DenoiseDevice::Gpu.candidates(&kinds), [0, 2, 1]);
+        assert_eq!(DenoiseDevice::Cpu.candidates(&kinds), [1]);
+        assert_eq!(DenoiseDevice::Gpu.candidates(&[DeviceKind::Cpu]), [0]);
+    }
+}

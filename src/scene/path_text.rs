@@ -1,0 +1,116 @@
+//! Paths as text for JSON: as they are, or as `file:` addresses where they are not Unicode. No two paths share a text.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, percent_encode};
+use serde::{Deserialize as _, Deserializer, Serializer};
+
+/// The beginning of a file's address.
+const SCHEME: &str = "file://";
+/// Bytes that are encoded in an address.
+const ENCODED: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'/')
+    .remove(b'.')
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'~');
+
+/// The path as text: itself if it is Unicode, otherwise the address of its absolute path.
+pub fn path_text(path: &Path) -> Cow<'_, str> {
+    match path.to_str() {
+        Some(text) if !text.starts_with(SCHEME) => text.into(),
+        _ => {
+            let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+            let bytes = whole.as_os_str().as_encoded_bytes();
+            format!("{SCHEME}{}", percent_encode(bytes, ENCODED)).into()
+        }
+    }
+}
+
+/// The path of a text: a file's address is decoded.
+pub fn path_of_text(text: &str) -> PathBuf {
+    match text.strip_prefix(SCHEME) {
+        Some(encoded) => path_of_bytes(percent_decode_str(encoded).collect()),
+        None => text.into(),
+    }
+}
+
+#[cfg(unix)]
+fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
+    use std::os::unix::ffi::OsStringExt as _;
+    std::ffi::OsString::from_vec(bytes).into()
+}
+
+#[cfg(not(unix))]
+fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
+    String::from_utf8_lossy(&bytes).into_owned().into()
+}
+
+/// Serializes a path as text.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(&path_text(path))
+}
+
+/// Lists of paths as texts.
+pub mod list {
+    use super::*;
+
+    /// Serializes paths as texts.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer>(paths: &[PathBuf], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(paths.iter().map(|path| path_text(path)))
+    }
+
+    /// The paths of texts.
+    ///
+    /// # Errors
+    /// Those of the deserializer.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<PathBuf>, D::Error> {
+        let texts = Vec::<String>::deserialize(from)?;
+        Ok(texts.iter().map(|text| path_of_text(text)).collect())
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+
+    use super::*;
+
+    #[test]
+    fn each_path_has_a_text_of_its_own_that_leads_back() {
+        let names: [&[u8]; 6] = [
+            b"a.png",
+            b"/t/a\xff b.png",
+            b"/t/a\xfe b.png",
+            b"file:///t/a%FF.png",
+            b"/t/%ff",
+            "ä".as_bytes(),
+        ];
+        let paths = names.map(|name| Path::new(OsStr::from_bytes(name)));
+        let texts = paths.map(path_text);
+        for (place, text) in texts.iter().enumerate() {
+            assert!(!texts[..place].contains(text), "{text}");
+            let whole = if text.starts_with(SCHEME) {
+                std::path::absolute(paths[place]).expect("a folder")
+            } else {
+                paths[place].to_owned()
+            };
+            assert_eq!(path_of_text(text), whole);
+        }
+        assert_eq!(
+            path_of_text("file:///my%20models/%c3%a4.glb"),
+            Path::new("/my models/ä.glb")
+        );
+        assert_eq!(path_of_text("file:///100%"), Path::new("/100%"));
+        assert_eq!(texts[1], "file:///t/a%FF%20b.png");
+        assert_eq!([&texts[0], &texts[5]], ["a.png", "ä"]);
+    }
+}

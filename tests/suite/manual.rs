@@ -1,0 +1,159 @@
+//! The manual in the window: F1 and each *?* lead to a page of the book that is there.
+
+use egui::accesskit::Role;
+use egui::{Key, Vec2};
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::book::{self, CONTENTS, OF_SHEETS, PAGES, Section};
+use glossmith::app::layout::Pane;
+use std::path::Path;
+
+use super::docs::text_of;
+use super::ui::{Editor, editor, request};
+use super::ui_hands::press;
+
+/// The section that an address leads to.
+fn section(address: &str) -> Section {
+    let (page, anchor) = book::parts(address);
+    let found = book::sections(page)
+        .into_iter()
+        .find(|section| anchor.is_empty() || section.anchor == anchor);
+    found.unwrap_or_else(|| panic!("{address}: the book has no such page or heading"))
+}
+
+/// Whether the heading that an address leads to is seen in the manual.
+fn shows(harness: &Editor, address: &str) -> bool {
+    let window = harness.ctx.content_rect();
+    let heading = section(address).heading;
+    let mut headings = harness.query_all_by_label(&heading);
+    headings.any(|heading| window.contains_rect(heading.rect()))
+}
+
+fn close(harness: &mut Editor) {
+    press(harness, "Close window");
+    assert!(harness.query_by_label("Contents").is_none());
+}
+
+#[test]
+fn pages_and_headings_that_the_window_leads_to_exist() {
+    for address in Pane::ALL
+        .into_iter()
+        .map(Pane::manual)
+        .chain(OF_SHEETS)
+        .chain([CONTENTS])
+    {
+        assert!(!section(address).heading.is_empty(), "{address}");
+    }
+}
+
+/// All pages but those for contributors are in the program.
+#[test]
+fn the_manual_has_the_pages_of_the_book() {
+    let summary = text_of(Path::new("docs/SUMMARY.md"));
+    let (for_users, _) = summary.split_once("# Contributing").expect("pages for contributors");
+    let links = for_users.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    for link in links.filter(|link| *link != "PANELS.md") {
+        assert!(
+            PAGES.iter().any(|(page, _)| *page == link),
+            "src/app/book.rs lacks {link}"
+        );
+    }
+    for (page, text) in PAGES {
+        assert_eq!(*text, text_of(&Path::new("docs").join(page)), "{page}");
+    }
+}
+
+#[test]
+fn links_of_the_manual_lead_to_pages_and_headings() {
+    let mut count = 0;
+    for (page, _) in PAGES {
+        let text: String = book::sections(page).into_iter().map(|section| section.text).collect();
+        for address in text.split("](book:").skip(1).filter_map(|rest| rest.split(')').next()) {
+            section(address);
+            count += 1;
+        }
+    }
+    assert!(count > 100, "{count} links");
+}
+
+#[test]
+fn f1_opens_the_page_of_the_panel_under_the_pointer() {
+    let mut harness = editor();
+    for pane in Pane::ALL {
+        harness.state_mut().reveal(pane);
+        harness.run_steps(3);
+        let place = match pane {
+            Pane::Viewport => harness.get_by_label("Viewport").rect().center(),
+            pane => {
+                harness
+                    .get_by_label(&format!("Manual: {}", pane.title()))
+                    .rect()
+                    .center()
+                    + Vec2::new(-20.0, 60.0)
+            }
+        };
+        harness.hover_at(place);
+        harness.run_steps(2);
+        harness.key_press(Key::F1);
+        harness.run_steps(5);
+        assert!(
+            shows(&harness, pane.manual()),
+            "F1 over {} shows {}",
+            pane.title(),
+            pane.manual()
+        );
+        close(&mut harness);
+    }
+}
+
+#[test]
+fn the_question_mark_of_a_panel_opens_its_page() {
+    let mut harness = editor();
+    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
+        harness.state_mut().reveal(pane);
+        harness.run_steps(3);
+        press(&mut harness, &format!("Manual: {}", pane.title()));
+        harness.run_steps(3);
+        assert!(shows(&harness, pane.manual()), "{}", pane.title());
+        close(&mut harness);
+    }
+}
+
+/// The manual lies over a dialog, and its links work there.
+#[test]
+fn f1_over_a_dialog_opens_its_page() {
+    let mut harness = editor();
+    request(&mut harness, Action::Do(Command::Turntable));
+    harness.key_press(Key::F1);
+    harness.run_steps(5);
+    assert!(shows(&harness, "how-to/turntable.md"));
+    press(&mut harness, "Contents");
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Link, "Use textures").click();
+    harness.run_steps(5);
+    assert!(shows(&harness, "how-to/textures.md"));
+    press(&mut harness, "Back");
+    assert!(shows(&harness, CONTENTS));
+    close(&mut harness);
+    assert!(
+        harness.query_by_label("Turntable").is_some(),
+        "the dialog is still open"
+    );
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    request(&mut harness, Action::Do(Command::ModelFile));
+    press(&mut harness, "Manual: Model file");
+    harness.run_steps(3);
+    assert!(shows(&harness, "FORMATS.md#models"));
+}
+
+#[test]
+fn the_help_menu_opens_the_contents() {
+    let mut harness = editor();
+    harness.get_by_role_and_label(Role::Button, "Help").click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Manual").click();
+    harness.run_steps(5);
+    assert!(shows(&harness, CONTENTS));
+    harness.check_accessibility();
+}

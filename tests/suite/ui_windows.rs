@@ -1,0 +1,156 @@
+//! The book's screenshots of the whole window, each with its document inside; `UPDATE_DOCS=1 cargo test ui_windows` takes
+//! them. And what holds for every picture of the book.
+
+use std::path::{Path, PathBuf};
+
+use egui::Vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options, Resolution};
+use glossmith::document::{Denoise, Document};
+use glossmith::store::material_by_name;
+use glossmith::store::picture::{load_picture_document, png_bytes};
+use glossmith::store::save_document;
+
+use super::docs::{pages, root, text_of};
+use super::ui::{Editor, options, request, see, see_label, settle, wait};
+use super::ui_hands::{press, type_path};
+
+/// Width and height of the window, pixels.
+const SIZE: [u32; 2] = [1440, 900];
+/// Least width of an image that a reader looks at, and that of the small ones for comparing noise at its own size.
+const LEAST_WIDTH: u32 = 640;
+const NOISE_WIDTH: u32 = 480;
+/// Drawings, which have no document.
+const DRAWN: [&str; 3] = ["scatter-", "race", "materialx-examples"];
+
+fn pictures() -> PathBuf {
+    root().join("docs/pictures")
+}
+
+fn document() -> Document {
+    let mut document = Document {
+        ground: true,
+        materials: vec![material_by_name("car-paint-red").expect("a preset").clone()],
+        ..Document::default()
+    };
+    document.camera.yaw_deg = 20.0;
+    document.camera.pitch_deg = 12.0;
+    document.camera.fov_deg = 24.0;
+    document.camera.target = Some([0.2, 1.3, 0.0]);
+    document.view.denoise = Denoise::High;
+    document.render.samples = 32;
+    document
+}
+
+fn window(folder: &Path) -> Editor {
+    let made = Options {
+        document: Some(document()),
+        resolution: Some(Resolution::Auto),
+        data: Some(folder.join("data")),
+        cache: Some(folder.join("cache")),
+        typed_paths: Some(folder.to_owned()),
+        ..options()
+    };
+    let mut harness: Editor = Harness::builder()
+        .with_size(Vec2::new(SIZE[0] as f32, SIZE[1] as f32))
+        .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
+    settle(&mut harness);
+    harness
+}
+
+fn reveal(harness: &mut Editor, panes: &[Pane]) {
+    for pane in panes {
+        request(harness, Action::Reveal(*pane));
+    }
+    settle(harness);
+    // Thumbnails and plots come after the render.
+    for _ in 0..60 {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        harness.step();
+    }
+}
+
+/// Writes the window as it is, with its document inside.
+fn take(harness: &mut Editor, name: &str) {
+    harness.hover_at(egui::pos2(-10.0, -10.0));
+    harness.run_steps(4);
+    let window = harness
+        .render()
+        .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let size = [window.width(), window.height()];
+    let text = tempfile::NamedTempFile::new().expect("a temporary file");
+    save_document(text.path(), harness.state().document()).expect("saved");
+    let text = std::fs::read_to_string(text.path()).expect("the text");
+    let bytes = png_bytes(size, &window.into_raw(), Some(&text)).expect("an image");
+    std::fs::write(pictures().join(format!("{name}.png")), bytes).expect("written");
+}
+
+fn take_all() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = window(folder.path());
+    reveal(
+        &mut harness,
+        &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve],
+    );
+    take(&mut harness, "window");
+    request(&mut harness, Action::Do(Command::ToggleTheme));
+    reveal(&mut harness, &[Pane::Samples, Pane::Camera]);
+    take(&mut harness, "window-light");
+    request(&mut harness, Action::Do(Command::ToggleTheme));
+    request(&mut harness, Action::Do(Command::Measure));
+    see(&mut harness, "the ledger", |harness| {
+        harness
+            .query_by_label_contains("ms for one sample of every pixel")
+            .is_some()
+    });
+    reveal(&mut harness, &[Pane::Effects, Pane::Curve]);
+    take(&mut harness, "window-effects");
+    request(&mut harness, Action::Do(Command::Compare));
+    wait(&mut harness, "B", |app| app.rms_difference().is_some());
+    reveal(&mut harness, &[Pane::Lobe, Pane::Lighting]);
+    take(&mut harness, "window-compare");
+    request(&mut harness, Action::Do(Command::Compare));
+    settle(&mut harness);
+    request(&mut harness, Action::Do(Command::Export));
+    type_path(&mut harness, &folder.path().join("car-paint.mtlx"), "Save");
+    see_label(&mut harness, "Write the file");
+    take(&mut harness, "window-export");
+    press(&mut harness, "Cancel");
+    press(&mut harness, "Manual: Light");
+    harness.run_steps(5);
+    take(&mut harness, "window-manual");
+}
+
+#[test]
+fn every_picture_has_its_document_and_is_shown() {
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        take_all();
+    }
+    let book: String = pages().iter().map(|page| text_of(page)).collect();
+    let entries = std::fs::read_dir(pictures()).expect("the folder");
+    let mut count = 0;
+    for path in entries.map(|entry| entry.expect("an entry").path()) {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.extension().is_none_or(|ending| ending != "png") {
+            continue;
+        }
+        count += 1;
+        assert!(book.contains(&format!("pictures/{name})")), "no page shows {name}");
+        if DRAWN.iter().any(|start| name.starts_with(start)) {
+            continue;
+        }
+        let document = load_picture_document(&path);
+        assert!(document.is_ok(), "{name} has no document: run make pictures");
+        let (width, _) = image::image_dimensions(&path).expect("an image");
+        let least = if name.starts_with("denoise-") {
+            NOISE_WIDTH
+        } else {
+            LEAST_WIDTH
+        };
+        assert!(width >= least, "{name} is {width} pixels wide");
+    }
+    assert!(count > 40, "{count} pictures");
+}
