@@ -424,8 +424,8 @@ impl App {
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
             .show(ui, |ui| {
-                let tells_numbers = self.workspaces.current() == workspaces::MEASURE;
-                status::show(ui, &snapshot, &self.meter, tells_numbers, actions);
+                let has_numbers = self.workspaces.current() == workspaces::MEASURE;
+                status::show(ui, &snapshot, &self.meter, has_numbers, actions);
             });
         let ground = egui::Frame::new()
             .fill(theme::ground(is_dark))

@@ -16,7 +16,7 @@ use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::study::{StudyError, StudyProgress, Watch};
 
-/// How often what is left is told anew.
+/// How often what is left is updated.
 const TOLD_EVERY: Duration = Duration::from_millis(500);
 
 /// What is to be done.

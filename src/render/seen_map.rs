@@ -47,7 +47,7 @@ pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
     })
 }
 
-/// The map of a job in these columns and rows, whatever the size of its image; `None` if superseded.
+/// The map of a job in these columns and rows, at any size of its image; `None` if superseded.
 pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
     let longest = columns.max(rows).max(1);
     let kept = SIDE_MAX_PX.min(longest);

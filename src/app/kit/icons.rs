@@ -15,7 +15,7 @@ pub(in crate::app) enum Icon {
     Shown,
     /// A closed one.
     Hidden,
-    /// The squares of a picture.
+    /// The squares of a texture.
     Texture,
 }
 

@@ -143,7 +143,7 @@ impl Tile<'_> {
     }
 }
 
-/// Side of the picture that follows the pointer in a drag, and how far it is from it, points.
+/// Side of the image that follows the pointer in a drag, and how far it is from it, points.
 const DRAGGED: f32 = 56.0;
 const DRAGGED_BY: f32 = 10.0;
 

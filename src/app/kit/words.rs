@@ -11,9 +11,9 @@ pub(in crate::app) fn duration(seconds: f64) -> String {
     }
 }
 
-/// A time from which what is left of a work can be told, seconds.
+/// A time from which what is left of a work is known, seconds.
 const TOLD_FROM_S: f64 = 0.5;
-/// A share from which what is left of a work can be told.
+/// A share from which what is left of a work is known.
 const TOLD_FROM_SHARE: f64 = 0.01;
 
 /// What is left of a work of which a share is done after a time: "40 s left". `None` where that would be a guess.

@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(unknown(&render), "The error is known once every pixel has 16 samples.");
     }
 
-    /// An estimate above all of the mean is worth nothing yet, and is not told as a number.
+    /// An estimate above all of the mean is worth nothing yet, and is not shown as a number.
     #[test]
     fn no_error_above_the_whole_is_told() {
         assert_eq!(with_band(&seen(22.93, 1.0).noise), "not yet known");

@@ -56,7 +56,7 @@ pub(in crate::app) struct Library {
     hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
     worker: Option<ThumbnailWorker>,
-    /// Those of the document with the keys of their pictures, as they were when the user last paused.
+    /// Those of the document with the keys of their images, as they were when the user last paused.
     in_document: Vec<(MaterialSettings, u64)>,
     /// Materials that lie in watched folders.
     pub(in crate::app) watched: Vec<MaterialSettings>,

@@ -85,7 +85,7 @@ pub(in crate::app) fn add_import(log: &mut Vec<Entry>, name: &str, report: &Impo
 mod tests {
     use super::*;
 
-    /// What became of a file is told in plain words, the worst first, and marked to stay.
+    /// What became of a file is said in plain words, the worst first, and marked to stay.
     #[test]
     fn an_import_is_told_by_what_is_worst_of_it() {
         let mut report = ImportReport::default();

@@ -34,7 +34,7 @@ pub(in crate::app) struct Selection {
     /// The list of lights was shown in this frame, and in the one before: lights are marked in the viewport.
     pub(in crate::app) shows_lights: bool,
     pub(in crate::app) showed_lights: bool,
-    /// The place of a texture that the pointer is over in this frame: a picture that is dropped goes there.
+    /// The place of a texture that the pointer is over in this frame: an image that is dropped goes there.
     pub(in crate::app) texture: Option<TextureTarget>,
     /// The material that was copied.
     pub(in crate::app) copied: Option<MaterialSettings>,

@@ -1,4 +1,4 @@
-//! The bar at the bottom: whether the picture is clean or how long that takes; in *Measure* also what renders, how exact
+//! The bar at the bottom: whether the image is clean or how long that takes; in *Measure* also what renders, how exact
 //! it is, and how long the window's frames take. Elsewhere these are shown under the pointer.
 
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ use crate::render::worker::{Activity, Snapshot};
 const LOADING_REPAINT: Duration = Duration::from_millis(200);
 /// How long a frame counts as recent.
 const RECENT: Duration = Duration::from_secs(10);
-/// A picture that has ended below this estimated error is called clean.
+/// An image that has ended below this estimated error is called clean.
 const CLEAN: f64 = 0.05;
 /// Frames left out of the worst: at the start, fonts and pipelines are made.
 const WARM_UP_FRAMES: u64 = 10;
@@ -156,27 +156,23 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Shows the bar's contents, what there is room for. `tells_numbers`: error, samples and times stand in it, too.
+/// Shows the bar's contents, what there is room for. `has_numbers`: error, samples and times stand in it, too.
 pub(in crate::app) fn show(
     ui: &mut Ui,
     snapshot: &Snapshot,
     meter: &FrameMeter,
-    tells_numbers: bool,
+    has_numbers: bool,
     actions: &mut Vec<Action>,
 ) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
-        let mut parts = if tells_numbers {
-            engine(ui, snapshot)
-        } else {
-            Vec::new()
-        };
+        let mut parts = if has_numbers { engine(ui, snapshot) } else { Vec::new() };
         parts.extend(activity(ui, snapshot, actions));
-        if tells_numbers {
+        if has_numbers {
             parts.extend(progress(ui, snapshot));
         }
         parts.extend(size(ui, snapshot));
-        if tells_numbers {
+        if has_numbers {
             parts.push(window_time(ui, meter, snapshot));
         }
         let widths: Vec<_> = parts.iter().map(|part| (part.rank, part.width)).collect();

@@ -1,4 +1,4 @@
-//! A way to the denoiser where it is missing: why the picture is noisy at first, and a button that fetches it.
+//! A way to the denoiser where it is missing: why the image is noisy at first, and a button that fetches it.
 
 use egui::{Rect, Ui, vec2};
 
@@ -26,7 +26,7 @@ pub(super) struct DenoiserOffer {
 }
 
 impl DenoiserOffer {
-    /// Shows the offer over the picture where the denoiser is missing; once it is there, pictures are denoised.
+    /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         if self.is_declined
             || !desk.shared.offers_downloads
@@ -57,7 +57,7 @@ impl DenoiserOffer {
             let text = match outcome {
                 Some(Err(why)) => why,
                 _ if is_busy => "Downloading; you can go on meanwhile.".to_owned(),
-                _ => "Pictures are noisy at first: the denoiser is not installed.".to_owned(),
+                _ => "Images are noisy at first: the denoiser is not installed.".to_owned(),
             };
             ui.add(egui::Label::new(text).wrap());
         });

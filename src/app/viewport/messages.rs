@@ -1,4 +1,4 @@
-//! What lies over the picture for the user to act on: messages, and the way to a model of one's own.
+//! What lies over the image for the user to act on: messages, and the way to a model of one's own.
 
 use egui::{Rect, Ui, Vec2, pos2, vec2};
 

@@ -34,7 +34,7 @@ impl Outline {
             self.maps = seen_map::spawn(move || ctx.request_repaint()).ok();
         }
         let Some(maps) = &self.maps else { return };
-        // In the screen's pixels, whatever the picture's are by now.
+        // In the screen's pixels, at any size of the image.
         let pixels = place.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));
         let latest = maps.latest();

@@ -28,7 +28,7 @@ const SLOTS_SHOWN: f32 = 6.0;
 const ANOTHER_FROM: usize = 3;
 /// The parameter after which a metal's two ways stand: by colours, or as measured.
 const METAL_KEY: &str = "specular.conductor";
-/// The groups that are open whatever is in them.
+/// The groups that are always open.
 const ALWAYS_OPEN: [&str; 2] = ["Base", "Specular"];
 
 /// The parameters of the selected material.
