@@ -268,6 +268,8 @@ mod ui_textures;
 mod ui_windows;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
+#[path = "suite/ui_workspaces.rs"]
+mod ui_workspaces;
 #[path = "suite/walk.rs"]
 mod walk;
 #[path = "suite/words.rs"]

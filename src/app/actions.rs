@@ -9,6 +9,7 @@ use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
 use crate::app::services::snapshots::PinChange;
+use crate::app::services::workspaces;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::shown::Shown;
@@ -69,12 +70,16 @@ pub enum Action {
     UseRayQueries(RayQueries),
     /// Shows the image or a map of its error or samples.
     Show(Shown),
+    /// Looks from a bookmark of the camera, by number.
+    UseBookmark(usize),
     /// Opens an example, by number.
     OpenExample(usize),
     /// Brings a panel to the front.
     Reveal(Pane),
     /// Closes a panel.
     Close(Pane),
+    /// Changes the workspaces, or which is shown.
+    ChangeWorkspaces(workspaces::Change),
     /// Shows a parameter of the selected material and gives it the keys.
     Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.
@@ -201,7 +206,7 @@ commands! {
     Pin, View, "Pin a snapshot", "Saves material, light and camera with a thumbnail, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
-    ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;
+    ResetLayout, View, "Reset layout", "Puts the panels of this workspace back to where they were at first.", None, 1;
     Pause, Render, "Pause / resume", "Stops rendering, or goes on with it.", key(Key::Space), 0;
     Restart, Render, "Restart render", "Restarts the render.", None, 0;
     Region, Render, "Render region", "Drag a rectangle to render only that part.", key(Key::B), 1;
@@ -210,7 +215,7 @@ commands! {
     Race, Render, "Run the race", "Compares techniques on this view: time to a given noise, and bias.", None, 2;
     QueuePicture, Render, "Render to a file…", "Renders the document as it is, at its own size and with all its samples, into a file (.png, .exr, .hdr), in the background.", None, 3;
     Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered images, in the background.", None, 3;
-    Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
+    Palette, Help, "Find a command…", "Lists every command, panel, parameter, material, environment and recent file; type to search.", keys(CTRL, Key::K), 0;
     Manual, Help, "Manual", "Opens the manual at the page about the panel under the pointer.", key(Key::F1), 0;
     Shortcuts, Help, "Keys and mouse", "Lists shortcuts of keys and mouse.", keys(Modifiers::SHIFT, Key::F1), 0;
     Benchmark, Help, "Benchmark", "Measures every engine and adapter of this machine, below the checks.", None, 1;

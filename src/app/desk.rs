@@ -66,6 +66,8 @@ pub(super) struct Shared {
     pub(super) look: Look,
     /// How many of the hints for new users are over.
     pub(super) hints_seen: usize,
+    /// The window may offer to download what it lacks.
+    pub(super) offers_downloads: bool,
     /// The angle between view and normal in the plots of lobes and their samples, degrees.
     pub(super) view_angle_deg: f32,
     /// The file of a measured material, to compare lobes with.
@@ -230,7 +232,7 @@ impl Desk<'_> {
     /// The row of a setting.
     fn setting(&mut self, ui: &mut Ui, setting: &'static Parameter<Document>) {
         let mut value = setting.get(self.document);
-        if parameter_row::show(ui, setting, &mut value, |_| {}) && setting.set(self.document, value).is_ok() {
+        if parameter_row::show(ui, setting, &mut value) && setting.set(self.document, value).is_ok() {
             self.edits.note(setting.full_name(), setting.key);
         }
     }

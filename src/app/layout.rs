@@ -18,8 +18,46 @@ use crate::app::viewport::Viewport;
 const LEFT_SHARE: f32 = 0.205;
 const RIGHT_SHARE: f32 = 0.25;
 
-/// The layout at first: presets over light and camera on the left, the image, the material over its plots on the right.
-pub(super) fn default_layout() -> Tree<Pane> {
+/// Panels in which the look is made: those that are open in *Look*.
+const LOOK_PANES: [Pane; 8] = [
+    Pane::Viewport,
+    Pane::Presets,
+    Pane::Scene,
+    Pane::Snapshots,
+    Pane::Lighting,
+    Pane::Camera,
+    Pane::Material,
+    Pane::Curve,
+];
+
+/// The layout of *Look*: presets over light and camera on the left, the image, the material on the right.
+pub(super) fn to_look() -> Tree<Pane> {
+    let mut tree = all_docked();
+    let place = |tree: &Tree<Pane>, pane| tree.tiles.find_pane(&pane);
+    let beside = |tree: &Tree<Pane>| tree.tiles.parent_of(place(tree, Pane::Material)?);
+    if let Some((curve, tabs)) = place(&tree, Pane::Curve).zip(beside(&tree)) {
+        tree.move_tile_to_container(curve, tabs, 1, false);
+    }
+    for pane in Pane::ALL.into_iter().filter(|pane| !LOOK_PANES.contains(pane)) {
+        close(&mut tree, pane);
+    }
+    for pane in [Pane::Presets, Pane::Lighting, Pane::Material] {
+        reveal(&mut tree, pane);
+    }
+    tree
+}
+
+/// The layout of *Measure*: every panel, effects and convergence in front.
+pub(super) fn to_measure() -> Tree<Pane> {
+    let mut tree = all_docked();
+    for pane in [Pane::Effects, Pane::Convergence] {
+        reveal(&mut tree, pane);
+    }
+    tree
+}
+
+/// All panels where they are docked at first.
+fn all_docked() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut tabs = |home: Home| {
         let panes: Vec<TileId> = panes_of(home).map(|pane| tiles.insert_pane(pane)).collect();
@@ -228,7 +266,7 @@ mod tests {
     /// A layout that was saved before there were some of the panels keeps its shape and gets them.
     #[test]
     fn a_saved_layout_gets_the_panels_that_it_lacks() {
-        let mut tree = default_layout();
+        let mut tree = all_docked();
         for pane in [Pane::Race, Pane::Material, Pane::Convergence] {
             let tile = tree.tiles.find_pane(&pane).expect("it is there");
             tree.remove_recursively(tile);
@@ -244,7 +282,7 @@ mod tests {
 
     #[test]
     fn a_panel_that_is_closed_comes_back_where_it_was() {
-        let mut tree = default_layout();
+        let mut tree = all_docked();
         let place = |tree: &Tree<Pane>, pane: Pane| tree.tiles.parent_of(tree.tiles.find_pane(&pane)?);
         let tabs = place(&tree, Pane::Race).expect("it is docked");
         for pane in panes_of(Home::LowerLeft) {
@@ -262,7 +300,7 @@ mod tests {
 
     #[test]
     fn a_layout_without_the_picture_is_none() {
-        let mut tree = default_layout();
+        let mut tree = all_docked();
         let tile = viewport_tile(&tree).expect("it is there");
         tree.remove_recursively(tile);
         assert!(complete(tree).is_none());

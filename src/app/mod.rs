@@ -17,6 +17,7 @@ mod settings;
 mod sheets;
 mod study;
 mod viewport;
+pub mod workspaces;
 
 use std::io;
 use std::path::PathBuf;
@@ -49,7 +50,9 @@ use sheets::status::{self, FrameMeter};
 use sheets::turntable::TurntableSheet;
 use sheets::unsaved::Unsaved;
 use viewport::Viewport;
+use workspaces::Workspaces;
 
+use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
@@ -58,7 +61,7 @@ use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
-use crate::store::examples::EXAMPLES;
+use crate::store::examples::still_life;
 
 /// A finished image that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -75,6 +78,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         engine,
         data: settings::data_folder(),
         cache: settings::cache_folder(),
+        offers_downloads: true,
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
@@ -110,6 +114,10 @@ pub struct Options {
     pub keep_pictures_from: Option<Duration>,
     /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
     pub typed_paths: Option<PathBuf>,
+    /// Whether the window may offer to download what it lacks.
+    pub offers_downloads: bool,
+    /// The name of the workspace instead of the one that was left.
+    pub workspace: Option<String>,
 }
 
 /// The editor.
@@ -130,6 +138,7 @@ pub struct App {
     awaited: usize,
     shared: Shared,
     panels: Panels,
+    workspaces: Workspaces,
     layout: Tree<Pane>,
     is_maximised: bool,
     viewport: Viewport,
@@ -152,18 +161,20 @@ pub struct App {
     theme: egui::ThemePreference,
 }
 
-/// What a new document is: the default one, but denoised as before.
-fn new_document(denoise: Denoise) -> Document {
-    let mut document = Document::default();
-    document.view.denoise = denoise;
-    document
+/// What a new document is: the still life, or for files to come the default document.
+fn new_document(denoise: Denoise, is_for_files: bool) -> Document {
+    let document = if is_for_files {
+        Document::default()
+    } else {
+        still_life()
+    };
+    denoised_by(denoise, document)
 }
 
-/// An example, denoised as before.
-fn example(number: usize, denoise: Denoise) -> Option<Document> {
-    let mut document = (EXAMPLES.get(number)?.document)();
+/// The document, denoised as before.
+fn denoised_by(denoise: Denoise, mut document: Document) -> Document {
     document.view.denoise = denoise;
-    Some(document)
+    document
 }
 
 impl App {
@@ -189,13 +200,11 @@ impl App {
         let queue = Queue::new(worker.assets().clone(), move || ctx.request_repaint())?;
         let document = options
             .document
-            .unwrap_or_else(|| match kept.is_first && options.files.is_empty() {
-                true => example(0, kept.denoise).unwrap_or_default(),
-                false => new_document(kept.denoise),
-            });
+            .unwrap_or_else(|| new_document(kept.denoise, !options.files.is_empty()));
         let materials = options.data.as_ref().map(|data| data.join("materials"));
         let library = library::Library::new(materials, options.cache.clone());
         let environments = environments::Environments::new(options.cache.clone(), library.holder());
+        let (workspaces, layout) = Workspaces::new(kept.workspaces, kept.layout, options.workspace);
         let mut app = Self {
             edits: Edits::new(document.clone()),
             document,
@@ -222,6 +231,7 @@ impl App {
                 shown: Shown::default(),
                 look: services::look::Look::default(),
                 hints_seen: kept.hints_seen,
+                offers_downloads: options.offers_downloads,
                 view_angle_deg: desk::VIEW_ANGLE_DEG,
                 measured: None,
                 picks: None,
@@ -238,7 +248,8 @@ impl App {
                 queue,
             },
             panels: Panels::default(),
-            layout: kept.layout.unwrap_or_else(layout::default_layout),
+            workspaces,
+            layout,
             is_maximised: false,
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
@@ -335,6 +346,8 @@ impl App {
                         self.say(Level::Info, format!("opened {}", path.display()));
                         self.shared.recent.add(path);
                     }
+                    let report = import_report(&model, self.shared.import_lobe);
+                    messages::add_import(&mut self.shared.messages, &model.name, &report);
                     self.adopt_model(source, options, &model);
                     self.use_dropped_with(&model);
                     self.count_as_start(is_start);
@@ -402,13 +415,18 @@ impl App {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
                 let chosen = (self.shared.import_lobe, self.shared.engine);
-                menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, is_open, actions);
+                let names: Vec<&str> = self.workspaces.names().collect();
+                let panels = ((names.as_slice(), self.workspaces.current()), is_open);
+                menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, panels, actions);
             });
         egui::Panel::bottom("status")
             .frame(bar)
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
-            .show(ui, |ui| status::show(ui, &snapshot, &self.meter, actions));
+            .show(ui, |ui| {
+                let has_numbers = self.workspaces.current() == workspaces::MEASURE;
+                status::show(ui, &snapshot, &self.meter, has_numbers, actions);
+            });
         let ground = egui::Frame::new()
             .fill(theme::ground(is_dark))
             .inner_margin(egui::Margin::symmetric(0, 3));
@@ -547,7 +565,8 @@ impl eframe::App for App {
         let kept = settings::Kept {
             allowed: crate::import::resource::allowed(),
             theme: self.theme,
-            layout: Some(layout),
+            layout: None,
+            workspaces: self.workspaces.kept(layout),
             resolution: self.shared.resolution,
             import_lobe: self.shared.import_lobe,
             engine: self.shared.kept_engine,
@@ -556,7 +575,6 @@ impl eframe::App for App {
             recent: self.shared.recent.paths().to_vec(),
             hints_seen: self.shared.hints_seen,
             shelves: self.shared.shelves.kept.clone(),
-            is_first: false,
         };
         kept.save(storage);
     }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
+use crate::app::workspaces;
 use crate::document::{Denoise, ImportLobe};
 use crate::import::resource;
 use crate::render::denoise::Library;
@@ -120,7 +121,11 @@ pub(super) fn cache_folder() -> Option<PathBuf> {
 #[serde(default)]
 pub(super) struct Kept {
     pub(super) theme: ThemePreference,
+    /// The arrangement of versions without workspaces: read, not written any more.
+    #[serde(skip_serializing)]
     pub(super) layout: Option<Tree<Pane>>,
+    /// The workspaces, with their arrangements of the panels.
+    pub(super) workspaces: workspaces::Kept,
     pub(super) resolution: Resolution,
     pub(super) import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
@@ -138,9 +143,6 @@ pub(super) struct Kept {
     pub(super) shelves: KeptShelves,
     /// Files that others may name, wherever they lie.
     pub(super) allowed: Vec<PathBuf>,
-    /// Nothing was left by an earlier start.
-    #[serde(skip)]
-    pub(super) is_first: bool,
 }
 
 impl Default for Kept {
@@ -148,6 +150,7 @@ impl Default for Kept {
         Self {
             theme: ThemePreference::Dark,
             layout: None,
+            workspaces: workspaces::Kept::default(),
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
             engine: EngineChoice::Auto,
@@ -157,7 +160,6 @@ impl Default for Kept {
             hints_seen: usize::MAX,
             shelves: KeptShelves::default(),
             allowed: Vec::new(),
-            is_first: false,
         }
     }
 }
@@ -168,7 +170,6 @@ impl Kept {
         let first = || Self {
             denoise: first_denoise(),
             hints_seen: 0,
-            is_first: true,
             ..Self::default()
         };
         let mut kept: Self = creation.storage.map_or_else(Self::default, |storage| {

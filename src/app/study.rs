@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use egui::Ui;
 
@@ -9,10 +10,14 @@ use crate::app::actions::Command;
 use crate::app::desk::Desk;
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
+use crate::app::kit::words::time_left;
 use crate::document::{Change, Document};
 use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::study::{StudyError, StudyProgress, Watch};
+
+/// How often what is left is updated.
+const TOLD_EVERY: Duration = Duration::from_millis(500);
 
 /// What is to be done.
 type Work<R> = Box<dyn FnOnce(&mut Watch<'_>) -> Result<R, StudyError> + Send>;
@@ -30,8 +35,10 @@ enum Standing<R> {
 pub(super) struct StudyWorker<R> {
     worker: Option<Background<Work<R>, Standing<R>>>,
     stop: Arc<AtomicBool>,
-    /// It was started, and its end has not been noticed.
-    has_begun: bool,
+    /// When it was started, where its end has not been noticed.
+    begun: Option<Instant>,
+    /// It was stopped: for the window it has ended, though its thread may still be at a step that can't be interrupted.
+    is_stopped: bool,
     /// The viewport's renderer was stopped for it.
     holds_renderer: bool,
     /// It is to be started as soon as it is shown.
@@ -45,7 +52,8 @@ impl<R> Default for StudyWorker<R> {
         Self {
             worker: None,
             stop: Arc::default(),
-            has_begun: false,
+            begun: None,
+            is_stopped: false,
             holds_renderer: false,
             is_requested: false,
             asked: Vec::new(),
@@ -54,18 +62,23 @@ impl<R> Default for StudyWorker<R> {
 }
 
 impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
-    /// Whether it runs.
+    /// Whether it runs, as far as the window is concerned.
     pub(super) fn is_running(&self) -> bool {
+        self.is_at_work() && !self.is_stopped
+    }
+
+    /// Whether its thread is at work, stopped or not.
+    fn is_at_work(&self) -> bool {
         self.worker.as_ref().is_some_and(Background::is_busy)
     }
 
     /// Notices that the study has ended, and has the viewport's renderer go on where it was stopped for it. To be called
     /// in each frame, whether its panel is seen or not.
     pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
-        if !self.has_begun || self.is_running() {
+        if self.begun.is_none() || self.is_running() {
             return;
         }
-        self.has_begun = false;
+        self.begun = None;
         desk.shared.is_measuring = false;
         if std::mem::take(&mut self.holds_renderer) && desk.shared.is_paused {
             desk.act(Command::Pause);
@@ -77,46 +90,49 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         self.is_requested = true;
     }
 
-    /// A button that starts the study, and while it runs what it does and a button that stops it. The viewport's
-    /// renderer rests meanwhile: it would take part of the time that is measured. `begin` makes the work.
+    /// A button that starts the study with what it will take, and while it runs what it does, what is left of it, and a
+    /// button that stops it. The viewport's renderer rests meanwhile: it would take part of the time that is measured.
+    /// `takes` says how long the study takes, as far as that is known; `begin` makes the work.
     pub(super) fn controls(
         &mut self,
         ui: &mut Ui,
         desk: &mut Desk<'_>,
-        label: &str,
-        help: &str,
+        (label, help): (&str, &str),
+        takes: Option<String>,
         begin: impl FnOnce(&Desk<'_>) -> Work<R>,
     ) {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
-        let is_free = !desk.shared.is_measuring;
+        let is_free = !desk.shared.is_measuring && !self.is_at_work();
         let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
                 let button = button.on_hover_text(help);
-                button.on_disabled_hover_text("Something else is being measured.")
+                button.on_disabled_hover_text("Something else is being measured, or a study is at its last step.")
             };
             let pressed = start_or_stop(ui, label, is_busy, is_free, dress);
             if pressed == Pressed::Stop {
                 self.stop.store(true, Ordering::Relaxed);
+                self.is_stopped = true;
             } else if pressed == Pressed::Start || (is_requested && !is_busy) {
                 self.asked = vec![desk.document.clone()];
                 let work = begin(desk);
                 self.begin(ui, work);
-                self.has_begun = true;
+                self.begun = Some(Instant::now());
                 desk.shared.is_measuring = true;
                 if !desk.shared.is_paused {
                     self.holds_renderer = true;
                     desk.act(Command::Pause);
                 }
             }
+            if let Some(takes) = takes.filter(|_| !is_busy) {
+                ui.weak(takes);
+            }
         });
         let standing = self.worker.as_ref().and_then(Background::latest);
         widgets::comes_and_goes(ui, |ui| match standing {
-            Some(Standing::Running(progress)) if is_busy => {
-                ui.add(egui::ProgressBar::new(progress.share as f32).desired_height(6.0));
-                widgets::note(ui, progress.what);
-            }
+            _ if self.is_stopped => widgets::note(ui, "Stopped."),
+            Some(Standing::Running(progress)) if is_busy => self.progress(ui, &progress),
             Some(Standing::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
             }
@@ -134,6 +150,20 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         });
     }
 
+    /// How far it is, and what becomes of the viewport meanwhile.
+    fn progress(&self, ui: &mut Ui, progress: &StudyProgress) {
+        ui.add(egui::ProgressBar::new(progress.share as f32).desired_height(6.0));
+        let seconds = self.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
+        let left = time_left(progress.share, seconds).map_or_else(String::new, |left| format!(" · {left}"));
+        widgets::note(ui, format!("{}{left}", progress.what));
+        widgets::note(
+            ui,
+            "You can go on editing: this measures the scene as it was at the start. Until it ends the viewport shows \
+             edits with one sample.",
+        );
+        ui.ctx().request_repaint_after(TOLD_EVERY);
+    }
+
     /// Whether the document is another one by now than what was asked about.
     pub(super) fn is_stale(&self, desk: &Desk<'_>) -> bool {
         let is_it = |asked: &Document| !Change::between(asked, desk.document).restarts();
@@ -147,6 +177,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
 
     fn begin(&mut self, ui: &Ui, work: Work<R>) {
         self.stop.store(false, Ordering::Relaxed);
+        self.is_stopped = false;
         if self.worker.is_none() {
             let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
             let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Standing<R>>| {

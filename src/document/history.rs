@@ -112,6 +112,12 @@ impl<T: Clone + PartialEq> History<T> {
         &self.states[self.current].value
     }
 
+    /// The newest value before the current one that is wanted.
+    pub fn before(&self, is_wanted: impl Fn(&T) -> bool) -> Option<&T> {
+        let earlier = self.states[..self.current].iter().rev();
+        earlier.map(|state| &state.value).find(|value| is_wanted(value))
+    }
+
     /// What undoing would take back.
     pub fn undo_label(&self) -> Option<&str> {
         (self.current > 0).then(|| &*self.states[self.current].label)

@@ -13,6 +13,7 @@ pub mod light_handle;
 pub mod match_look;
 pub mod material;
 pub mod measured_look;
+mod metal_colors;
 pub mod of_model;
 pub mod parameter;
 mod settings;

@@ -49,6 +49,10 @@ pub mod range {
     pub const CONTRAST: RangeInclusive<f64> = 0.1..=4.0;
     /// Factor of the distance from grey.
     pub const SATURATION: RangeInclusive<f64> = 0.0..=4.0;
+    /// Strength of the darker corners.
+    pub const VIGNETTE: RangeInclusive<f64> = 0.0..=2.0;
+    /// Share of the light that the glare spreads.
+    pub const GLARE: RangeInclusive<f64> = 0.0..=1.0;
     /// Width and height, pixels; the random numbers' counters have 16 bits for each.
     pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
     /// Samples a pixel.
@@ -215,6 +219,12 @@ pub struct ViewSettings {
     pub contrast: f32,
     /// The distance from grey by which colours are multiplied before it.
     pub saturation: f32,
+    /// How much darker the corners are: they keep 1/(1 + vignette)² of their light.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub vignette: f32,
+    /// The share of the light that is spread around where it falls, as in a lens.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub glare: f32,
     /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lut: Option<PathBuf>,
@@ -222,6 +232,11 @@ pub struct ViewSettings {
     pub denoise: Denoise,
     /// When that is done in the window.
     pub denoise_when: DenoiseWhen,
+}
+
+/// Whether an effect is off: documents without it stay as they were.
+fn is_zero(value: &f32) -> bool {
+    *value == 0.0
 }
 
 impl Default for ViewSettings {
@@ -233,6 +248,8 @@ impl Default for ViewSettings {
             white_k: Grade::NEUTRAL_K,
             contrast: 1.0,
             saturation: 1.0,
+            vignette: 0.0,
+            glare: 0.0,
             lut: None,
             denoise: Denoise::default(),
             denoise_when: DenoiseWhen::default(),

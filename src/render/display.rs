@@ -8,6 +8,8 @@ use crate::optics::tone::{Grade, srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
 use crate::store::lut;
 
+use super::lens;
+
 /// Luminance of middle grey.
 pub const MIDDLE_GREY: f64 = 0.18;
 
@@ -35,10 +37,12 @@ pub fn exposure(image: &Image, view: &ViewSettings) -> f32 {
     }
 }
 
-/// Exposure, white balance, contrast, saturation, tone curve, sRGB encoding and the view's table of colours: red, green, blue and
+/// What the lens does to an image, then exposure, white balance, contrast, saturation, tone curve, sRGB encoding and the view's table of colours: red, green, blue and
 /// alpha of 8 bits, row by row from the top; alpha is not premultiplied.
 pub fn display(image: &Image, view: &ViewSettings) -> Vec<u8> {
     let exposure = exposure(image, view);
+    let through_lens = lens::applied(image, view);
+    let image = through_lens.as_ref().unwrap_or(image);
     let grade = Grade::new(view.white_k, view.contrast, view.saturation);
     let lut = view.lut.as_deref().and_then(lut::remembered);
     let encode = |pixel: &[f32; 4]| -> [u8; 4] {

@@ -16,6 +16,7 @@ pub mod environment_thumbnails;
 mod error;
 pub mod explain;
 pub mod hard;
+mod lens;
 pub mod looks;
 pub mod memory;
 pub mod output;

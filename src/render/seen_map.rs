@@ -1,4 +1,4 @@
-//! Map of the object and material slot at each pixel, made in the background: for outlines.
+//! Map of the object and material slot at each pixel of the screen, made in the background: for outlines.
 
 use std::io;
 use std::sync::Arc;
@@ -11,14 +11,16 @@ use crate::scene::NO_OBJECT;
 use crate::scene::camera::camera_ray;
 
 /// Longest side of the map in pixels.
-const SIDE_MAX_PX: u32 = 1024;
+const SIDE_MAX_PX: u32 = 2048;
 /// Marks background pixels.
 pub const NOTHING: u32 = NO_OBJECT;
+/// By how much the shapes of images of one view may differ.
+const ASPECT_ROUNDING: f64 = 0.02;
 /// Rows between two checks for cancellation.
 const ROWS: usize = 32;
 
-/// Makes maps of jobs; the latest job wins.
-pub type SeenMaps = Background<Arc<Job>, Arc<SeenMap>>;
+/// Makes maps of jobs, of at most these columns and rows; the latest wins.
+pub type SeenMaps = Background<(Arc<Job>, [u32; 2]), Arc<SeenMap>>;
 
 /// Object and slot hit through each pixel's centre.
 #[derive(Clone, Debug)]
@@ -38,16 +40,15 @@ pub struct SeenMap {
 /// # Errors
 /// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
-    Background::spawn("outlines", repaint, |job: Arc<Job>, responder| {
-        if let Some(map) = seen_map(&job, || responder.is_superseded()) {
+    Background::spawn("outlines", repaint, |(job, size): (Arc<Job>, [u32; 2]), responder| {
+        if let Some(map) = seen_map(&job, size, || responder.is_superseded()) {
             responder.publish(Arc::new(map));
         }
     })
 }
 
-/// The map of a job; `None` if superseded.
-pub fn seen_map(job: &Arc<Job>, is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
-    let [columns, rows] = job.settings.image_size;
+/// The map of a job in these columns and rows, at any size of its image; `None` if superseded.
+pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
     let longest = columns.max(rows).max(1);
     let kept = SIDE_MAX_PX.min(longest);
     let [width, height] = [columns, rows].map(|side| (side * kept).div_ceil(longest).max(1));
@@ -88,6 +89,17 @@ fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
 }
 
 impl SeenMap {
+    /// Whether it is what a job's camera sees, too: its image may have another size.
+    pub fn is_of(&self, job: &Arc<Job>) -> bool {
+        let is_seen_alike = || {
+            let [own, other] = [&self.job, job].map(|job| (&job.settings.camera, job.settings.image_size));
+            // Shapes differ by what rounding to whole pixels makes of them.
+            let aspect = |[width, height]: [u32; 2]| f64::from(width) / f64::from(height.max(1));
+            own.0 == other.0 && (aspect(own.1) / aspect(other.1) - 1.0).abs() < ASPECT_ROUNDING
+        };
+        Arc::ptr_eq(&self.job, job) || (Arc::ptr_eq(&self.job.geometry, &job.geometry) && is_seen_alike())
+    }
+
     /// Pixels at the edges of the selection: those with neighbours of another kind.
     pub fn edges(&self, is_chosen: impl Fn([u32; 2]) -> bool + Sync) -> Vec<bool> {
         let (width, height) = (self.width as usize, self.height as usize);
@@ -127,7 +139,8 @@ mod tests {
         let job = Compiler::default()
             .compile(&document, &Assets::default())
             .expect("built-in");
-        let map = seen_map(&Arc::new(job), || false).expect("nobody else asks");
+        let job = Arc::new(job);
+        let map = seen_map(&job, [48, 48], || false).expect("nobody else asks");
         let at = |x: usize, y: usize| map.seen[y * 48 + x];
         assert_eq!(at(24, 24), [0, 0], "the sphere");
         assert_eq!(
@@ -140,5 +153,27 @@ mod tests {
         assert_eq!(row.len(), 4, "two pixels at either side: {row:?}");
         assert!(!edges[24 * 48 + 24] && !edges[0]);
         assert!(map.edges(|_| false).iter().all(|edge| !edge));
+    }
+
+    /// The line is as fine as the screen, however small the image is while the camera moves.
+    #[test]
+    fn the_outline_has_the_screen_s_pixels_whatever_the_image_s() {
+        let jobs = [[24, 24], [192, 192]].map(|[width, height]| {
+            let mut document = Document {
+                model: ModelSource::Sphere,
+                ..Document::default()
+            };
+            (document.render.width, document.render.height) = (width, height);
+            let job = Compiler::default().compile(&document, &Assets::default());
+            Arc::new(job.expect("built-in"))
+        });
+        let [small, large] = jobs
+            .each_ref()
+            .map(|job| seen_map(job, [96, 96], || false).expect("nobody else asks"));
+        assert_eq!((small.width, small.height), (96, 96));
+        assert_eq!(small.seen, large.seen);
+        let edges = small.edges(|[object, _]| object == 0);
+        let row: Vec<usize> = (0..96).filter(|x| edges[48 * 96 + x]).collect();
+        assert_eq!(row.len(), 4, "two pixels at either side: {row:?}");
     }
 }

@@ -26,6 +26,7 @@ mod repeated;
 pub mod report;
 pub mod shapes;
 mod stage;
+mod still_life;
 pub mod surface;
 mod tangents;
 pub mod teapot;

@@ -10,7 +10,7 @@ use super::mesh::{Mesh, MeshInstance};
 use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
-use super::{shapes, teapot};
+use super::{shapes, still_life, teapot};
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
 /// such a name is written with its folder (`./teapot`).
@@ -26,15 +26,18 @@ pub enum ModelSource {
     Plane,
     /// A ball with an inset band that shows its core, on a stand.
     Shaderball,
+    /// A teapot, a bowl, a ball and a bead, each in a slot of its own.
+    StillLife,
     /// A file of one of the formats that are read, or a folder with such files.
     File(PathBuf),
 }
 
-const BUILT_IN: [(&str, ModelSource); 4] = [
+const BUILT_IN: [(&str, ModelSource); 5] = [
     ("teapot", ModelSource::Teapot),
     ("sphere", ModelSource::Sphere),
     ("plane", ModelSource::Plane),
     ("shaderball", ModelSource::Shaderball),
+    ("still-life", ModelSource::StillLife),
 ];
 
 impl From<&str> for ModelSource {
@@ -127,6 +130,7 @@ impl Model {
             ModelSource::Sphere => (shapes::sphere(192, 96), &["sphere"]),
             ModelSource::Plane => (shapes::plane(), &["plane"]),
             ModelSource::Shaderball => (shapes::shaderball(), &["body", "stand"]),
+            ModelSource::StillLife => (still_life::mesh(), &still_life::PARTS),
             ModelSource::File(_) => return None,
         };
         let mut model = Self {
@@ -135,6 +139,15 @@ impl Model {
             slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
             ..Self::default()
         };
+        if *source == ModelSource::StillLife {
+            // Each part is an object, beside its slot.
+            let parts = still_life::PARTS.iter().zip(still_life::triangles(&model.mesh));
+            let object = |(name, triangles): (&&str, Range<usize>)| ModelObject {
+                name: (*name).to_owned(),
+                triangles,
+            };
+            model.objects = parts.map(object).collect();
+        }
         model.name_its_whole();
         Some(model)
     }

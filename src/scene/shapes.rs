@@ -185,6 +185,26 @@ pub fn shaderball() -> Mesh {
     ball
 }
 
+/// A bowl of radius 1 on a foot that stands on y = 0, open at the top, with a rounded lip.
+pub(super) fn bowl(slot: u32) -> Mesh {
+    let (outer, wall, foot) = (1.0, 0.06, 0.12);
+    let center = dvec2(0.0, outer + foot);
+    // The lip is a half circle between the outside and the inside of a hemisphere cut at this elevation.
+    let lip_deg = -12.0;
+    let lip = center + polar(outer - 0.5 * wall, lip_deg);
+    let mut profile = Profile::start(center - dvec2(0.0, outer - wall));
+    profile.arc(center, outer - wall, -90.0, lip_deg, 32);
+    profile.arc(lip, 0.5 * wall, lip_deg + 180.0, lip_deg, 8);
+    profile.arc(center, outer, lip_deg, -66.0, 24);
+    let joint = center + polar(outer, -66.0);
+    profile.line(dvec2(joint.x, 0.0), 2);
+    profile.line(DVec2::ZERO, 4);
+    profile.revolve(BOWL_AROUND, slot)
+}
+
+/// Cells around the bowl.
+const BOWL_AROUND: u32 = 112;
+
 const CORE: f64 = 0.8;
 const SHELL_INSIDE: f64 = 0.84;
 const EDGE: f64 = 0.025;

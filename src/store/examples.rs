@@ -1,7 +1,7 @@
 //! Documents to begin with, one for each thing that the program promises.
 
 use super::preset::material_by_name;
-use crate::document::{AreaLight, CameraSettings, Document, MaterialSettings};
+use crate::document::{AreaLight, CameraSettings, Document, GroundKind, GroundSettings, MaterialSettings};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
@@ -18,13 +18,13 @@ pub struct Example {
     pub document: fn() -> Document,
 }
 
-/// All of them; the first start opens the first.
+/// All of them; the editor and *New* begin with the first.
 pub const EXAMPLES: [Example; 5] = [
     Example {
-        label: "Glazed teapot",
-        help: "A glazed teapot on a ground in the studio: a place to try materials.",
+        label: "Still life",
+        help: "A glazed teapot, a bowl, a ball and a bead in the studio: a place to try materials.",
         panel: "Presets",
-        document: glazed_teapot,
+        document: still_life,
     },
     Example {
         label: "Accuracy in time",
@@ -68,27 +68,28 @@ fn light(yaw_deg: f64, pitch_deg: f64, strength: f32, color: [f32; 3]) -> AreaLi
     }
 }
 
-fn glazed_teapot() -> Document {
-    let glaze = MaterialSettings {
-        name: "Celadon glaze".to_owned(),
-        base_color: [0.16, 0.42, 0.34],
-        coat_weight: 1.0,
-        coat_roughness: 0.03,
-        ..preset("porcelain")
-    };
+/// The document that the editor and *New* begin with.
+pub fn still_life() -> Document {
+    let yaw_deg = 18.0;
     let mut document = Document {
+        model: ModelSource::StillLife,
         ground: true,
-        materials: vec![glaze],
+        materials: ["celadon-glaze", "copper", "gold", "candy-red"].map(preset).into(),
         camera: CameraSettings {
-            yaw_deg: 32.0,
-            pitch_deg: 16.0,
+            yaw_deg,
+            pitch_deg: 17.0,
             fov_deg: 24.0,
             ..CameraSettings::default()
         },
         ..Document::default()
     };
-    document.lighting.ground_color = [0.42, 0.38, 0.34];
-    document.lighting.area_lights = vec![light(-50.0, 38.0, 9.0, [1.0, 0.9, 0.78])];
+    // A floor that bends up into a wall has no horizon, and no edge in sight.
+    document.lighting.ground = GroundSettings {
+        kind: GroundKind::Cyclorama,
+        yaw_deg,
+        ..GroundSettings::default()
+    };
+    document.lighting.ground_color = [0.34, 0.29, 0.25];
     document
 }
 

@@ -512,7 +512,15 @@ fn every_triangle_is_in_one_box_of_the_compressed_hierarchy() {
 
 #[test]
 fn model_sources_are_written_as_they_are_read() {
-    for text in ["teapot", "sphere", "plane", "shaderball", "a folder/b.glb", "./teapot"] {
+    for text in [
+        "teapot",
+        "sphere",
+        "plane",
+        "shaderball",
+        "still-life",
+        "a folder/b.glb",
+        "./teapot",
+    ] {
         let source = ModelSource::from(text);
         assert_eq!(source.to_string(), text);
         let json = serde_json::to_string(&source).expect("serialises");

@@ -47,6 +47,12 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     let mut harness = editor_showing(folder.path(), "Zebra");
     request(&mut harness, Action::UseMaterial(Box::new(own.clone())));
     request(&mut harness, Action::Do(Command::SaveToMyPresets));
+    // Its name is asked for, and begins as the material's.
+    see(&mut harness, "the name", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "New name").is_some()
+    });
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
     see(&mut harness, "the preset", |harness| has_button(harness, "Zebra"));
     assert_eq!(files(&folder.path().join("materials")), [own.clone()]);
     // Closed as it should be: nothing unsaved is offered at the next start.

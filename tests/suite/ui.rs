@@ -10,6 +10,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
+use glossmith::app::workspaces::MEASURE;
 use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{AreaLight, Document};
 use glossmith::optics::curve::Curve;
@@ -32,6 +33,8 @@ pub(super) fn options() -> Options {
         engine: EngineChoice::Cpu,
         document: Some(small_document()),
         resolution: Some(Resolution::Document),
+        // With every panel in it.
+        workspace: Some(MEASURE.to_owned()),
         // The system's dialogs can't be used by a test, and some systems have none.
         typed_paths: Some(std::env::temp_dir()),
         ..Options::default()
@@ -47,9 +50,14 @@ pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Editor {
 }
 
 pub(super) fn editor_of(options: Options) -> Editor {
-    Harness::builder()
+    let mut harness = Harness::builder()
         .with_size(Vec2::new(1400.0, 1000.0))
-        .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"))
+        .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"));
+    // What most tests are about is in front.
+    for pane in [Pane::Lighting, Pane::Curve] {
+        harness.state_mut().reveal(pane);
+    }
+    harness
 }
 
 /// An editor whose first picture is finished.
@@ -501,7 +509,10 @@ fn models_and_environments_are_changed_and_undone() {
         (2, 0.6),
         "the edited material stays"
     );
-    assert!(harness.query_by_label("stand").is_some(), "the slots are listed");
+    assert!(
+        harness.query_by_label("Slot 2: stand").is_some(),
+        "the slots are listed"
+    );
     undo(&mut harness);
     assert_eq!(*harness.state().document(), before);
     request(&mut harness, Action::UseEnvironment(EnvironmentSource::Sky));

@@ -21,6 +21,9 @@ fn editor(options: Options) -> Harness<'static, App> {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(1100.0, 720.0))
         .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"));
+    for pane in [Pane::Lighting, Pane::Curve] {
+        harness.state_mut().reveal(pane);
+    }
     settle(&mut harness);
     harness
 }

@@ -140,6 +140,8 @@ fn a_click_puts_a_lights_highlight_there() {
     let mut harness = lit_ball();
     let brightness = |harness: &Editor| -> f32 { picture(harness).iter().map(|pixel| pixel[1]).sum() };
     let from_behind = brightness(&harness);
+    harness.get_by_label("Choose area light 2").click_accesskit();
+    harness.run_steps(2);
     harness
         .get_by_label("Place highlight of area light 2")
         .click_accesskit();

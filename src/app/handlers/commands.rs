@@ -9,7 +9,7 @@ use crate::app::sheets::book;
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
-use crate::app::{App, example, is_dragging};
+use crate::app::{App, denoised_by, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::EngineChoice;
 use crate::render::explain::explain;
@@ -43,6 +43,7 @@ impl App {
             Action::CopyAs(material, format) => self.copy_as(*material, format),
             Action::SelectSlot(slot) => {
                 self.shared.slot = slot;
+                self.shared.selection.is_made = true;
                 self.shared.selection.also.clear();
                 self.edits.seal();
             }
@@ -57,8 +58,20 @@ impl App {
                 self.edits.note("Look from a side", "");
             }
             Action::OpenExample(number) => self.open_example(number),
+            Action::UseBookmark(number) => {
+                if let Some(bookmark) = self.document.bookmarks.get(number) {
+                    self.document.camera = bookmark.camera;
+                    self.edits.note("Apply bookmark", "");
+                }
+            }
             Action::Reveal(pane) => self.reveal(pane),
             Action::Close(pane) => layout::close(&mut self.layout, pane),
+            Action::ChangeWorkspaces(change) => {
+                if std::mem::take(&mut self.is_maximised) {
+                    layout::set_maximised(&mut self.layout, false);
+                }
+                self.workspaces.change(change, &mut self.layout);
+            }
             Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => {
                 (self.shared.engine, self.shared.kept_engine) = (choice, choice);
@@ -81,15 +94,18 @@ impl App {
 
     /// Opens an example, as an edit that can be undone, and shows the panel about it.
     fn open_example(&mut self, number: usize) {
-        let Some(document) = example(number, self.document.view.denoise) else {
+        let Some(Example {
+            label, panel, document, ..
+        }) = EXAMPLES.get(number)
+        else {
             return;
         };
-        let Example { label, panel, .. } = EXAMPLES[number];
+        let document = denoised_by(self.document.view.denoise, document());
         self.shared.selection.forget();
         self.shared.slot = 0;
         self.document = document;
         self.edits.note(format!("Open the example {label}"), "");
-        if let Some(pane) = Pane::ALL.into_iter().find(|pane| pane.title() == panel) {
+        if let Some(pane) = Pane::ALL.into_iter().find(|pane| pane.title() == *panel) {
             self.reveal(pane);
         }
     }
@@ -197,7 +213,7 @@ impl App {
                 self.edits.note("Clear the render region", "");
             }
             Command::ResetLayout => {
-                self.layout = layout::default_layout();
+                self.layout = self.workspaces.at_first();
                 self.is_maximised = false;
             }
             Command::Pause => {
@@ -238,6 +254,7 @@ impl App {
                 self.sheet = Sheet::Palette {
                     search: String::new(),
                     selected: 0,
+                    things: self.things(),
                 };
             }
             Command::Manual => book::ask(ctx, self.topic(ctx)),

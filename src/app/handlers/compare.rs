@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::desk::Shared;
-use crate::app::services::compare::{Renderer, Rival};
+use crate::app::services::compare::{BEFORE, Renderer, Rival};
 use crate::document::{Change, Document};
 use crate::optics::lobe::Lobe;
 use crate::render::worker::{Event, Level, Pace, Snapshot};
@@ -22,16 +22,24 @@ impl App {
 
     /// Compares with something.
     pub(in crate::app) fn compare_with(&mut self, rival: Rival) {
-        self.shared.compare.rival = rival;
-        self.shared.compare.is_on = true;
+        let compare = &mut self.shared.compare;
+        compare.rival = rival;
+        (compare.is_on, compare.is_chosen) = (true, true);
     }
 
-    /// Starts or ends the comparison; at first with the other of the two lobes that matter most.
+    /// Starts or ends the comparison. Where nothing was chosen for it, it is with the materials before the last change, else
+    /// with the other of the two lobes that matter most.
     pub(in crate::app) fn toggle_compare(&mut self) {
         let material = self.desk_material();
+        let before = self.edits.materials_before(&self.document);
         let compare = &mut self.shared.compare;
         compare.is_on = !compare.is_on;
-        if compare.is_on && compare.rival == Rival::Lobe(material.lobe) {
+        if !compare.is_on || compare.is_chosen {
+            return;
+        }
+        if let Some(before) = before {
+            compare.rival = Rival::Materials(BEFORE.to_owned(), before);
+        } else if compare.rival == Rival::Lobe(material.lobe) {
             let other = if material.lobe == Lobe::Ggx {
                 Lobe::Geometric
             } else {
@@ -51,6 +59,7 @@ impl App {
         self.document.materials = before.clone();
         self.take_rival("Swap A and B");
         self.shared.compare.rival = Rival::Materials(name, before);
+        self.shared.compare.is_chosen = true;
     }
 
     /// B becomes the document, and nothing is left to compare.

@@ -9,7 +9,7 @@ use crate::import::{holds_model, is_model};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::path_text::path_of_text;
-use crate::scene::texture::set;
+use crate::scene::texture::{UserTexture, set};
 use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::file_kind::{FileKind, may_hold_document};
 
@@ -164,6 +164,10 @@ impl App {
             );
             self.say(Level::Error, text);
         }
+        if let ([picture], Some(target)) = (pictures.as_slice(), self.shared.selection.texture) {
+            self.put_textures(&[(target, UserTexture::of(picture.clone()))]);
+            return;
+        }
         if let [picture] = pictures.as_slice()
             && may_hold_document(picture)
         {
@@ -190,7 +194,7 @@ impl App {
         for file in files {
             let text = format!(
                 "{}: not used: nothing here names it, nor does its name say what it is for, as wood_roughness.png does; \
-                 choose it in Material › Textures",
+                 choose it in Material, beside its parameter",
                 name(file)
             );
             self.say(Level::Warning, text);

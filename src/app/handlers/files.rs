@@ -248,9 +248,9 @@ impl App {
         self.edits.note(format!("Open {name}"), "");
     }
 
-    /// Goes on with the default document.
+    /// Goes on with the document of the start.
     pub(in crate::app) fn start_anew(&mut self) {
-        self.document = new_document(self.document.view.denoise);
+        self.document = new_document(self.document.view.denoise, false);
         self.shared.slot = 0;
         self.files.project = None;
         self.edits.note("New", "");

@@ -1,6 +1,7 @@
 //! What the window does about the user's materials.
 
 use crate::app::App;
+use crate::app::layout::Pane;
 use crate::app::services::disk::Done;
 use crate::app::services::library::{Change, Listed};
 use crate::render::worker::Level;
@@ -14,6 +15,7 @@ impl App {
                 Done::Listed(library::list(&folder).map(|entries| Listed {
                     words: String::new(),
                     entries,
+                    added: None,
                     removed: None,
                 }))
             });
@@ -33,9 +35,14 @@ impl App {
         let kept = self.shared.library.removed.take();
         self.files.disk.write(move || {
             let changed = || -> Result<Listed, FileError> {
-                let mut removed = None;
+                let (mut added, mut removed) = (None, None);
                 let words = match &change {
-                    Change::Add => format!("saved {}", library::add(&folder, &material)?.display()),
+                    Change::Add => {
+                        let path = library::add(&folder, &material)?;
+                        let words = format!("saved {}", path.display());
+                        added = Some(path);
+                        words
+                    }
                     Change::Rename(path, name) => {
                         format!("renamed to {name}: {}", library::rename(path, name)?.display())
                     }
@@ -52,6 +59,7 @@ impl App {
                 Ok(Listed {
                     words,
                     entries: library::list(&folder)?,
+                    added,
                     removed,
                 })
             };
@@ -68,6 +76,10 @@ impl App {
                 }
                 self.shared.library.removed = listed.removed;
                 self.shared.library.take_list(listed.entries);
+                if let Some(path) = listed.added {
+                    self.reveal(Pane::Presets);
+                    self.shared.library.ask_name(path);
+                }
             }
             Err(error) => self.say(Level::Error, error.to_string()),
         }

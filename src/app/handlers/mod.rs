@@ -16,6 +16,7 @@ mod snapshots;
 mod submit;
 mod take_picture;
 mod textures;
+mod things;
 mod turntable;
 mod unsaved;
 mod window_picture;

@@ -15,6 +15,8 @@ pub(in crate::app) enum Icon {
     Shown,
     /// A closed one.
     Hidden,
+    /// The squares of a texture.
+    Texture,
 }
 
 /// A square button with an icon, which has a name and explains itself.
@@ -62,6 +64,12 @@ fn paint(painter: &Painter, icon: Icon, rect: Rect, color: egui::Color32) {
                 painter.add(Shape::line(lid(side), stroke));
             });
             painter.circle_filled(at(0.0, 0.0), 2.0, color);
+        }
+        Icon::Texture => {
+            for (row, column) in [(0, 0), (1, 1), (2, 0), (0, 2), (2, 2)] {
+                let corner = at(4.0 * column as f32 - 6.0, 4.0 * row as f32 - 6.0);
+                painter.rect_filled(Rect::from_min_size(corner, Vec2::splat(4.0)), 0.0, color);
+            }
         }
         Icon::Hidden => {
             let lid = vec![at(-6.5, 0.0), at(-3.0, 3.0), at(3.0, 3.0), at(6.5, 0.0)];

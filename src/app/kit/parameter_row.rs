@@ -1,7 +1,8 @@
 //! The row of a parameter, of a material or of a document: the control that suits its kind.
 
-use egui::{Response, Ui};
+use egui::{Align, Layout, Response, Ui, Vec2};
 
+use crate::app::kit::theme::ROW_HEIGHT;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::parameter::RowStyle;
 use crate::document::{Kind, Parameter, Value};
@@ -15,15 +16,10 @@ pub(in crate::app) fn has_row<T>(parameter: &Parameter<T>) -> bool {
     }
 }
 
-/// Shows a parameter's row, with `beside` behind its control; true where `value` is another afterwards, which may be out
-/// of the parameter's range for a moment, as a picker's is.
-pub(in crate::app) fn show<T: Default>(
-    ui: &mut Ui,
-    parameter: &Parameter<T>,
-    value: &mut Value,
-    beside: impl FnOnce(&mut Ui),
-) -> bool {
-    show_as(ui, parameter, &parameter.full_name(), value, beside)
+/// Shows a parameter's row; true where `value` is another afterwards, which may be out of the parameter's range for a
+/// moment, as a picker's is.
+pub(in crate::app) fn show<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, value: &mut Value) -> bool {
+    show_as(ui, parameter, &parameter.full_name(), value)
 }
 
 /// The same under another name, for one of several things that have the parameter.
@@ -32,7 +28,20 @@ pub(in crate::app) fn show_as<T: Default>(
     parameter: &Parameter<T>,
     full: &str,
     value: &mut Value,
-    beside: impl FnOnce(&mut Ui),
+) -> bool {
+    show_beside(ui, parameter, full, value, None)
+}
+
+/// A square behind a row's control, which is shown by a function.
+pub(in crate::app) type Beside<'a> = Option<&'a mut dyn FnMut(&mut Ui)>;
+
+/// The same with something in a square behind the control.
+pub(in crate::app) fn show_beside<T: Default>(
+    ui: &mut Ui,
+    parameter: &Parameter<T>,
+    full: &str,
+    value: &mut Value,
+    beside: Beside<'_>,
 ) -> bool {
     let name = Name {
         full,
@@ -41,9 +50,15 @@ pub(in crate::app) fn show_as<T: Default>(
         help: parameter.help,
     };
     let response = widgets::row(ui, name, |ui| {
-        let response = control(ui, parameter, full, value);
+        let Some(beside) = beside else {
+            return control(ui, parameter, full, value);
+        };
+        let width = ui.available_width() - ROW_HEIGHT - ui.spacing().item_spacing.x;
+        let layout = Layout::left_to_right(Align::Center);
+        let room = Vec2::new(width.max(1.0), ROW_HEIGHT);
+        let response = ui.allocate_ui_with_layout(room, layout, |ui| control(ui, parameter, full, value));
         beside(ui);
-        response
+        response.inner
     });
     if response.reset {
         *value = parameter.default_value();

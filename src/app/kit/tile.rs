@@ -143,6 +143,29 @@ impl Tile<'_> {
     }
 }
 
+/// Side of the image that follows the pointer in a drag, and how far it is from it, points.
+const DRAGGED: f32 = 56.0;
+const DRAGGED_BY: f32 = 10.0;
+
+/// Shows what is dragged beside the pointer: what is under the pointer stays in sight.
+pub(in crate::app) fn at_pointer(ui: &Ui, picture: Option<&TextureHandle>, color: Color32) {
+    let Some(at) = ui.input(|input| input.pointer.latest_pos()) else {
+        return;
+    };
+    let layer = egui::LayerId::new(egui::Order::Tooltip, egui::Id::unique("what is dragged"));
+    let painter = ui.ctx().layer_painter(layer);
+    let place = Rect::from_min_size(at + Vec2::splat(DRAGGED_BY), Vec2::splat(DRAGGED));
+    match picture {
+        Some(picture) => {
+            let whole = Rect::from_min_max(egui::Pos2::ZERO, pos2(1.0, 1.0));
+            painter.image(picture.id(), place, whole, Color32::WHITE);
+        }
+        None => _ = painter.rect_filled(place, 4.0, color),
+    }
+    let stroke = egui::Stroke::new(2.0, theme::accent(ui.visuals().dark_mode));
+    painter.rect_stroke(place, 4.0, stroke, egui::StrokeKind::Outside);
+}
+
 /// The mark of a favourite, of five points; drawn, as fonts differ.
 fn star(ui: &Ui, center: egui::Pos2) {
     let color = Color32::from_rgb(255, 196, 60);

@@ -409,15 +409,19 @@ fn step_by_keys<T: PartialEq + Clone>(
 
 /// The heading of a group of rows, which opens and closes it.
 pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
+    group_open(ui, title, None, body);
+}
+
+/// The same, opened or closed by the program in this frame.
+pub(in crate::app) fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
+    let wished = requested(ui)
+        .is_some_and(|requested| requested.group == title)
+        .then_some(true);
     let header = RichText::new(title).strong();
     let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
-        .default_open(true)
-        .open(
-            requested(ui)
-                .is_some_and(|requested| requested.group == title)
-                .then_some(true),
-        )
+        .default_open(opens.unwrap_or(true))
+        .open(wished.or(opens))
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);
@@ -512,6 +516,9 @@ pub(in crate::app) fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> 
     }
     if field.lost_focus() {
         return Some(true);
+    }
+    if !field.has_focus() {
+        field.scroll_to_me(Some(Align::Center));
     }
     field.request_focus();
     None

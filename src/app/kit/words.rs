@@ -11,6 +11,37 @@ pub(in crate::app) fn duration(seconds: f64) -> String {
     }
 }
 
+/// A time from which what is left of a work is known, seconds.
+const TOLD_FROM_S: f64 = 0.5;
+/// A share from which what is left of a work is known.
+const TOLD_FROM_SHARE: f64 = 0.01;
+
+/// What is left of a work of which a share is done after a time: "40 s left". `None` where that would be a guess.
+pub(in crate::app) fn time_left(share: f64, seconds: f64) -> Option<String> {
+    let is_told = seconds >= TOLD_FROM_S && (TOLD_FROM_SHARE..1.0).contains(&share);
+    is_told.then(|| format!("{} left", about(seconds * (1.0 / share - 1.0))))
+}
+
+/// A time in steps so coarse that a text with it does not flicker.
+pub(in crate::app) fn about(seconds: f64) -> String {
+    let step = match seconds {
+        s if s < 10.0 => 1.0,
+        s if s < 60.0 => 5.0,
+        s if s < 100.0 => 10.0,
+        _ => 60.0,
+    };
+    duration_whole(((seconds / step).round() * step).max(1.0))
+}
+
+/// Whole seconds, minutes or hours.
+fn duration_whole(seconds: f64) -> String {
+    if seconds < 9.95 {
+        format!("{seconds:.0} s")
+    } else {
+        duration(seconds)
+    }
+}
+
 /// A share in per cent with as many digits as it has.
 pub(in crate::app) fn percent_short(share: f64) -> String {
     // Fifteen digits hide what the hundredfold adds to a decimal number.
@@ -64,6 +95,18 @@ pub(in crate::app) fn short_number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_left_is_told_in_coarse_steps_once_it_is_known() {
+        let left = |share, seconds| time_left(share, seconds);
+        assert_eq!(left(0.5, 41.0).as_deref(), Some("40 s left"));
+        assert_eq!(left(0.5, 3.4).as_deref(), Some("3 s left"));
+        assert_eq!(left(0.9, 1.0).as_deref(), Some("1 s left"), "never nothing");
+        assert_eq!(left(0.1, 100.0).as_deref(), Some("15 min left"));
+        for (share, seconds) in [(0.5, 0.1), (0.001, 5.0), (1.0, 5.0), (f64::NAN, 5.0)] {
+            assert_eq!(left(share, seconds), None, "{share} after {seconds} s");
+        }
+    }
 
     #[test]
     fn numbers_keep_three_digits() {

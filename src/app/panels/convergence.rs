@@ -4,9 +4,10 @@ use egui::{Color32, Ui};
 use egui_plot::{HLine, Line, LineStyle, PlotPoints, Points};
 
 use super::Panel;
+use crate::analysis::noise::Noise;
 use crate::app::desk::Desk;
 use crate::app::kit::charts::log_log;
-use crate::app::kit::words::{duration, percent, percent_short};
+use crate::app::kit::words::{duration, error, percent, percent_short};
 use crate::app::kit::{theme, widgets};
 use crate::document::RenderSettings;
 use crate::render::{Measurement, Progress};
@@ -47,10 +48,8 @@ fn unknown(render: &RenderSettings) -> String {
 fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
     let noise = &last.noise;
     ui.label(format!(
-        "Error {} ({} to {}) after {} and {:.0} samples a pixel",
-        percent(noise.relative),
-        percent(noise.low),
-        percent(noise.high),
+        "Error {} after {} and {:.0} samples a pixel",
+        with_band(noise),
         duration(last.engine_seconds),
         last.samples_per_pixel,
     ));
@@ -65,6 +64,15 @@ fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
         ))
         .on_hover_text("Equal for uniform random numbers; Sobol's error should be lower than this.");
     }
+}
+
+/// An error with its interval, as far as they are known.
+fn with_band(noise: &Noise) -> String {
+    let value = error(noise.relative);
+    if noise.high >= 1.0 {
+        return value;
+    }
+    format!("{value} ({} to {})", percent(noise.low), percent(noise.high))
 }
 
 /// What the next step takes: "1 % in 12 s more".
@@ -124,7 +132,6 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::noise::Noise;
 
     fn seen(relative: f64, engine_seconds: f64) -> Measurement {
         Measurement {
@@ -146,6 +153,18 @@ mod tests {
         assert_eq!(unknown(&render), "The error is known once every pixel has 2 samples.");
         render.noise = Some(0.01);
         assert_eq!(unknown(&render), "The error is known once every pixel has 16 samples.");
+    }
+
+    /// An estimate above all of the mean is worth nothing yet, and is not shown as a number.
+    #[test]
+    fn no_error_above_the_whole_is_told() {
+        assert_eq!(with_band(&seen(22.93, 1.0).noise), "not yet known");
+        assert_eq!(with_band(&seen(0.02, 1.0).noise), "2.00 % (2.00 % to 2.00 %)");
+        let wide = Noise {
+            high: 1.4,
+            ..seen(0.9, 1.0).noise
+        };
+        assert_eq!(with_band(&wide), "90.0 %");
     }
 
     #[test]

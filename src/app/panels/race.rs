@@ -11,7 +11,7 @@ use crate::app::actions::Command;
 use crate::app::desk::Desk;
 use crate::app::kit::charts::log_log;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::app::kit::words::{duration, percent};
+use crate::app::kit::words::{about, duration, percent};
 use crate::app::kit::{theme, widgets::RowResponse};
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::document::ViewSettings;
@@ -65,20 +65,23 @@ impl Panel for RacePanel {
         choices(ui, state);
         let help = "Renders each technique in turn; measures noise and bias.";
         let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, desk.shared.references.clone());
-        state.worker.controls(ui, desk, "Run the race", help, |desk| {
+        let takes = desk.snapshot.scene.as_ref().map(|scene| {
+            let most = seconds_at_most(&techniques(&chosen, &scene.job.plan), seconds);
+            format!("takes at most {}", about(most))
+        });
+        state.worker.controls(ui, desk, ("Run the race", help), takes, |desk| {
             let document = small_document(desk, SIDE_MAX);
             let plan = desk
                 .snapshot
                 .scene
                 .as_ref()
                 .map_or_else(Plan::general, |scene| scene.job.plan.clone());
-            let groups = GROUPS.iter().filter(|group| chosen.contains(&group.name));
             let options = RaceOptions {
                 seconds,
                 slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
                 reference_seconds: REFERENCE_TIMES * seconds,
                 cache,
-                ..RaceOptions::new(engine(desk), groups.flat_map(|group| group.members(&plan)).collect())
+                ..RaceOptions::new(engine(desk), techniques(&chosen, &plan))
             };
             Box::new(move |watch| race(&document, &options, watch))
         });
@@ -101,6 +104,19 @@ impl Panel for RacePanel {
             self.worker.request();
         }
     }
+}
+
+/// The techniques of the groups that are chosen.
+fn techniques(chosen: &[&str], plan: &Plan) -> Vec<Technique> {
+    let groups = GROUPS.iter().filter(|group| chosen.contains(&group.name));
+    groups.flat_map(|group| group.members(plan)).collect()
+}
+
+/// Longest time of a race: a reference of each technique and of the most accurate one, where none of them is kept from
+/// before; the race; and renders to an equal error.
+fn seconds_at_most(techniques: &[Technique], seconds: f64) -> f64 {
+    let runners = (techniques.len() + 1) as f64;
+    seconds * (REFERENCE_TIMES * (runners + 1.0) + 2.0 * runners)
 }
 
 fn choices(ui: &mut Ui, state: &mut RacePanel) {

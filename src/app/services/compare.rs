@@ -23,6 +23,9 @@ pub enum Rival {
     Materials(String, Vec<MaterialSettings>),
 }
 
+/// What the materials before the last change are called.
+pub(in crate::app) const BEFORE: &str = "What you had";
+
 /// How A and B are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
@@ -97,6 +100,8 @@ pub(in crate::app) struct Compare {
     pub(in crate::app) is_on: bool,
     pub(in crate::app) view: View,
     pub(in crate::app) rival: Rival,
+    /// It was chosen: it stays until something else is.
+    pub(in crate::app) is_chosen: bool,
     /// Where the divider is, as a share of the image's width.
     pub(in crate::app) divider: f32,
     /// Changes a second.
@@ -126,6 +131,7 @@ impl Default for Compare {
             is_on: false,
             view: View::default(),
             rival: Rival::Lobe(Lobe::Ggx),
+            is_chosen: false,
             divider: 0.5,
             flicker_hz: 2.0,
             scale: None,

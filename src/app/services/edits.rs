@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::time::{Duration, Instant};
 
-use crate::document::Document;
 use crate::document::history::History;
+use crate::document::{Document, MaterialSettings};
 
 /// Changes with the same key within this of each other are one step even without a drag: arrow keys, the wheel.
 const PAUSE: Duration = Duration::from_millis(600);
@@ -68,6 +68,12 @@ impl Edits {
 
     pub(in crate::app) fn redo(&mut self) -> Option<Document> {
         self.history.redo().cloned()
+    }
+
+    /// The materials before the last change to them, of the same model.
+    pub(in crate::app) fn materials_before(&self, now: &Document) -> Option<Vec<MaterialSettings>> {
+        let is_wanted = |then: &Document| then.model == now.model && then.materials != now.materials;
+        Some(self.history.before(is_wanted)?.materials.clone())
     }
 
     pub(in crate::app) fn undo_label(&self) -> Option<&str> {

@@ -27,10 +27,11 @@ pub enum Change {
     Restore,
 }
 
-/// What came of a change: what to say, which materials there are, and what was removed.
+/// What came of a change: what to say, which materials there are, what was added and is to be named, and what was removed.
 pub(in crate::app) struct Listed {
     pub(in crate::app) words: String,
     pub(in crate::app) entries: Vec<Entry>,
+    pub(in crate::app) added: Option<PathBuf>,
     pub(in crate::app) removed: Option<Removed>,
 }
 
@@ -55,6 +56,8 @@ pub(in crate::app) struct Library {
     hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
     worker: Option<ThumbnailWorker>,
+    /// Those of the document with the keys of their images, as they were when the user last paused.
+    in_document: Vec<(MaterialSettings, u64)>,
     /// Materials that lie in watched folders.
     pub(in crate::app) watched: Vec<MaterialSettings>,
     pub(in crate::app) is_asked: bool,
@@ -93,6 +96,14 @@ impl Library {
         self.textures.get(&key)
     }
 
+    /// Has the name of a material of the user's typed, which begins as the one that it has.
+    pub(in crate::app) fn ask_name(&mut self, path: PathBuf) {
+        let own = self.own.iter().find(|shown| shown.entry.path == path);
+        if let Some(Ok(material)) = own.map(|shown| &shown.entry.material) {
+            self.renaming = Some((path, material.name.clone()));
+        }
+    }
+
     pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {
         let show = |entry: Entry| Shown {
             key: entry.material.as_ref().map_or(0, thumbnails::key),
@@ -100,6 +111,27 @@ impl Library {
         };
         self.own = entries.into_iter().map(show).collect();
         self.is_asked = false;
+    }
+
+    /// Has images made of the document's materials, and gives that of each; `is_in_flow`: they are being edited.
+    pub(in crate::app) fn pictures_of(
+        &mut self,
+        ctx: &egui::Context,
+        materials: &[MaterialSettings],
+        is_in_flow: bool,
+    ) -> Vec<Option<TextureHandle>> {
+        let is_known = |(known, material): (&(MaterialSettings, u64), &MaterialSettings)| known.0 == *material;
+        let is_same =
+            self.in_document.len() == materials.len() && std::iter::zip(&self.in_document, materials).all(is_known);
+        if !is_in_flow && !is_same {
+            let keyed = |material: &MaterialSettings| (material.clone(), thumbnails::key(material));
+            self.in_document = materials.iter().map(keyed).collect();
+            self.is_asked = false;
+        }
+        self.make_pictures(ctx);
+        // While a material is edited its image is that from before.
+        let picture = |place: usize| self.textures.get(&self.in_document.get(place)?.1).cloned();
+        (0..materials.len()).map(picture).collect()
     }
 
     /// Asks for images that are not there yet, and takes those that are. To be called while they are seen.
@@ -126,7 +158,13 @@ impl Library {
         };
         if !std::mem::replace(&mut self.is_asked, true) {
             let own = self.own.iter().filter_map(|shown| shown.entry.material.as_ref().ok());
-            let all = PRESETS.iter().chain(own).chain(&self.watched);
+            let all = self
+                .in_document
+                .iter()
+                .map(|(material, _)| material)
+                .chain(PRESETS.iter())
+                .chain(own)
+                .chain(&self.watched);
             worker.ask(all.cloned().collect::<Vec<MaterialSettings>>());
         }
         let Some(made) = worker.latest() else {

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::render::worker::Level;
+use crate::scene::{Fate, ImportReport};
 
 /// Most entries that are kept.
 const LIMIT: usize = 500;
@@ -17,6 +18,8 @@ pub(in crate::app) struct Entry {
     pub(in crate::app) at: Instant,
     /// Shown over the viewport until it is old or closed.
     pub(in crate::app) is_open: bool,
+    /// It is about the model's file: shown until it is closed, with a way to all that became of the file.
+    pub(in crate::app) is_of_import: bool,
 }
 
 /// Adds an entry; one that says the same as the last stays that one, and is new again.
@@ -43,12 +46,60 @@ pub(in crate::app) fn add(log: &mut Vec<Entry>, level: Level, text: String) {
         text,
         at: Instant::now(),
         is_open: level != Level::Info,
+        is_of_import: false,
     });
+}
+
+/// Adds what became of a model's file where that is not all as the file says.
+pub(in crate::app) fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
+    let Some(worst) = Fate::ALL[1..].iter().rev().find_map(|fate| report.of(*fate).next()) else {
+        return;
+    };
+    let count = report.entries.iter().filter(|entry| entry.fate != Fate::Used).count();
+    let more = match count - 1 {
+        0 => String::new(),
+        1 => " One thing more differs.".to_owned(),
+        more => format!(" {more} things more differ."),
+    };
+    let meaning = match worst.fate {
+        Fate::Used | Fate::Approximated => "looks a little different here",
+        Fate::Ignored => "is not shown",
+        Fate::Missing => "was not found beside the file",
+    };
+    let parts = match worst.names.as_slice() {
+        [] => String::new(),
+        [only] => format!(", in {only}"),
+        [first, rest @ ..] => format!(", in {first} and {} more", rest.len()),
+    };
+    add(
+        log,
+        Level::Warning,
+        format!("{name}: {}{parts} – {meaning}.{more}", worst.what),
+    );
+    if let Some(entry) = log.last_mut() {
+        entry.is_of_import = true;
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What became of a file is said in plain words, the worst first, and marked to stay.
+    #[test]
+    fn an_import_is_told_by_what_is_worst_of_it() {
+        let mut report = ImportReport::default();
+        let mut log = Vec::new();
+        report.note(Fate::Used, "materials", "paint");
+        add_import(&mut log, "car.glb", &report);
+        assert!(log.is_empty(), "all is as the file says");
+        report.note(Fate::Approximated, "an unlit material, which shines", "sign");
+        report.note(Fate::Ignored, "iridescence", "lens");
+        report.note(Fate::Ignored, "iridescence", "visor");
+        add_import(&mut log, "car.glb", &report);
+        let told = "car.glb: iridescence, in lens and 1 more – is not shown. One thing more differs.";
+        assert_eq!((log[0].text.as_str(), log[0].is_of_import), (told, true));
+    }
 
     #[test]
     fn what_is_said_again_stays_the_entry_that_it_was() {

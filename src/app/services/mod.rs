@@ -16,3 +16,4 @@ pub(super) mod selection;
 pub(super) mod shelves;
 pub mod snapshots;
 pub(super) mod watched;
+pub mod workspaces;

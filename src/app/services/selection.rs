@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::document::MaterialSettings;
+use crate::scene::texture::TextureTarget;
 
 /// A part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +20,8 @@ pub(in crate::app) struct Selection {
     /// The tree was shown in this frame, and in the one before: outlines are drawn.
     pub(in crate::app) is_shown: bool,
     pub(in crate::app) was_shown: bool,
+    /// The user has chosen something of this model: what is edited at first is not outlined.
+    pub(in crate::app) is_made: bool,
     /// The objects.
     pub(in crate::app) objects: BTreeSet<usize>,
     /// Slots that are edited together with the selected one.
@@ -31,6 +34,8 @@ pub(in crate::app) struct Selection {
     /// The list of lights was shown in this frame, and in the one before: lights are marked in the viewport.
     pub(in crate::app) shows_lights: bool,
     pub(in crate::app) showed_lights: bool,
+    /// The place of a texture that the pointer is over in this frame: an image that is dropped goes there.
+    pub(in crate::app) texture: Option<TextureTarget>,
     /// The material that was copied.
     pub(in crate::app) copied: Option<MaterialSettings>,
 }
@@ -41,6 +46,7 @@ impl Selection {
         self.was_shown = std::mem::take(&mut self.is_shown);
         self.showed_lights = std::mem::take(&mut self.shows_lights);
         self.lit = self.hovered.take();
+        self.texture = None;
     }
 
     /// Whether the next frame shows something else without anything else happening.
@@ -53,6 +59,7 @@ impl Selection {
         self.objects.clear();
         self.also.clear();
         self.hovered = None;
+        self.is_made = false;
     }
 
     /// The slots that are edited: the selected one first.
@@ -63,6 +70,7 @@ impl Selection {
 
     /// Chooses an object alone, or takes it in or out beside the others.
     pub(in crate::app) fn choose_object(&mut self, object: usize, beside_others: bool) {
+        self.is_made = true;
         toggle(&mut self.objects, object, beside_others);
     }
 

@@ -10,7 +10,7 @@ use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::import;
-use crate::app::sheets::palette;
+use crate::app::sheets::{palette, workspaces};
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
@@ -22,13 +22,15 @@ const PATH_WIDTH: f32 = 900.0;
 const SHEET_SHARE: f32 = 0.7;
 
 /// What is open over the window.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::app) enum Sheet {
     #[default]
     None,
     Palette {
         search: String,
         selected: usize,
+        /// What can be used beside commands, with what uses it.
+        things: Vec<(String, Action)>,
     },
     Shortcuts,
     ModelFile,
@@ -44,7 +46,7 @@ pub(in crate::app) fn bar(
     edits: &Edits,
     recent: &mut Recent,
     (import_lobe, engine): (ImportLobe, EngineChoice),
-    is_open: impl Fn(Pane) -> bool,
+    (workspaces, is_open): ((&[&str], &str), impl Fn(Pane) -> bool),
     actions: &mut Vec<Action>,
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
@@ -79,6 +81,7 @@ pub(in crate::app) fn bar(
             if ui.button(RichText::new(text).weak()).clicked() {
                 actions.push(Action::Do(Command::Palette));
             }
+            workspaces::show(ui, workspaces, actions);
         });
     });
 }
@@ -211,8 +214,12 @@ pub(in crate::app) fn sheet(
     let mut is_done = false;
     let modal = match sheet {
         Sheet::None => return,
-        Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
-            is_done = palette::show(ui, search, selected, document, material, actions);
+        Sheet::Palette {
+            search,
+            selected,
+            things,
+        } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
+            is_done = palette::show(ui, search, selected, document, (material, things), actions);
         }),
         Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
             is_done = import::show(ui, document, (model, lobe), actions);

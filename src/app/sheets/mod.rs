@@ -11,3 +11,4 @@ pub(super) mod recovery;
 pub mod status;
 pub(super) mod turntable;
 pub(super) mod unsaved;
+mod workspaces;

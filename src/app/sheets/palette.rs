@@ -32,7 +32,7 @@ pub(in crate::app) fn show(
     search: &mut String,
     selected: &mut usize,
     document: &Document,
-    edited: &MaterialSettings,
+    (edited, things): (&MaterialSettings, &[(String, Action)]),
     actions: &mut Vec<Action>,
 ) -> bool {
     ui.set_width(420.0);
@@ -40,7 +40,7 @@ pub(in crate::app) fn show(
     let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
     let field = egui::TextEdit::singleline(search)
         .id(field_id())
-        .hint_text("Find a command, panel or parameter")
+        .hint_text("Find a command, parameter, material or environment")
         .desired_width(f32::INFINITY);
     let response = ui.add(field.margin(vec2(8.0, 5.0))).accessible_name("Find a command");
     if response.changed() {
@@ -49,7 +49,7 @@ pub(in crate::app) fn show(
     let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
     response.request_focus();
     ui.add_space(theme::GAP);
-    let mut found = found(ui, search, document, edited);
+    let mut found = found(ui, search, document, (edited, things));
     let last = found.len().saturating_sub(1);
     *selected = (*selected + usize::from(down))
         .min(last)
@@ -97,8 +97,13 @@ fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Entry> {
 }
 
 /// What has all the words of the search, those first that have them in their names; commands, then parameters, then
-/// panels.
-fn found(ui: &Ui, search: &str, document: &Document, edited: &MaterialSettings) -> Vec<Entry> {
+/// panels, then what can be used: materials, environments, views, files, workspaces.
+fn found(
+    ui: &Ui,
+    search: &str,
+    document: &Document,
+    (edited, things): (&MaterialSettings, &[(String, Action)]),
+) -> Vec<Entry> {
     let search = search.to_lowercase();
     let words: Vec<&str> = search.split_whitespace().collect();
     let commands = Command::ALL.iter().filter(|command| **command != Command::Palette);
@@ -133,7 +138,14 @@ fn found(ui: &Ui, search: &str, document: &Document, edited: &MaterialSettings) 
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word))
     };
-    let entries = commands.chain(parameters).chain(settings).chain(panes);
+    let things = things.iter().map(|(label, action)| Entry {
+        label: label.clone(),
+        text: label.clone(),
+        help: "",
+        keys: String::new(),
+        action: action.clone(),
+    });
+    let entries = commands.chain(parameters).chain(settings).chain(panes).chain(things);
     let mut found: Vec<Entry> = entries.filter(|entry| has_words(&entry.text)).collect();
     found.sort_by_key(|entry| !has_words(&entry.label));
     found

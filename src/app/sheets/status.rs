@@ -1,11 +1,12 @@
-//! The bar at the bottom: what renders, what it is doing, how far it has come, and how long the window's frames take.
+//! The bar at the bottom: whether the image is clean or how long that takes; in *Measure* also what renders, how exact
+//! it is, and how long the window's frames take. Elsewhere these are shown under the pointer.
 
 use std::time::{Duration, Instant};
 
 use egui::{RichText, Ui};
 
 use crate::app::actions::Action;
-use crate::app::kit::words::{error, percent, short_number};
+use crate::app::kit::words::{error, percent, short_number, time_left};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
 
@@ -13,6 +14,8 @@ use crate::render::worker::{Activity, Snapshot};
 const LOADING_REPAINT: Duration = Duration::from_millis(200);
 /// How long a frame counts as recent.
 const RECENT: Duration = Duration::from_secs(10);
+/// An image that has ended below this estimated error is called clean.
+const CLEAN: f64 = 0.05;
 /// Frames left out of the worst: at the start, fonts and pipelines are made.
 const WARM_UP_FRAMES: u64 = 10;
 
@@ -153,14 +156,25 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Shows the bar's contents: what there is room for.
-pub(in crate::app) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, actions: &mut Vec<Action>) {
+/// Shows the bar's contents, what there is room for. `has_numbers`: error, samples and times stand in it, too.
+pub(in crate::app) fn show(
+    ui: &mut Ui,
+    snapshot: &Snapshot,
+    meter: &FrameMeter,
+    has_numbers: bool,
+    actions: &mut Vec<Action>,
+) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
-        let mut parts = engine(ui, snapshot);
+        let mut parts = if has_numbers { engine(ui, snapshot) } else { Vec::new() };
         parts.extend(activity(ui, snapshot, actions));
-        parts.extend(progress(ui, snapshot));
-        parts.push(window_time(ui, meter, snapshot));
+        if has_numbers {
+            parts.extend(progress(ui, snapshot));
+        }
+        parts.extend(size(ui, snapshot));
+        if has_numbers {
+            parts.push(window_time(ui, meter, snapshot));
+        }
         let widths: Vec<_> = parts.iter().map(|part| (part.rank, part.width)).collect();
         let fits = fitting(&widths, ui.available_width() + SPACING);
         for part in parts.into_iter().filter(|part| fits.contains(&part.rank)) {
@@ -222,9 +236,9 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
     let text = if is_loading && !doing.is_empty() {
         format!("{}: {doing}", snapshot.activity)
     } else {
-        snapshot.activity.to_string()
+        state(snapshot)
     };
-    parts.push(Part::text(ui, Rank::Activity, text, |_| {}));
+    parts.push(Part::text(ui, Rank::Activity, text, |ui| account(ui, snapshot)));
     if is_loading {
         ui.ctx().request_repaint_after(LOADING_REPAINT);
         parts.push(Part::new(Rank::Engine, STOP_WIDTH, move |ui| {
@@ -245,8 +259,7 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
                 ui.label("The CPU renders until the GPU's kernel for this scene is compiled.");
             }));
         }
-        let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
-        let share = snapshot.progress.share_done(limit) as f32;
+        let share = share_done(snapshot) as f32;
         parts.push(Part::new(Rank::Share, SHARE_LENGTH, move |ui| {
             let bar = egui::ProgressBar::new(share)
                 .desired_width(SHARE_LENGTH)
@@ -255,6 +268,52 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
         }));
     }
     parts
+}
+
+fn share_done(snapshot: &Snapshot) -> f64 {
+    let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
+    snapshot.progress.share_done(limit)
+}
+
+/// How the image stands, in a word or two.
+fn state(snapshot: &Snapshot) -> String {
+    let progress = &snapshot.progress;
+    match snapshot.activity {
+        Activity::Rendering => match time_left(share_done(snapshot), progress.render_seconds) {
+            Some(left) => format!("refining, {left}"),
+            None => "refining".to_owned(),
+        },
+        Activity::Done if shown_error(snapshot).is_some_and(|error| error <= CLEAN) => "clean".to_owned(),
+        _ => snapshot.activity.to_string(),
+    }
+}
+
+/// The estimated error of what is shown.
+fn shown_error(snapshot: &Snapshot) -> Option<f64> {
+    let noise = snapshot.progress.noise.map(|noise| noise.relative);
+    snapshot.denoised.as_ref().map(|denoised| denoised.value).or(noise)
+}
+
+/// What the word stands for, in numbers.
+fn account(ui: &mut Ui, snapshot: &Snapshot) {
+    let progress = &snapshot.progress;
+    if let Some(engine) = &snapshot.engine {
+        ui.label(format!("{}: {}", engine.kind.label(), engine.adapter));
+    }
+    if progress.samples_wanted == 0 {
+        return;
+    }
+    ui.label(samples(progress));
+    if let Some(noise) = progress.noise {
+        ui.label(format!("Estimated error {}", error(noise.relative)));
+        band(ui, noise.low, noise.high);
+    }
+    if let Some(denoised) = &snapshot.denoised {
+        ui.label(format!("Denoised: estimated error {}", error(denoised.value)));
+        band(ui, denoised.low, denoised.high);
+    }
+    ui.label(format!("{:.1} s of rendering", progress.render_seconds));
+    ui.weak("More in the panel Convergence and the workspace Measure.");
 }
 
 /// How far the image has come, in numbers.
@@ -288,15 +347,17 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
             ui.label("Pixel samples per second, over this whole image");
         }));
     }
-    if let Some(picture) = &snapshot.picture {
-        let size = format!("{} × {}", picture.width, picture.height);
-        let reduced = format!("{size} (1/{})", picture.reduction);
-        let text = if picture.reduction > 1 { reduced } else { size };
-        parts.push(Part::text(ui, Rank::Size, text, |ui| {
-            ui.label("Size of the image shown");
-        }));
-    }
     parts
+}
+
+fn size<'a>(ui: &Ui, snapshot: &Snapshot) -> Option<Part<'a>> {
+    let picture = snapshot.picture.as_ref()?;
+    let size = format!("{} × {}", picture.width, picture.height);
+    let reduced = format!("{size} (1/{})", picture.reduction);
+    let text = if picture.reduction > 1 { reduced } else { size };
+    Some(Part::text(ui, Rank::Size, text, |ui| {
+        ui.label("Size of the image shown");
+    }))
 }
 
 fn band(ui: &mut Ui, low: f64, high: f64) {

@@ -11,7 +11,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, NumberStyle};
-use crate::app::services::compare::{Compared, Rival, View};
+use crate::app::services::compare::{BEFORE, Compared, Rival, View};
 use crate::optics::lobe::Lobe;
 use crate::render::worker::Picture;
 use crate::store::PRESETS;
@@ -275,6 +275,9 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
                 ui.close();
             }
         };
+        if let Some(before) = desk.edits.materials_before(desk.document) {
+            entry(ui, BEFORE, Rival::Materials(BEFORE.to_owned(), before));
+        }
         widgets::note(ui, "The same material, look matched");
         for lobe in Lobe::ALL.iter().filter(|lobe| **lobe != material.lobe) {
             entry(ui, lobe.label(), Rival::Lobe(*lobe));

@@ -49,7 +49,8 @@ const RANKED: [Item; 7] = [
 const MORE: f32 = 28.0;
 
 /// The models that come with the program.
-const MODELS: [(&str, ModelSource); 4] = [
+const MODELS: [(&str, ModelSource); 5] = [
+    ("Still life", ModelSource::StillLife),
     ("Teapot", ModelSource::Teapot),
     ("Sphere", ModelSource::Sphere),
     ("Plane", ModelSource::Plane),

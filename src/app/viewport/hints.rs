@@ -6,15 +6,30 @@ use super::LOADING_MARGIN;
 use crate::app::desk::Desk;
 
 /// The hints, in order.
-const HINTS: [&str; 4] = [
+const HINTS: [&str; 5] = [
     "Drag to orbit, scroll to zoom, Shift+drag to rotate the light.",
     "Click a preset to apply it; drag it onto a part to change only that part.",
-    "Ctrl+K: search commands, panels and parameters.",
-    "Help › Examples has scenes to begin with. F1 opens the manual. Ctrl+E saves the image.",
+    "Ctrl+K finds commands, presets, environments and parameters. F1 opens the manual; Help › Examples has scenes.",
+    "C: compare with what you had before the last change. Press it again to go on.",
+    "Ctrl+E: save the image. A .png holds the whole project and opens again.",
 ];
 /// Width of the hint, points.
 const WIDTH: f32 = 380.0;
 const HEIGHT: f32 = 64.0;
+
+/// Width of what stands in the viewport's lower left corner, points.
+const CORNER: f32 = 160.0;
+
+/// How far what stands in the lower left corner is raised, so that no hint lies over it.
+pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
+    let is_shown = desk.shared.hints_seen < HINTS.len();
+    let is_narrow = area.width() < WIDTH + 2.0 * (CORNER + LOADING_MARGIN);
+    if is_shown && is_narrow {
+        HEIGHT + LOADING_MARGIN
+    } else {
+        0.0
+    }
+}
 
 /// Shows the hint that is next over the lower edge of the image.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {

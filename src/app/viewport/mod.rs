@@ -5,12 +5,14 @@
 //! material of what was clicked; with ctrl and shift it explains the pixel.
 
 mod compare;
+mod denoiser;
 mod header;
 mod hints;
 mod legend;
 mod light_handles;
 mod look;
 mod magnifier;
+mod messages;
 mod orbit;
 mod outline;
 mod picking;
@@ -29,11 +31,10 @@ use seen::{hit_at, pixel_at};
 
 use super::actions::Action;
 use super::desk::{Desk, Resolution};
-use super::kit::icons::{self, Icon};
 use super::kit::theme;
 use super::services::compare::View;
 use crate::render::shown;
-use crate::render::worker::{Activity, Level, Picture, Scene};
+use crate::render::worker::{Activity, Picture, Scene};
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -49,8 +50,6 @@ const WHOLE_WIDTH: f32 = 64.0;
 const LOADING_MARGIN: f32 = 12.0;
 /// Sides of the squares behind transparent images, points.
 const CHECKER: f32 = 12.0;
-/// How long a message stays, seconds.
-const MESSAGE_SECONDS: f32 = 12.0;
 /// By how much less an image that fills the viewport may be stretched: what rounding to pixels makes of its shape.
 const STRETCH_MAX: f32 = 0.03;
 /// Largest side of an image that fills the viewport.
@@ -75,6 +74,7 @@ pub(super) struct Viewport {
     magnifier: Magnifier,
     outline: outline::Outline,
     lights: light_handles::LightHandles,
+    denoiser: denoiser::DenoiserOffer,
     /// By how much the image is to be shown larger; 0 is back to all of it.
     magnifies: Option<f32>,
 }
@@ -240,8 +240,10 @@ impl Viewport {
         if picture.is_some() {
             loading(ui, area, desk);
         }
+        messages::open_model(ui, area, desk);
+        self.denoiser.show(ui, area, desk);
         hints::show(ui, area, desk);
-        messages(ui, area, desk);
+        messages::show(ui, area, desk);
         drop_hint(ui, area);
     }
 
@@ -493,50 +495,6 @@ fn safe_frames(painter: &egui::Painter, place: Rect) {
         ] {
             painter.rect_stroke(frame, 0.0, egui::Stroke::new(width, color), egui::StrokeKind::Middle);
         }
-    }
-}
-
-/// The latest warnings and errors, until they are old or closed.
-fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
-    for entry in &mut desk.shared.messages {
-        entry.is_open &= entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
-    }
-    let open: Vec<usize> = (0..desk.shared.messages.len())
-        .filter(|i| desk.shared.messages[*i].is_open)
-        .collect();
-    if open.is_empty() {
-        return;
-    }
-    ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
-    let width = (area.width() - 32.0).clamp(120.0, 520.0);
-    let rect = Rect::from_min_max(
-        pos2(area.center().x - 0.5 * width, area.top() + 12.0),
-        pos2(area.center().x + 0.5 * width, area.bottom()),
-    );
-    let mut inside = ui.new_child(
-        egui::UiBuilder::new()
-            .max_rect(rect)
-            .layout(egui::Layout::top_down(egui::Align::Center)),
-    );
-    for index in open.into_iter().rev().take(3) {
-        // Named, as others may come above it while it is being closed.
-        let builder =
-            egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.shared.messages[index].number)));
-        let entry = &mut desk.shared.messages[index];
-        let color = match entry.level {
-            Level::Error => inside.visuals().error_fg_color,
-            _ => inside.visuals().warn_fg_color,
-        };
-        let frame = egui::Frame::popup(inside.style()).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6)));
-        let message = |ui: &mut Ui| {
-            let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
-            ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
-            let close = icons::button(ui, Icon::Close, &format!("Close message {}", entry.number), "Close");
-            entry.is_open &= !close.clicked();
-        };
-        frame.show(&mut inside, |ui| {
-            ui.scope_builder(builder, |ui| ui.horizontal_top(message));
-        });
     }
 }
 

@@ -16,8 +16,8 @@ use crate::render::seen_map::{self, SeenMap, SeenMaps};
 #[derive(Default)]
 pub(super) struct Outline {
     maps: Option<SeenMaps>,
-    /// What the latest map was asked of.
-    asked: Option<Arc<Job>>,
+    /// What the latest map was asked of, and in what size.
+    asked: Option<(Arc<Job>, [u32; 2])>,
     shown: Shown,
 }
 
@@ -34,29 +34,43 @@ impl Outline {
             self.maps = seen_map::spawn(move || ctx.request_repaint()).ok();
         }
         let Some(maps) = &self.maps else { return };
-        if !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, job)) {
-            maps.ask(job.clone());
-            self.asked = Some(job.clone());
+        // In the screen's pixels, at any size of the image.
+        let pixels = place.size() * ui.ctx().pixels_per_point();
+        let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));
+        let latest = maps.latest();
+        let is_known = latest
+            .as_ref()
+            .is_some_and(|map| map.is_of(job) && self.asked.as_ref().is_some_and(|asked| asked.1 == size));
+        if !is_known
+            && !self
+                .asked
+                .as_ref()
+                .is_some_and(|asked| Arc::ptr_eq(&asked.0, job) && asked.1 == size)
+        {
+            maps.ask((job.clone(), size));
+            self.asked = Some((job.clone(), size));
         }
         // Nothing of another view, as while the camera turns.
-        let Some(map) = maps.latest().filter(|map| Arc::ptr_eq(&map.job, job)) else {
+        let Some(map) = latest.filter(|map| map.is_of(job)) else {
             return;
         };
+        let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.slot);
         let mut hasher = DefaultHasher::new();
-        (&chosen, lit, ui.visuals().dark_mode, Arc::as_ptr(&map) as usize).hash(&mut hasher);
+        let of_map = (Arc::as_ptr(&map) as usize, ui.visuals().dark_mode);
+        (&chosen, surface, lit, of_map).hash(&mut hasher);
         let accent = theme::accent(ui.visuals().dark_mode);
         self.shown.upload(ui, [u64::MAX - 1, hasher.finish()], || {
             let lit: Vec<Thing> = lit.into_iter().collect();
-            picture(&map, [(&chosen, accent), (&lit, Color32::WHITE)])
+            picture(&map, [(&chosen, accent, surface), (&lit, Color32::WHITE, None)])
         });
         self.shown.show(ui, area.intersect(place), place);
     }
 }
 
-/// What is outlined because it is chosen where that is seen: objects, else slots where there is more than one.
+/// What is outlined because the user chose it, where that is seen: objects, else slots where there is more than one.
 fn chosen(desk: &Desk<'_>) -> Vec<Thing> {
     let selection = &desk.shared.selection;
-    if !selection.is_shown && !selection.was_shown {
+    if !selection.is_made || (!selection.is_shown && !selection.was_shown) {
         return Vec::new();
     }
     if !selection.objects.is_empty() {
@@ -67,17 +81,22 @@ fn chosen(desk: &Desk<'_>) -> Vec<Thing> {
     slots.into_iter().filter(|_| count > 1).map(Thing::Slot).collect()
 }
 
-/// The edges of some things in a colour each, over nothing.
-fn picture(map: &SeenMap, kinds: [(&Vec<Thing>, Color32); 2]) -> ColorImage {
+/// The edges of some things in a colour each, over nothing. Where a slot is given, they are those of the parts with it, if
+/// any is seen: its material is what is edited of an object.
+fn picture(map: &SeenMap, kinds: [(&Vec<Thing>, Color32, Option<usize>); 2]) -> ColorImage {
     let mut image = ColorImage::filled([map.width as usize, map.height as usize], Color32::TRANSPARENT);
-    for (things, color) in kinds.into_iter().filter(|(things, _)| !things.is_empty()) {
+    for (things, color, surface) in kinds.into_iter().filter(|(things, ..)| !things.is_empty()) {
         let is_chosen = |[object, slot]: [u32; 2]| {
             things.iter().any(|thing| match thing {
                 Thing::Object(number) => object as usize == *number,
                 Thing::Slot(number) => slot as usize == *number,
             })
         };
-        let edges = map.edges(is_chosen);
+        let is_surface = |seen: [u32; 2]| is_chosen(seen) && surface.is_some_and(|slot| seen[1] as usize == slot);
+        let edges = match map.seen.iter().any(|seen| is_surface(*seen)) {
+            true => map.edges(is_surface),
+            false => map.edges(is_chosen),
+        };
         let pixels = image.pixels.iter_mut().zip(edges);
         pixels
             .filter(|(_, is_edge)| *is_edge)

@@ -100,6 +100,10 @@ fn view() -> Vec<Parameter<Document>> {
             .named("Contrast").flag("contrast").bar(0.5, 2.0).decimals(2),
         of("view.saturation", Display, "Saturation", "Distance of colours from grey, applied before the tone map. At 0 everything is grey.", single(range::SATURATION, ""), field!(Number view.saturation))
             .named("Saturation").flag("saturation").bar(0.0, 2.0).decimals(2),
+        of("view.vignette", Display, "Vignette", "Darkens the corners as a lens does. At 0 it is off.", single(range::VIGNETTE, ""), field!(Number view.vignette))
+            .named("Vignette").flag("vignette").bar(0.0, 1.0).decimals(2),
+        of("view.glare", Display, "Glare", "Share of the light that spreads around where it falls, as in a lens: highlights glow. At 0 it is off.", single(range::GLARE, ""), field!(Number view.glare))
+            .named("Glare").flag("glare").bar(0.0, 0.5).decimals(2),
         of("view.denoise", Stage::Goal, "Denoise", "Denoises with Open Image Denoise and estimates the remaining error. Auto blends with the raw render and applies the noise limit to the result.", choices::<Denoise>(), choice!(view.denoise))
             .named("Denoise").flag("denoise"),
         of("view.denoise_when", Display, "Denoise when", "When the window denoises: from the first sample on, or at the end.", choices::<DenoiseWhen>(), choice!(view.denoise_when))

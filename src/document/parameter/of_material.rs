@@ -39,7 +39,7 @@ fn base() -> Vec<Parameter> {
             idle: |material| {
                 let of_indices = is_conductor(material) && material.metalness >= 1.0;
                 of_indices.then_some(
-                    "The metal's colour follows from its index of refraction, while Fresnel is that of a conductor.",
+                    "The metal's colour follows from its measured η and k. Edit as colours, below Metal, gives it colours to pick.",
                 )
             },
             ..of("base.color", Kind::Color, field!(Color base_color))
@@ -190,14 +190,14 @@ fn specular_fresnel() -> Vec<Parameter> {
         Parameter {
             label: "η",
             symbol: "η",
-            help: "Real part of the metal's index of refraction for red, green and blue.",
+            help: "Real part of the metal's index of refraction for red, green and blue, as measured unless changed.",
             applies: is_conductor,
             ..of("specular.eta", Kind::Triple { range: [0.0, 20.0] }, eta())
         },
         Parameter {
             label: "k",
             symbol: "k",
-            help: "Imaginary part: how strongly the metal absorbs red, green and blue.",
+            help: "Imaginary part: how strongly the metal absorbs red, green and blue, as measured unless changed.",
             applies: is_conductor,
             ..of("specular.k", Kind::Triple { range: [0.0, 20.0] }, k())
         },

@@ -5,7 +5,7 @@
 
 use std::ffi::{CStr, OsStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use super::device_choice::DenoiseDevice;
 
@@ -72,6 +72,15 @@ pub(super) type BufferHandle = *mut c_void;
 /// [0, 1]; returning `false` cancels.
 pub(super) type ProgressMonitor = unsafe extern "C" fn(*mut c_void, f64) -> bool;
 
+/// The library, once it was found.
+static FOUND: OnceLock<Library> = OnceLock::new();
+/// Why it was not found when it was looked for last.
+static FAILED: Mutex<Option<LibraryError>> = Mutex::new(None);
+
+fn lock_failed() -> MutexGuard<'static, Option<LibraryError>> {
+    FAILED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 macro_rules! functions {
     ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
         /// The C functions, by their names in `oidn.h` without `oidn`.
@@ -132,10 +141,32 @@ impl Library {
     /// The library, found and loaded on the first call.
     ///
     /// # Errors
-    /// [`LibraryError`] in one line with the remedy; the same on each call.
+    /// [`LibraryError`] in one line with the remedy; the same on each call, until it is looked for again.
     pub fn get() -> Result<&'static Self, LibraryError> {
-        static LIBRARY: OnceLock<Result<Library, LibraryError>> = OnceLock::new();
-        LIBRARY.get_or_init(Self::find).as_ref().map_err(Clone::clone)
+        if let Some(found) = FOUND.get() {
+            return Ok(found);
+        }
+        let mut failed = lock_failed();
+        if let Some(error) = failed.as_ref() {
+            return Err(error.clone());
+        }
+        match Self::find() {
+            Ok(library) => Ok(FOUND.get_or_init(|| library)),
+            Err(error) => {
+                *failed = Some(error.clone());
+                Err(error)
+            }
+        }
+    }
+
+    /// Whether it was looked for and is not there. Does not look for it.
+    pub fn is_missing() -> bool {
+        matches!(*lock_failed(), Some(LibraryError::Missing))
+    }
+
+    /// Has it looked for again at the next call, after it was installed.
+    pub fn look_again() {
+        *lock_failed() = None;
     }
 
     fn find() -> Result<Self, LibraryError> {
@@ -240,7 +271,7 @@ pub fn data_folder() -> Option<PathBuf> {
 }
 
 /// The first file of a folder with a name prefix.
-fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
+pub(super) fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?;
     let names = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let fits = |path: &PathBuf| {

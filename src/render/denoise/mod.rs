@@ -4,6 +4,7 @@
 //! their mean. The halves' common part and their difference give the error estimate ([`crate::analysis::denoised`]).
 
 mod device_choice;
+pub mod fetch;
 mod filter;
 mod library;
 mod picture;

@@ -56,6 +56,11 @@ impl LedgerOptions {
             samples_min: SAMPLES_MIN,
         }
     }
+
+    /// Time that this many entries take at least, seconds.
+    pub fn seconds(&self, entries: usize) -> f64 {
+        (2 * entries * self.turns) as f64 * self.slice.as_secs_f64()
+    }
 }
 
 /// Subject of an entry.

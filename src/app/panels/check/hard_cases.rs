@@ -2,11 +2,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui, vec2};
 
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
+use crate::app::kit::words::time_left;
 use crate::document::ViewSettings;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
@@ -23,6 +25,18 @@ struct Standing {
     rows: Vec<HardRow>,
     running: Option<&'static str>,
     error: Option<String>,
+    /// When it began; `None` once it has ended.
+    begun: Option<Instant>,
+}
+
+impl Standing {
+    /// What is being run, which it is of how many, and what is left.
+    fn doing(&self, name: &str) -> String {
+        let (done, all) = (self.rows.len(), catalogue().count());
+        let seconds = self.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
+        let left = time_left(done as f64 / all as f64, seconds).map_or_else(String::new, |left| format!(", {left}"));
+        format!("{} ({} of {all}{left})", in_words(name), done + 1)
+    }
 }
 
 /// What the page remembers.
@@ -87,7 +101,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
     };
     widgets::comes_and_goes(ui, |ui| match standing.running {
         _ if is_stopped => widgets::note(ui, "Stopped."),
-        Some(name) => widgets::note(ui, in_words(name)),
+        Some(name) => widgets::note(ui, standing.doing(name)),
         None => {}
     });
     if let Some(error) = &standing.error {
@@ -116,7 +130,10 @@ fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Stan
 
 /// Runs case after case, publishing after each, until it is stopped.
 fn run(options: &HardOptions, stop: &Arc<AtomicBool>, publish: &dyn Fn(Standing)) {
-    let mut standing = Standing::default();
+    let mut standing = Standing {
+        begun: Some(Instant::now()),
+        ..Standing::default()
+    };
     let mut stage = match Stage::open(options.engine, options.thorough) {
         Ok(stage) => stage.until(stop.clone()),
         Err(error) => {

@@ -63,7 +63,13 @@ impl Panel for CheckPanel {
         };
         ui.checkbox(&mut state.thorough, "Thorough")
             .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
-        let row = ui.horizontal(|ui| start_or_stop(ui, "Check this machine", worker.is_busy(), true, |button| button));
+        // Stopped, it has ended as far as the window is concerned, though its thread may still be at a last step.
+        let is_stopped = state.stop.load(Ordering::Relaxed);
+        let is_running = worker.is_busy() && !is_stopped;
+        let dress =
+            |button: egui::Response| button.on_disabled_hover_text("The last step of the check is still ending.");
+        let is_free = !worker.is_busy();
+        let row = ui.horizontal(|ui| start_or_stop(ui, "Check this machine", is_running, is_free, dress));
         match row.inner {
             Pressed::Start => {
                 state.stop.store(false, Ordering::Relaxed);
@@ -76,8 +82,8 @@ impl Panel for CheckPanel {
         widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
         widgets::comes_and_goes(ui, |ui| match worker.latest() {
             None => {}
+            _ if is_stopped => widgets::note(ui, "Stopped."),
             Some(Standing::Checking(_)) if !worker.is_busy() => {}
-            Some(Standing::Checking(_)) if state.stop.load(Ordering::Relaxed) => widgets::note(ui, "Stopping …"),
             Some(Standing::Checking(group)) => widgets::note(ui, format!("Checking {group} …")),
             Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
             Some(Standing::Failed(why)) => {

@@ -7,6 +7,7 @@ use egui::{RichText, Ui};
 
 use crate::app::desk::Desk;
 use crate::app::kit::widgets;
+use crate::app::kit::words::about;
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
@@ -43,10 +44,16 @@ pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState
     let help = "What each effect and setting costs in time, and does to noise and image: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, slice } = state;
-    worker.controls(ui, desk, "Profile features", help, |desk| {
-        let document = small_document(desk, SIDE_MAX);
+    let options = |desk: &Desk<'_>| {
         let mut options = LedgerOptions::new(engine(desk));
         options.slice = slice.unwrap_or(options.slice);
+        options
+    };
+    let count = desk.snapshot.scene.as_ref().map(|scene| scene.job.plan.effects().len());
+    let takes = count.map(|count| format!("takes about {}", about(options(desk).seconds(count))));
+    worker.controls(ui, desk, ("Profile features", help), takes, |desk| {
+        let document = small_document(desk, SIDE_MAX);
+        let options = options(desk);
         Box::new(move |watch| ledger(&document, &options, watch))
     });
 }

@@ -43,15 +43,22 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.shared.selection.shows_lights = true;
     let mut lights = desk.document.lighting.area_lights.clone();
     let soloed = soloed(&lights);
+    // Of several the chosen one has its rows: all together would be a scroll of a metre.
+    let is_alone = lights.len() == 1;
     let mut asked = None;
     for (index, light) in lights.iter_mut().enumerate() {
         let title = format!("Area light {}", index + 1);
         let now = header(ui, desk, index, &title, light, soloed == Some(index));
         asked = now.map(|now| (now, index)).or(asked);
-        rows(ui, desk, &title, light);
-        let help = "Click the model to put the highlight there.";
-        let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
-        pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
+        let is_open = is_alone || desk.shared.selection.light == Some(index);
+        widgets::comes_and_goes(ui, |ui| {
+            if is_open {
+                rows(ui, desk, &title, light);
+                let help = "Click the model to put the highlight there.";
+                let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
+                pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
+            }
+        });
     }
     match asked {
         Some((Asked::Solo, index)) => {
@@ -120,7 +127,7 @@ fn header(
         let chosen = &mut desk.shared.selection.light;
         let is_chosen = *chosen == Some(index);
         let name = ui.selectable_label(is_chosen, egui::RichText::new(title).strong());
-        let name = name.on_hover_text("Shows its handles in the viewport.");
+        let name = name.on_hover_text("Shows its rows here and its handles in the viewport.");
         if name.clicked() {
             *chosen = (!is_chosen).then_some(index);
         }
@@ -150,7 +157,7 @@ fn header(
 
 fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     for parameter in LIGHT_PARAMETERS.iter() {
-        parameter_of(ui, desk, title, parameter, light);
+        widgets::comes_and_goes(ui, |ui| parameter_of(ui, desk, title, parameter, light));
         if parameter.word() == "color" {
             temperature(ui, desk, title, light);
         }
@@ -158,7 +165,7 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     widgets::comes_and_goes(ui, |ui| power(ui, desk, title, light));
 }
 
-/// The row of a parameter: grey where it has no effect on a light of this shape.
+/// The row of a parameter, where it has an effect on a light of this shape.
 fn parameter_of(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -166,16 +173,12 @@ fn parameter_of(
     parameter: &Parameter<AreaLight>,
     light: &mut AreaLight,
 ) {
+    if (parameter.idle)(light).is_some() {
+        return;
+    }
     let full = format!("{title} {}", parameter.label.to_lowercase());
     let mut value = parameter.get(light);
-    let idle = (parameter.idle)(light);
-    let row = ui.add_enabled_ui(idle.is_none(), |ui| {
-        parameter_row::show_as(ui, parameter, &full, &mut value, |_| {})
-    });
-    if let Some(why) = idle {
-        row.response.on_hover_text(why);
-    }
-    if row.inner && parameter.set(light, value).is_ok() {
+    if parameter_row::show_as(ui, parameter, &full, &mut value) && parameter.set(light, value).is_ok() {
         desk.edits.note(full.clone(), full);
     }
 }

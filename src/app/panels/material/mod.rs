@@ -1,6 +1,10 @@
-//! The selected material: every parameter of the registry, in its group, with the widget that suits its kind.
+//! The selected material: every parameter of the registry, in its group, with the widget that suits its kind, and with
+//! its texture.
 
 mod textures;
+
+use std::cell::Cell;
+use std::sync::Arc;
 
 use egui::Ui;
 
@@ -8,21 +12,69 @@ use super::Panel;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::widgets;
-use crate::app::kit::{parameter_row, theme};
+use crate::app::kit::{keys, parameter_row, theme, widgets};
+use crate::document::material::Conductor;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
+use crate::optics::fresnel::Fresnel;
 
+/// Side of the ball before a slot's name, points.
+const BALL: f32 = 26.0;
+/// From how many slots on they can be searched.
+const SEARCHED_FROM: usize = 7;
 /// The slots that are seen at once: more are scrolled to, so that the parameters stay in sight.
 const SLOTS_SHOWN: f32 = 6.0;
 
+/// From how many parameters on a change is not one by hand, but another material.
+const ANOTHER_FROM: usize = 3;
+/// The parameter after which a metal's two ways stand: by colours, or as measured.
+const METAL_KEY: &str = "specular.conductor";
+/// The groups that are always open.
+const ALWAYS_OPEN: [&str; 2] = ["Base", "Specular"];
+
 /// The parameters of the selected material.
 #[derive(Default)]
-pub(super) struct MaterialPanel;
+pub(super) struct MaterialPanel {
+    /// What was shown last, of which slot of which model.
+    shown: Option<((usize, usize), MaterialSettings)>,
+    /// What is searched for among the model's materials.
+    search: String,
+}
+
+impl MaterialPanel {
+    /// Whether another material is shown than in the last frame.
+    fn is_another(&mut self, desk: &Desk<'_>, material: &MaterialSettings) -> bool {
+        let model = desk.scene().map_or(0, |scene| Arc::as_ptr(&scene.model) as usize);
+        let slot = (desk.shared.slot, model);
+        let is_another = match &self.shown {
+            Some((last, before)) if *last == slot => {
+                let is_changed = |parameter: &&Parameter| parameter.get(before) != parameter.get(material);
+                before != material && PARAMETERS.iter().filter(is_changed).count() >= ANOTHER_FROM
+            }
+            _ => true,
+        };
+        if is_another || self.shown.as_ref().is_none_or(|(_, before)| before != material) {
+            self.shown = Some((slot, material.clone()));
+        }
+        is_another
+    }
+}
+
+/// Whether a group says nothing of the material: all of it is as it is at first.
+fn is_at_default(desk: &Desk<'_>, group: &str, material: &MaterialSettings) -> bool {
+    let is_other = |parameter: &Parameter| parameter.get(material) != parameter.default_value();
+    let has_texture = textures::of_group(group).any(|target| textures::is_there(desk, target));
+    !has_texture
+        && !PARAMETERS
+            .iter()
+            .any(|parameter| parameter.group == group && is_other(parameter))
+}
 
 impl Panel for MaterialPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        widgets::comes_and_goes(ui, |ui| slots(ui, desk));
+        let search = &mut self.search;
+        widgets::comes_and_goes(ui, |ui| slots(ui, desk, search));
         let before = desk.material();
+        let is_another = self.is_another(desk, &before);
         let mut material = before.clone();
         name(ui, desk, &mut material);
         ui.add_space(theme::GAP);
@@ -36,6 +88,8 @@ impl Panel for MaterialPanel {
         }
         for group in groups {
             let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
+            // What says nothing is folded whenever another material is shown; the user opens it for as long.
+            let opens = ALWAYS_OPEN.contains(&group) || (is_another && !is_at_default(desk, group, &before));
             let mut rows = |ui: &mut Ui| {
                 for parameter in parameters() {
                     widgets::comes_and_goes(ui, |ui| {
@@ -43,15 +97,20 @@ impl Panel for MaterialPanel {
                             show_parameter(ui, desk, parameter, &mut material);
                         }
                     });
+                    if parameter.key == METAL_KEY {
+                        widgets::comes_and_goes(ui, |ui| metal(ui, desk, &mut material));
+                    }
+                    if let Some(target) = textures::target_of(parameter.key) {
+                        widgets::comes_and_goes(ui, |ui| textures::show(ui, desk, target, &mut material));
+                    }
                 }
             };
             widgets::comes_and_goes(ui, |ui| {
                 if parameters().any(|parameter| is_shown(&parameter)) {
-                    widgets::group(ui, group, &mut rows);
+                    widgets::group_open(ui, group, is_another.then_some(opens), &mut rows);
                 }
             });
         }
-        widgets::group(ui, "Textures", |ui| textures::show(ui, desk, &mut material));
         if material != before {
             desk.set_material(material);
         }
@@ -59,7 +118,7 @@ impl Panel for MaterialPanel {
 }
 
 /// The model's slots, where there is a choice.
-fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn slots(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
     // Their number is not known while the model is being loaded.
     let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
         return;
@@ -70,30 +129,55 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
     if count < 2 {
         return;
     }
-    widgets::group(ui, "Slots", |ui| {
+    widgets::group(ui, "Materials of the model", |ui| {
         let names: Vec<String> = desk
             .scene()
             .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
             .unwrap_or_default();
-        let height = SLOTS_SHOWN * (theme::ROW_HEIGHT + ui.spacing().item_spacing.y);
+        let materials: Vec<MaterialSettings> = (0..count).map(|slot| desk.document.material(slot)).collect();
+        let is_in_flow = desk.edits.is_in_flow();
+        let balls = desk.shared.library.pictures_of(ui.ctx(), &materials, is_in_flow);
+        if count >= SEARCHED_FROM {
+            keys::search_field(ui, search, "Search", "Search materials of the model");
+        }
+        let wanted = search.to_lowercase();
+        let height = SLOTS_SHOWN * (BALL + 4.0 + ui.spacing().item_spacing.y);
         egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
-            for (slot, name) in names.iter().enumerate() {
-                slot_entry(ui, desk, slot, name);
+            for (slot, (material, ball)) in materials.iter().zip(&balls).enumerate() {
+                let name = &names[slot];
+                let is_wanted = |text: &str| text.to_lowercase().contains(&wanted);
+                if is_wanted(name) || is_wanted(&material.name) {
+                    ui.push_id(slot, |ui| slot_entry(ui, desk, (slot, name), material, ball.as_ref()));
+                }
             }
         });
     });
 }
 
-fn slot_entry(ui: &mut Ui, desk: &mut Desk<'_>, slot: usize, name: &str) {
-    let label = if name.is_empty() {
-        format!("slot {}", slot + 1)
-    } else {
-        name.to_owned()
+/// A material by its ball and name; behind it what its surface is called in the model, where that is something else.
+fn slot_entry(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    (slot, name): (usize, &str),
+    material: &MaterialSettings,
+    ball: Option<&egui::TextureHandle>,
+) {
+    let label = match (material.name.as_str(), name) {
+        (own, of_model) if own == of_model || of_model.is_empty() => own.to_owned(),
+        ("", of_model) => of_model.to_owned(),
+        (own, of_model) => format!("{own}  ({of_model})"),
     };
+    let [r, g, b] = widgets::srgb_of(material.base_color);
     let is_selected = slot == desk.shared.slot;
-    let size = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
-    let button = egui::Button::selectable(is_selected, label.as_str()).truncate();
-    let item = ui.add_sized(size, button.min_size(size));
+    let row = widgets::PictureRow {
+        name: &label,
+        full_name: &format!("Slot {}: {label}", slot + 1),
+        picture: ball,
+        size: egui::Vec2::splat(BALL),
+        color: egui::Color32::from_rgb(r, g, b),
+        is_current: is_selected,
+    };
+    let item = row.show(ui);
     // Where a click in the viewport selected it.
     let shown = egui::Id::unique("slot in sight");
     if is_selected && ui.memory(|memory| memory.data.get_temp::<usize>(shown)) != Some(slot) {
@@ -103,6 +187,32 @@ fn slot_entry(ui: &mut Ui, desk: &mut Desk<'_>, slot: usize, name: &str) {
     if item.on_hover_text(label).clicked() {
         desk.actions.push(Action::SelectSlot(slot));
     }
+}
+
+/// The other way to say which metal it is: two colours in place of η and k, or those of a measured metal.
+fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+    if material.metalness < 1.0 {
+        return;
+    }
+    if material.fresnel == Fresnel::Conductor {
+        let help = "The same metal by two colours, seen head-on and towards the edge, to pick as you like.";
+        if ui.button("Edit as colours").on_hover_text(help).clicked() {
+            *material = material.by_colors();
+            desk.edits.note("Edit the metal as colours", "");
+        }
+        return;
+    }
+    let menu = ui.menu_button("Measured metal…", |ui| {
+        for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
+            if ui.button(conductor.name()).clicked() {
+                *material = material.by_measured(conductor);
+                desk.edits.note(format!("Use measured {}", conductor.name()), "");
+                ui.close();
+            }
+        }
+    });
+    menu.response
+        .on_hover_text("Replaces the colours by a metal's measured η and k.");
 }
 
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
@@ -129,9 +239,28 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
 fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
     let mut value = parameter.get(material);
     let idle = (parameter.idle)(material);
+    let pressed = Cell::new(false);
+    let pointed = Cell::new(false);
+    let target = textures::target_of(parameter.key);
+    // A texture that is there has a row of its own; its parameter's control stays the one that it is.
+    let is_empty = target.is_some_and(|target| !textures::is_there(desk, target));
+    let mut slot = |ui: &mut Ui| {
+        if let Some(target) = target.filter(|_| is_empty) {
+            let response = textures::empty_slot(ui, target);
+            pressed.set(response.clicked());
+            pointed.set(response.contains_pointer());
+        }
+    };
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
-        parameter_row::show(ui, parameter, &mut value, |_| {})
+        let beside = target.is_some().then_some(&mut slot as &mut dyn FnMut(&mut Ui));
+        parameter_row::show_beside(ui, parameter, &parameter.full_name(), &mut value, beside)
     });
+    if let Some(target) = target.filter(|_| pressed.get()) {
+        desk.actions.push(Action::ChooseTexture(target));
+    }
+    if let Some(target) = target.filter(|_| pointed.get()) {
+        desk.shared.selection.texture = Some(target);
+    }
     if let Some(why) = idle {
         row.response.on_hover_text(why);
     }

@@ -1,4 +1,4 @@
-//! The textures of the selected material: the model's, and those of the user's own in their place.
+//! The textures of the selected material, each at its parameter: the model's, and those of the user's own in their place.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -31,14 +31,60 @@ enum Asked {
     Remove,
 }
 
-/// A row for each target, with its image, and how the user's own ones are mapped.
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
-    for &target in TextureTarget::ALL {
-        widgets::comes_and_goes(ui, |ui| {
-            let picture = picture(desk, target);
-            row(ui, desk, target, picture.as_ref(), material);
-            placement(ui, desk, target, material);
-        });
+/// The parameter, by its key, at which each target's texture stands. That of the normal has no number beside it.
+const PLACES: [(&str, TextureTarget); 7] = [
+    ("base.color", TextureTarget::BaseColor),
+    ("base.metalness", TextureTarget::Metalness),
+    ("specular.roughness", TextureTarget::Roughness),
+    ("coat.weight", TextureTarget::Coat),
+    ("emission.color", TextureTarget::Emission),
+    ("geometry.opacity", TextureTarget::Opacity),
+    ("geometry.normal_texture", TextureTarget::Normal),
+];
+
+/// The target whose texture stands at a parameter.
+pub(super) fn target_of(key: &str) -> Option<TextureTarget> {
+    let place = PLACES.iter().find(|(of, _)| *of == key);
+    place.map(|(_, target)| *target)
+}
+
+/// The targets of a group of parameters.
+pub(super) fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
+    let of_key = |key: &str| PARAMETERS.iter().find(|parameter| parameter.key == key);
+    let is_there = move |key: &str| of_key(key).is_some_and(|parameter| parameter.group == group);
+    PLACES
+        .iter()
+        .filter(move |(key, _)| is_there(key))
+        .map(|(_, target)| *target)
+}
+
+/// Whether the selected slot has a texture there.
+pub(super) fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
+    picture(desk, target).is_some()
+}
+
+/// The square beside a parameter that has no texture: pressed to choose one, and a place to drop one.
+pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
+    let name = format!("Texture of the {}", target.label().to_lowercase());
+    let help = format!(
+        "{}\nChoose an image of your own, or drop one on the window.",
+        target.help()
+    );
+    icons::button(ui, Icon::Texture, &name, &help)
+}
+
+/// The texture's row, with how a user's own one is mapped. One that is not there has its place beside the parameter, but
+/// for that of the normal, which has a row.
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
+    let picture = picture(desk, target);
+    if picture.is_some() || target == TextureTarget::Normal {
+        let top = ui.cursor().min;
+        let place = egui::Rect::from_min_size(top, egui::vec2(ui.available_width(), theme::ROW_HEIGHT));
+        if ui.rect_contains_pointer(place) {
+            desk.shared.selection.texture = Some(target);
+        }
+        row(ui, desk, target, picture.as_ref(), material);
+        placement(ui, desk, target, material);
     }
 }
 
@@ -159,7 +205,7 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                 }
                 let full = format!("{} texture {}", target.label(), parameter.label.to_lowercase());
                 let mut value = parameter.get(&texture);
-                let is_other = parameter_row::show_as(ui, parameter, &full, &mut value, |_| {});
+                let is_other = parameter_row::show_as(ui, parameter, &full, &mut value);
                 if is_other && parameter.set(&mut texture, value).is_ok() {
                     let key = format!("{}/{}/{}", desk.shared.slot, target.name(), parameter.key);
                     desk.edits.note(full, key);

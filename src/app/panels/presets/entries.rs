@@ -6,7 +6,7 @@ use egui::{TextureHandle, Ui};
 
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
-use crate::app::kit::tile::{Layout, Tile};
+use crate::app::kit::tile::{self, Layout, Tile};
 use crate::app::kit::widgets;
 use crate::app::services::compare::Rival;
 use crate::app::services::environments::environment_label;
@@ -173,6 +173,9 @@ impl Entry {
                 }
                 // Onto an object in the viewport, or a material in the tree of the scene.
                 response.dnd_set_drag_payload((**material).clone());
+                if response.dragged() {
+                    tile::at_pointer(ui, self.picture.as_ref(), color);
+                }
             }
             EntryKind::Environment(source) if response.clicked() && !is_current => {
                 desk.actions.push(Action::UseEnvironment(source.clone()));

@@ -15,9 +15,6 @@ impl State<'_> {
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
             let model = state.session()?.assets().model(&source, &options)?;
-            if let Some(summary) = model.report.summary() {
-                state.message(Level::Warning, summary);
-            }
             Ok(Event::ModelOpened(source, options, model))
         });
     }

@@ -1,0 +1,211 @@
+//! Workspaces: arrangements of the panels under names, two of the program's and the user's own.
+
+use egui_tiles::Tree;
+use serde::{Deserialize, Serialize};
+
+use crate::app::layout::{self, Pane};
+use crate::app::services::workspaces::is_built_in;
+pub use crate::app::services::workspaces::{Change, LOOK, MEASURE};
+
+/// The name of an arrangement that was left before there were workspaces.
+const FORMER: &str = "Mine";
+/// Longest name of a workspace, characters: a row of them fits beside the menus.
+const NAME_MAX: usize = 16;
+
+/// An arrangement of the panels with its name.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Workspace {
+    name: String,
+    layout: Tree<Pane>,
+}
+
+/// What is kept of them from one start to the next.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Kept {
+    current: String,
+    all: Vec<Workspace>,
+}
+
+/// The workspaces but for the arrangement of the current one, which the editor shows.
+#[derive(Debug)]
+pub(super) struct Workspaces {
+    current: String,
+    all: Vec<Workspace>,
+}
+
+impl Workspaces {
+    /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
+    /// name, which earlier versions kept.
+    pub(super) fn new(kept: Kept, former: Option<Tree<Pane>>, wished: Option<String>) -> (Self, Tree<Pane>) {
+        let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
+        let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
+        for (name, layout) in kept.all.into_iter().filter_map(whole) {
+            put(&mut all, &name, layout);
+        }
+        let mut current = kept.current;
+        if let Some(former) = former {
+            put(&mut all, FORMER, former);
+            current = FORMER.to_owned();
+        }
+        let current = wished.unwrap_or(current);
+        let shown = all
+            .iter()
+            .find(|workspace| workspace.name == current)
+            .unwrap_or(&all[0]);
+        let (current, layout) = (shown.name.clone(), shown.layout.clone());
+        (Self { current, all }, layout)
+    }
+
+    /// The name of the current one.
+    pub(super) fn current(&self) -> &str {
+        &self.current
+    }
+
+    /// The names of all, the program's own first.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(|workspace| workspace.name.as_str())
+    }
+
+    /// What is kept for the next start.
+    pub(super) fn kept(&self, layout: Tree<Pane>) -> Kept {
+        let mut all = self.all.clone();
+        put(&mut all, &self.current, layout);
+        let current = self.current.clone();
+        Kept { current, all }
+    }
+
+    /// Makes a change; `layout` is the arrangement of the current one.
+    pub(super) fn change(&mut self, change: Change, layout: &mut Tree<Pane>) {
+        match change {
+            Change::Use(name) => self.show(&name, layout),
+            Change::Save(name) => {
+                let name: String = name.trim().chars().take(NAME_MAX).collect();
+                if !name.is_empty() {
+                    put(&mut self.all, &name, layout.clone());
+                    self.current = name;
+                }
+            }
+            Change::Remove(name) if !is_built_in(&name) => {
+                self.all.retain(|workspace| workspace.name != name);
+                if self.current == name {
+                    let first = &self.all[0];
+                    (self.current, *layout) = (first.name.clone(), first.layout.clone());
+                }
+            }
+            Change::Remove(_) => {}
+        }
+    }
+
+    fn show(&mut self, name: &str, layout: &mut Tree<Pane>) {
+        let Some(next) = self.all.iter().find(|workspace| workspace.name == name) else {
+            return;
+        };
+        let next = next.layout.clone();
+        let left = std::mem::replace(layout, next);
+        put(&mut self.all, &self.current, left);
+        self.current = name.to_owned();
+    }
+
+    /// The arrangement that the current one has at first.
+    pub(super) fn at_first(&self) -> Tree<Pane> {
+        built_in(&self.current).layout
+    }
+}
+
+/// A workspace of the program's as it is at first; another name has the panels of *Look*.
+fn built_in(name: &str) -> Workspace {
+    let layout = match name {
+        MEASURE => layout::to_measure(),
+        _ => layout::to_look(),
+    };
+    Workspace {
+        name: name.to_owned(),
+        layout,
+    }
+}
+
+/// Keeps an arrangement under a name, in the place of one that has it.
+fn put(all: &mut Vec<Workspace>, name: &str, layout: Tree<Pane>) {
+    match all.iter_mut().find(|workspace| workspace.name == name) {
+        Some(known) => known.layout = layout,
+        None => all.push(Workspace {
+            name: name.to_owned(),
+            layout,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(workspaces: &Workspaces) -> Vec<&str> {
+        workspaces.names().collect()
+    }
+
+    /// What is measured is out of sight at the start, and all of it is in the other workspace.
+    #[test]
+    fn the_start_is_for_looks_and_the_other_workspace_for_numbers() {
+        let (mut workspaces, mut layout) = Workspaces::new(Kept::default(), None, None);
+        assert_eq!((workspaces.current(), names(&workspaces)), (LOOK, vec![LOOK, MEASURE]));
+        for pane in [Pane::Presets, Pane::Material, Pane::Lighting, Pane::Camera] {
+            assert!(layout::is_open(&layout, pane), "{pane:?}");
+        }
+        let measures = [
+            Pane::Effects,
+            Pane::Race,
+            Pane::Convergence,
+            Pane::Check,
+            Pane::Samples,
+            Pane::Lobe,
+            Pane::Inspector,
+        ];
+        for pane in measures {
+            assert!(!layout::is_open(&layout, pane), "{pane:?}");
+        }
+        workspaces.change(Change::Use(MEASURE.to_owned()), &mut layout);
+        for pane in measures {
+            assert!(layout::is_open(&layout, pane), "{pane:?}");
+        }
+    }
+
+    /// A workspace is found again as it was left, in the same session and in the next one.
+    #[test]
+    fn each_workspace_keeps_its_panels() {
+        let (mut workspaces, mut layout) = Workspaces::new(Kept::default(), None, None);
+        layout::close(&mut layout, Pane::Presets);
+        workspaces.change(Change::Save("  Shots ".to_owned()), &mut layout);
+        layout::reveal(&mut layout, Pane::Log);
+        workspaces.change(Change::Use(LOOK.to_owned()), &mut layout);
+        assert!(layout::is_open(&layout, Pane::Presets) && !layout::is_open(&layout, Pane::Log));
+        let kept = serde_json::to_string(&workspaces.kept(layout)).expect("plain values");
+        let kept = serde_json::from_str(&kept).expect("what was written");
+        let (mut workspaces, mut layout) = Workspaces::new(kept, None, None);
+        assert_eq!(
+            (workspaces.current(), names(&workspaces)),
+            (LOOK, vec![LOOK, MEASURE, "Shots"])
+        );
+        workspaces.change(Change::Use("Shots".to_owned()), &mut layout);
+        assert!(!layout::is_open(&layout, Pane::Presets) && layout::is_open(&layout, Pane::Log));
+        workspaces.change(Change::Remove("Shots".to_owned()), &mut layout);
+        assert_eq!((workspaces.current(), names(&workspaces)), (LOOK, vec![LOOK, MEASURE]));
+        for name in [LOOK, MEASURE] {
+            workspaces.change(Change::Remove(name.to_owned()), &mut layout);
+        }
+        assert_eq!(names(&workspaces), [LOOK, MEASURE], "the program's own stay");
+    }
+
+    /// An arrangement that was made before there were workspaces is still the one at the start.
+    #[test]
+    fn a_layout_without_a_name_becomes_a_workspace() {
+        let mut former = layout::to_measure();
+        layout::close(&mut former, Pane::Presets);
+        let (workspaces, layout) = Workspaces::new(Kept::default(), Some(former), None);
+        assert_eq!(
+            (workspaces.current(), names(&workspaces)),
+            (FORMER, vec![LOOK, MEASURE, FORMER])
+        );
+        assert!(!layout::is_open(&layout, Pane::Presets) && layout::is_open(&layout, Pane::Race));
+    }
+}

@@ -1,0 +1,71 @@
+//! A metal by two colours, seen head-on and towards the edge, in place of a measured index of refraction.
+
+use super::MaterialSettings;
+use super::material::Conductor;
+use crate::optics::fresnel::{Fresnel, fresnel_conductor, fresnel_schlick};
+use crate::optics::vector::Vec3;
+
+/// The cosine at which the edge's colour is exact, about 82°.
+const EDGE: f64 = 1.0 / 7.0;
+
+impl MaterialSettings {
+    /// The same metal by its colours where it goes by η and k: what it reflects head-on becomes the colour, and what it
+    /// reflects at 82° the edge tint.
+    pub fn by_colors(&self) -> Self {
+        let reflectance = |cosine: f64| {
+            let channel = |i: usize| fresnel_conductor(cosine, f64::from(self.eta[i]), f64::from(self.k[i]));
+            [0, 1, 2].map(channel)
+        };
+        let (f0, there) = (reflectance(1.0), reflectance(EDGE));
+        let plain = fresnel_schlick(Vec3::from_f64(f0), EDGE).to_f64();
+        let mut material = Self {
+            fresnel: Fresnel::Schlick,
+            metalness: 1.0,
+            base_weight: 1.0,
+            base_color: f0.map(|x| x as f32),
+            edge_tint: [0, 1, 2].map(|i| (there[i] / plain[i]).clamp(0.0, 1.0) as f32),
+            conductor: Conductor::Custom,
+            ..self.clone()
+        };
+        // η and k had no texture.
+        material.textures.color = false;
+        material
+    }
+
+    /// A measured metal by its η and k.
+    pub fn by_measured(&self, conductor: Conductor) -> Self {
+        let mut material = Self {
+            fresnel: Fresnel::Conductor,
+            ..self.clone()
+        };
+        material.set_conductor(conductor);
+        material
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::fresnel::fresnel_metal;
+
+    /// Every measured metal keeps its colour head-on and at 82°, and is near between.
+    #[test]
+    fn measured_metals_keep_their_look_by_two_colours() {
+        for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
+            let measured = MaterialSettings::default().by_measured(conductor);
+            let colored = measured.by_colors();
+            assert_eq!((colored.fresnel, colored.metalness), (Fresnel::Schlick, 1.0));
+            let [f0, tint] = [colored.base_color, colored.edge_tint].map(|color| Vec3::from_f64(color.map(f64::from)));
+            for (cosine, tolerance) in [(1.0, 1e-5), (EDGE, 1e-5), (0.7, 0.03), (0.4, 0.05)] {
+                let by_colors = fresnel_metal(f0, tint, cosine).to_f64();
+                for (i, found) in by_colors.into_iter().enumerate() {
+                    let exact = fresnel_conductor(cosine, f64::from(measured.eta[i]), f64::from(measured.k[i]));
+                    // The tint only darkens: what brightens towards 82° stays Schlick's there.
+                    let slack = if tint.to_f64()[i] >= 1.0 { 0.05 } else { tolerance };
+                    let name = conductor.name();
+                    assert!((found - exact).abs() < slack, "{name} at {cosine}: {found} for {exact}");
+                }
+            }
+        }
+    }
+}

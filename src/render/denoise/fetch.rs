@@ -1,0 +1,174 @@
+//! The denoiser, fetched for the user: the official binaries of Open Image Denoise, as a Python package.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::library::{Library, data_folder};
+
+/// What is downloaded, in words.
+pub const DOWNLOAD: &str = "90 MB";
+
+/// The package, as in `scripts/setup`.
+const PACKAGE: &str = "pyoidn==2.5.1.0";
+/// Where its libraries lie in it.
+const IN_PACKAGE: &str = "pyoidn/oidn/lib";
+/// Beginnings of the names of those that are needed.
+const NEEDED: [&str; 4] = [
+    "libtbb.so.12",
+    "libOpenImageDenoise_core.so.",
+    "libOpenImageDenoise_device_cpu.so.",
+    "libOpenImageDenoise.so.2",
+];
+/// Programs that install Python packages, the likeliest first.
+const INSTALLERS: [&[&str]; 3] = [&["python3", "-m", "pip"], &["pip3"], &["uv", "pip"]];
+
+/// Why the denoiser could not be fetched.
+#[derive(Debug, thiserror::Error)]
+pub enum FetchError {
+    /// No program is there that installs Python packages.
+    #[error("nothing here can download it: install python3-pip, then press the button again")]
+    NoInstaller,
+    /// The download failed.
+    #[error("the download of {PACKAGE} failed: {0}")]
+    Download(String),
+    /// The package lacks a library.
+    #[error("the package {PACKAGE} has no {0} for this machine")]
+    Missing(&'static str),
+    /// There is no place to put it.
+    #[error("there is no folder for it: set HOME")]
+    NoFolder,
+    /// A file can't be written.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        error: io::Error,
+    },
+}
+
+/// Whether the denoiser can be fetched on this system.
+pub fn can_fetch() -> bool {
+    cfg!(target_os = "linux") && data_folder().is_some()
+}
+
+/// Downloads the denoiser into the folder where the program looks for it, and has it looked for again.
+///
+/// # Errors
+/// In one line with the remedy.
+pub fn fetch() -> Result<(), FetchError> {
+    let folder = data_folder().ok_or(FetchError::NoFolder)?;
+    fetch_by(&INSTALLERS, &folder)?;
+    Library::look_again();
+    Ok(())
+}
+
+/// Downloads the denoiser by the first installer that is there.
+fn fetch_by(installers: &[&[&str]], folder: &Path) -> Result<(), FetchError> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |error| FetchError::File { path, error }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    // Beside where it goes to: files are moved within one file system.
+    let taken = tempfile::tempdir_in(folder).map_err(failed(folder))?;
+    install(installers, taken.path())?;
+    let there = taken.path().join(IN_PACKAGE);
+    // All or none.
+    let found: Vec<PathBuf> = NEEDED
+        .iter()
+        .map(|name| super::library::file_beginning_with(&there, name).ok_or(FetchError::Missing(name)))
+        .collect::<Result<_, _>>()?;
+    for file in found {
+        let to = folder.join(file.file_name().unwrap_or_default());
+        std::fs::rename(&file, &to).map_err(failed(&to))?;
+    }
+    Ok(())
+}
+
+fn install(installers: &[&[&str]], target: &Path) -> Result<(), FetchError> {
+    for installer in installers {
+        let Some((program, arguments)) = installer.split_first() else {
+            continue;
+        };
+        let mut command = Command::new(program);
+        command
+            .args(arguments)
+            .args(["install", "--no-deps", "--target"])
+            .arg(target)
+            .arg(PACKAGE);
+        match command.output() {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => return Err(FetchError::Download(error.to_string())),
+            Ok(output) if output.status.success() => return Ok(()),
+            Ok(output) => {
+                let said = String::from_utf8_lossy(&output.stderr).into_owned();
+                // A Python without pip: another installer may be there.
+                if !said.contains("No module named pip") {
+                    let last = said.lines().rfind(|line| !line.trim().is_empty());
+                    return Err(FetchError::Download(last.unwrap_or("no reason given").to_owned()));
+                }
+            }
+        }
+    }
+    Err(FetchError::NoInstaller)
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use std::os::unix::fs::PermissionsExt as _;
+
+    use super::*;
+
+    /// A program in a folder that does what the script says.
+    fn program(folder: &Path, script: &str) -> String {
+        let path = folder.join("installer");
+        std::fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a temporary file");
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("its own file");
+        path.display().to_string()
+    }
+
+    #[test]
+    fn the_four_libraries_are_taken_out_of_the_package() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let made = format!(
+            "[ \"$1 $2 $3\" = 'install --no-deps --target' ] || exit 3\nmkdir -p \"$4/{IN_PACKAGE}\" && cd \"$4/{IN_PACKAGE}\" && \
+             touch libtbb.so.12 libOpenImageDenoise_core.so.2.5.1 libOpenImageDenoise_device_cpu.so.2.5.1 \
+             libOpenImageDenoise.so.2 other.so"
+        );
+        let installer = program(folder.path(), &made);
+        let to = folder.path().join("denoiser");
+        fetch_by(&[&["no-such-installer-here"], &[&installer]], &to).expect("the second one is there");
+        let mut names: Vec<_> = std::fs::read_dir(&to)
+            .expect("it was made")
+            .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+            .collect();
+        names.sort();
+        let expected = [
+            "libOpenImageDenoise.so.2",
+            "libOpenImageDenoise_core.so.2.5.1",
+            "libOpenImageDenoise_device_cpu.so.2.5.1",
+            "libtbb.so.12",
+        ];
+        assert_eq!(names, expected);
+    }
+
+    #[test]
+    fn what_fails_is_told_in_one_line_and_leaves_nothing() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let to = folder.path().join("denoiser");
+        let installer = program(folder.path(), "echo trying >&2; echo 'no network' >&2; exit 1");
+        for (installers, told) in [
+            (vec!["no-such-installer-here"], "python3-pip"),
+            (vec![installer.as_str()], "no network"),
+        ] {
+            let error = fetch_by(&[&installers], &to).expect_err("it can't").to_string();
+            assert!(error.contains(told) && !error.contains('\n'), "{error}");
+        }
+        let installer = program(folder.path(), "exit 0");
+        let error = fetch_by(&[&[&installer]], &to).expect_err("an empty package");
+        assert!(error.to_string().contains("libtbb.so.12"), "{error}");
+        assert_eq!(std::fs::read_dir(&to).expect("it was made").count(), 0);
+    }
+}
