@@ -20,7 +20,9 @@ use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_samp
 use glossmith::optics::random::{Sequence, random_pairs};
 use glossmith::optics::real::{Real, Scalar};
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample};
+use glossmith::scene::environment::{
+    Environment, EnvironmentSource, environment_density, environment_radiance, environment_sample,
+};
 
 /// Samples of a turn.
 const COUNT: usize = 1 << 14;

@@ -5,7 +5,11 @@ use std::f64::consts::{PI, TAU};
 use glossmith::import::environment::load;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{Environment, EnvironmentSource, SkyParams, environment_direction, environment_local_from_world, environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction, sun_irradiance, thumbnail};
+use glossmith::scene::environment::{
+    Environment, EnvironmentSource, SkyParams, environment_direction, environment_local_from_world,
+    environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction,
+    sun_irradiance, thumbnail,
+};
 
 use crate::support::Random;
 

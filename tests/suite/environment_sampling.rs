@@ -7,7 +7,10 @@ use glossmith::import::environment::load;
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{Distribution, Environment, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance, environment_sample, environment_uv, furnace, sky, thumbnail};
+use glossmith::scene::environment::{
+    Distribution, Environment, EnvironmentSource, SkyParams, environment_density, environment_direction,
+    environment_radiance, environment_sample, environment_uv, furnace, sky, thumbnail,
+};
 
 use crate::environment::{assert_near, constant_map, random_direction, random_map, sun_map, triple};
 use crate::support::Random;

@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use glossmith::import::load;
 use glossmith::scene::mesh::{Mesh, plane_normal};
-use glossmith::scene::{Geometry, Hit, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, shapes, teapot};
+use glossmith::scene::{
+    Geometry, Hit, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, shapes, teapot,
+};
 
 use super::support::Random;
 

@@ -9,7 +9,9 @@ use crate::document::Document;
 use crate::named::named;
 use crate::optics::vector::Vec3;
 use crate::render::{EngineChoice, Session, SessionError};
-use crate::scene::environment::{Environment, EnvironmentSource, MapError, environment_direction, environment_radiance};
+use crate::scene::environment::{
+    Environment, EnvironmentSource, MapError, environment_direction, environment_radiance,
+};
 use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 

@@ -2,7 +2,10 @@
 
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::camera::{Camera, PixelFilter, camera_ray, filter_offset};
-use glossmith::scene::environment::{environment_density, environment_direction, environment_local_from_world, environment_radiance, environment_sample, environment_uv, environment_world_from_local};
+use glossmith::scene::environment::{
+    environment_density, environment_direction, environment_local_from_world, environment_radiance, environment_sample,
+    environment_uv, environment_world_from_local,
+};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Value, check, inputs, twin};
