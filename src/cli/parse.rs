@@ -14,7 +14,7 @@ use crate::instructions::{Instructions, Missing};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentEncoding;
-use crate::scene::path_text::path_text;
+use crate::scene::path_text::{path_of_text, path_text};
 use crate::store::replace::check_saving;
 
 /// An instruction set that this processor has.
@@ -117,12 +117,20 @@ where
     T: Clone + Send + Sync + 'static,
     E: Into<Box<dyn std::error::Error + Send + Sync>>,
 {
-    OsStringValueParser::new().try_map(move |name| read(&path_text(Path::new(&name))))
+    OsStringValueParser::new().try_map(move |name| match name.to_str() {
+        Some(name) => read(name),
+        None => read(&path_text(Path::new(&name))),
+    })
 }
 
 /// A model.
 pub(super) fn model(text: &str) -> Result<ModelSource, Infallible> {
     Ok(text.into())
+}
+
+/// A file.
+pub(super) fn file(text: &str) -> Result<PathBuf, Infallible> {
+    Ok(path_of_text(text))
 }
 
 /// A material's name or file.

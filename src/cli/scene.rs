@@ -29,7 +29,7 @@ use crate::store::replace::save_atomically;
 pub struct SceneArguments {
     /// What to begin with: projects (.json), images saved here (.png, with the document inside), models (several are
     /// shown together), environments, materials. Options override what they say.
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", value_parser = parse::name_of_file(parse::file))]
     files: Vec<PathBuf>,
     /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
     #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball|still-life", value_parser = parse::name_of_file(parse::model))]
