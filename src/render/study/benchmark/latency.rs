@@ -87,7 +87,11 @@ pub(super) fn edits(
         None
     };
     if let Some(what) = lacking {
-        report.leave_out("edit", name, format!("no {what} within {:.0} s", patience.as_secs_f64()));
+        report.leave_out(
+            "edit",
+            name,
+            format!("no {what} within {:.0} s", patience.as_secs_f64()),
+        );
         return Ok(());
     }
     let mut milliseconds = Vec::new();
