@@ -110,7 +110,8 @@ mod tests {
         busy: f64,
     }
 
-    /// A render on an adapter with a rate in samples per second and a latency in seconds. The lower half of the image is `ratio` times as costly as the upper.
+    /// A render on an adapter with a rate in samples per second and a latency in seconds. The lower half of the image is
+    /// `ratio` times as costly as the upper.
     fn simulated(budget: &mut Budget, samples: u32, [rate, latency_s]: [f64; 2], ratio: f64) -> Outcome {
         let mut schedule = Schedule::new(960, 540);
         let grid = schedule.grid();
@@ -166,7 +167,7 @@ mod tests {
                 let mut budget = Budget::new(limit);
                 let even = simulated(&mut budget, 4, [rate, latency_s], 1.0);
                 // The next scene starts in the middle of this one and is costlier.
-                budget.note((rate * 0.01) as u64, Duration::from_millis(10));
+                budget.note((rate * limit.as_secs_f64() / 2.0) as u64, limit / 2);
                 budget = budget.of_another_scene();
                 let costly = simulated(&mut budget, 4, [rate, latency_s], ratio);
                 let reported = format!("{rate} samples a second: {even:?}, {costly:?}");
