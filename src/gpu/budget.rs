@@ -110,7 +110,8 @@ mod tests {
         busy: f64,
     }
 
-    /// A render on an adapter with a rate in samples per second and a latency in seconds. The lower half of the image is `ratio` times as costly as the upper.
+    /// A render on an adapter with a rate in samples per second and a latency in seconds. The lower half of the image is
+    /// `ratio` times as costly as the upper.
     fn simulated(budget: &mut Budget, samples: u32, [rate, latency_s]: [f64; 2], ratio: f64) -> Outcome {
         let mut schedule = Schedule::new(960, 540);
         let grid = schedule.grid();
@@ -166,7 +167,7 @@ mod tests {
                 let mut budget = Budget::new(limit);
                 let even = simulated(&mut budget, 4, [rate, latency_s], 1.0);
                 // The next scene starts in the middle of this one and is costlier.
-                budget.note((rate * 0.01) as u64, Duration::from_millis(10));
+                budget.note((rate * limit.as_secs_f64() / 2.0) as u64, limit / 2);
                 budget = budget.of_another_scene();
                 let costly = simulated(&mut budget, 4, [rate, latency_s], ratio);
                 let reported = format!("{rate} samples a second: {even:?}, {costly:?}");
@@ -189,13 +190,18 @@ mod tests {
         assert_eq!((least(2e4, 64), least(1e9, 64)), (1, PASS_SAMPLES_MAX));
     }
 
+<<<<<<< HEAD
     /// Between two dispatches the host needs about 60 µs: a window of 144 images per second still gets its turn, and the
     /// adapter works nine tenths of the time.
+=======
+    /// Between two dispatches the host needs about 60 µs: a window of 144 images per second gets its turn within half the
+    /// time of an image, and the adapter works nine tenths of the time.
+>>>>>>> fe2154814f04afd08aa15aa65cdf284fcb52b663
     #[test]
     fn a_fast_adapter_is_kept_busy_and_lets_the_window_in() {
         let mut budget = Budget::new(DISPATCH);
         let render = simulated(&mut budget, 1024, [1e9, 70e-6], 1.0);
         assert!(render.busy > 0.9, "{render:?}");
-        assert!(render.longest < Duration::from_secs_f64(1.0 / 144.0), "{render:?}");
+        assert!(render.longest < Duration::from_secs_f64(0.5 / 144.0), "{render:?}");
     }
 }
