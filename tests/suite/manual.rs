@@ -135,7 +135,10 @@ fn f1_over_a_dialog_opens_its_page() {
     press(&mut harness, "Back");
     assert!(shows(&harness, CONTENTS));
     close(&mut harness);
-    assert!(harness.query_by_label("Turntable").is_some(), "the dialog is still open");
+    assert!(
+        harness.query_by_label("Turntable").is_some(),
+        "the dialog is still open"
+    );
 }
 
 #[test]
