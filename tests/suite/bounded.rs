@@ -283,7 +283,7 @@ fn pictures_share_the_budget_of_their_import() {
     assert!(
         taken
             .said
-            .contains("p1.png: a picture of 2048 × 2048, used at 1024 × 1024"),
+            .contains("p1.png: a texture of 2048 × 2048, used at 1024 × 1024"),
         "{}",
         taken.said
     );

@@ -159,7 +159,7 @@ impl Scaled {
             true => format!(", to fit the memory of its import; allow more by {LIMIT_VARIABLE}=MIB"),
             false => String::new(),
         };
-        Some(format!("a picture of {width} × {height}, used at {size}{why}"))
+        Some(format!("a texture of {width} × {height}, used at {size}{why}"))
     }
 }
 
