@@ -38,7 +38,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>)
         .on_hover_text("Small images and few scenes, to see that it works.");
     let quick = state.quick;
     let help = "Pauses the viewport and measures this machine.";
-    state.worker.controls(ui, desk, "Run the benchmark", help, |_| {
+    state.worker.controls(ui, desk, ("Run the benchmark", help), None, |_| {
         let options = BenchmarkOptions {
             engine: EngineChoice::Auto,
             seconds: SECONDS[usize::from(quick)],
