@@ -93,12 +93,16 @@ fn render(width: u32, height: u32, longest: Duration) -> Render {
     loop {
         let begun = Instant::now();
         schedule.set_goals(&goals);
+        let affordable = budget.affordable(Duration::from_secs(1));
         let limits = SliceLimits {
-            pass_samples: [1, FLUSH_SAMPLES],
+            pass_samples: [
+                Budget::least_pass_samples(affordable, schedule.samples_per_pixel()),
+                FLUSH_SAMPLES,
+            ],
             tiles: [1, 65_535],
             order: Order::Spread,
         };
-        let works = schedule.slice(budget.affordable(Duration::from_secs(1)), limits);
+        let works = schedule.slice(affordable, limits);
         if works.is_empty() {
             break;
         }
@@ -173,8 +177,8 @@ fn other_work([width, height]: [u32; 2]) {
     let display_s = least(|| (film.image(), display(&image, &ViewSettings::default())));
     let reads_s = reads(width, height);
     let published_s = merge_s + reads_s + display_s;
-    // Publishing takes at most an eighth of the time; where an image costs more, it comes more rarely.
-    let left = (1.0 - published_s / PUBLISH_S.max(8.0 * published_s)) * (1.0 - LOOK_SHARE);
+    // Publishing takes at most a twelfth of the time; where an image costs more, it comes more rarely.
+    let left = (1.0 - published_s / PUBLISH_S.max(12.0 * published_s)) * (1.0 - LOOK_SHARE);
     let milliseconds = [merge_s, reads_s, noise_s, goals_s, display_s].map(|seconds| format!("{:.2}", 1e3 * seconds));
     println!(
         "| {width} × {height} | {} | {:.1} % left |",

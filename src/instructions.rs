@@ -63,7 +63,7 @@ pub fn level() -> Level {
 }
 
 /// Name of the instruction set in use.
-pub fn level_name() -> &'static str {
+pub fn instruction_set() -> &'static str {
     let is_it = |choice: &&Instructions| {
         let found = choice.level().filter(|_| **choice != Instructions::Auto);
         found.is_some_and(|found| std::mem::discriminant(&found) == std::mem::discriminant(&level()))

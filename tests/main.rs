@@ -126,6 +126,8 @@ mod hierarchy;
 mod import_report;
 #[path = "suite/installed.rs"]
 mod installed;
+#[path = "suite/instances.rs"]
+mod instances;
 #[path = "suite/kept_files.rs"]
 mod kept_files;
 #[path = "suite/killed.rs"]

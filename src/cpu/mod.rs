@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::instructions;
+pub use crate::instructions::instruction_set;
 use crate::job::Job;
 use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};

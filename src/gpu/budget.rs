@@ -12,6 +12,10 @@ pub const DISPATCH_SOFTWARE: Duration = Duration::from_millis(20);
 /// Tiles of the first dispatch: at most 50 ms on an adapter that makes 10 000 samples a second. A dispatch of one tile is the
 /// least there is.
 pub const FIRST_TILES: usize = 8;
+/// Tiles that fill an adapter: a dispatch of more of them takes more samples of each instead.
+const TILES_FULL: f64 = 4096.0;
+/// Most samples per pixel of such a pass.
+const PASS_SAMPLES_MAX: u32 = 16;
 /// Largest growth of samples from one dispatch to the next: an idle GPU's time for a few tiles says little about its time
 /// for many.
 const GROWTH: f64 = 4.0;
@@ -63,6 +67,13 @@ impl Budget {
         };
         let rate = self.last_rate.min(mean_rate);
         (SHARE * rate * left.min(self.longest).as_secs_f64()).min(GROWTH * self.last)
+    }
+
+    /// Least samples per pixel of a pass if so many pixel samples are affordable, after `done` samples per pixel. The host's
+    /// work goes by tiles: a fast adapter takes more samples of fewer tiles, as soon as the image has as many.
+    pub fn least_pass_samples(affordable: f64, done: u32) -> u32 {
+        let fitting = affordable / (TILES_FULL * f64::from(TILE_SIDE * TILE_SIDE));
+        (fitting as u32).min(done).clamp(1, PASS_SAMPLES_MAX)
     }
 
     /// Records a dispatch of `samples` pixel samples that took `took`.
@@ -169,6 +180,13 @@ mod tests {
                 assert!((costly.count as f64) < 2.5 * ideal * ratio + 16.0, "{reported}");
             }
         }
+    }
+
+    #[test]
+    fn a_fast_adapter_takes_more_samples_of_fewer_tiles() {
+        let least = Budget::least_pass_samples;
+        assert_eq!((least(3e6, 64), least(3e6, 4), least(3e6, 0)), (11, 4, 1));
+        assert_eq!((least(2e4, 64), least(1e9, 64)), (1, PASS_SAMPLES_MAX));
     }
 
     /// Between two dispatches the host needs about 60 µs: a window of 144 images per second still gets its turn, and the

@@ -155,14 +155,17 @@ impl GpuEngine {
         let start = Instant::now();
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
+            let affordable = self.budget.affordable(left);
+            let most = FLUSH_SAMPLES - self.unflushed;
+            let least = Budget::least_pass_samples(affordable, self.schedule.samples_per_pixel());
             let limits = SliceLimits {
-                pass_samples: [1, FLUSH_SAMPLES - self.unflushed],
+                pass_samples: [least.min(most), most],
                 tiles: [1, DISPATCH_TILES],
                 // Spread, so that of software Vulkan's threads, which take a run of workgroups each, none gets only
                 // background.
                 order: Order::Spread,
             };
-            let works = self.schedule.slice(self.budget.affordable(left), limits);
+            let works = self.schedule.slice(affordable, limits);
             if works.is_empty() {
                 break;
             }

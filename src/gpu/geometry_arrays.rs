@@ -26,7 +26,7 @@ pub enum Form {
 impl Form {
     /// The form of a geometry on a device. Nodes, which may not be built yet, take less than the triangles.
     pub fn of(gpu: &GpuDevice, geometry: &Geometry) -> Self {
-        let counts = Counts::with_room(0, &geometry.model, room(&geometry.around));
+        let counts = Counts::with_room(0, geometry.whole_model(), room(&geometry.around));
         if counts
             .buffer_bytes()
             .into_iter()
@@ -34,7 +34,7 @@ impl Form {
         {
             return Self::Textures;
         }
-        let is_empty = geometry.parts().iter().all(|(part, _)| part.is_empty());
+        let is_empty = geometry.whole_parts().iter().all(|(part, _)| part.is_empty());
         let has_structures =
             gpu.traversal == Traversal::RayQueries && !is_empty && Structures::have_room_for(gpu, geometry);
         if has_structures {
@@ -98,7 +98,8 @@ impl GeometryArrays {
     /// [`GpuError::TooLarge`]; if the device fails.
     pub fn new(gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
         let room = room(&geometry.around);
-        let counts = Counts::with_room(geometry.model.compressed().nodes.len(), &geometry.model, room);
+        let model = geometry.whole_model();
+        let counts = Counts::with_room(model.compressed().nodes.len(), model, room);
         let mut arrays = Self {
             vertices: array::empty_texture::<Vertex>(gpu, "the model's vertices", counts.vertices),
             slots: array::empty_texture::<u32>(gpu, "the model's material slots", counts.triangles),
@@ -123,7 +124,7 @@ impl GeometryArrays {
                 gpu.buffer_of(names[1], bytes[1], built_over)?,
             ];
         }
-        arrays.write(gpu, &geometry.model, Counts::default())?;
+        arrays.write(gpu, model, Counts::default())?;
         arrays.write_around(gpu, geometry)?;
         if arrays.form == Form::Structures {
             arrays.structures = Some(Structures::new(gpu, geometry, &arrays.buffers[1]));
@@ -156,7 +157,7 @@ impl GeometryArrays {
     ///
     /// If the device fails.
     pub fn write_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<(), GpuError> {
-        self.write(gpu, &geometry.around, Counts::of(&geometry.model))
+        self.write(gpu, &geometry.around, Counts::of(geometry.whole_model()))
     }
 
     /// Brings a part to the GPU, after so much else.

@@ -122,9 +122,10 @@ pub struct PixelStatistics {
 
 /// [`Globals::node_count`], [`Globals::around_root`] and [`Globals::around_triangle`].
 pub fn hierarchies(geometry: &Geometry) -> [u32; 3] {
-    let [model, around] = geometry.parts().map(|(part, _)| part.compressed().nodes.len() as u32);
+    let parts = geometry.whole_parts();
+    let [model, around] = parts.map(|(part, _)| part.compressed().nodes.len() as u32);
     let root = if around == 0 { 0 } else { model };
-    [model + around, root, geometry.model.triangles.len() as u32]
+    [model + around, root, parts[1].1 as u32]
 }
 
 impl Globals {

@@ -1,7 +1,5 @@
 //! Group 0 of the passes: all that shaders read of a scene (`shaders/scene/layout.wgsl`).
 
-use std::cell::LazyCell;
-
 use super::array::{self, Values};
 use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
@@ -255,14 +253,7 @@ fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4
 ///
 /// If the device fails.
 pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Result<wgpu::TextureView, GpuError> {
-    // The model's positions are only needed if the model emits.
-    let places = geometry
-        .parts()
-        .map(|(part, first)| (LazyCell::new(|| part.compressed().places()), first as u32));
-    let place = |triangle: u32| match triangle.checked_sub(places[1].1) {
-        None => places[0].0[triangle as usize],
-        Some(after) => places[1].0[after as usize] + places[1].1,
-    };
+    let place = geometry.places();
     let cells =
         Values::of(&lights.cells).map(|cell| [cell.threshold.to_bits(), cell.alias_index, place(cell.triangle), 0]);
     array::texture(gpu, "the triangles that emit", &cells)

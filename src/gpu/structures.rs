@@ -24,7 +24,7 @@ struct Plan<'a> {
 impl Structures {
     /// Hierarchies over the triangles of a geometry, which lie in a buffer part by part.
     pub fn new(gpu: &GpuDevice, geometry: &Geometry, triangles: &wgpu::Buffer) -> Self {
-        let model = Plan::new(gpu, &geometry.model, 0, triangles);
+        let model = Plan::new(gpu, geometry.whole_model(), 0, triangles);
         let blas = model.as_ref().map(|plan| plan.blas.clone());
         Self::build(gpu, (blas, model), geometry, triangles)
     }
@@ -41,7 +41,8 @@ impl Structures {
         geometry: &Geometry,
         triangles: &wgpu::Buffer,
     ) -> Self {
-        let around = Plan::new(gpu, &geometry.around, geometry.model.triangles.len(), triangles);
+        let [_, (around, first)] = geometry.whole_parts();
+        let around = Plan::new(gpu, around, first, triangles);
         let mut whole = gpu.device.create_tlas(&wgpu::CreateTlasDescriptor {
             label: Some("model and surroundings"),
             max_instances: 2,
@@ -67,7 +68,7 @@ impl Structures {
     pub fn have_room_for(gpu: &GpuDevice, geometry: &Geometry) -> bool {
         let most = gpu.device.limits().max_blas_primitive_count as usize;
         geometry
-            .parts()
+            .whole_parts()
             .iter()
             .all(|(part, _)| 3 * part.triangles.len() <= most)
     }

@@ -169,7 +169,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         // glTF files are recognised by their first bytes, not by name.
         _ => gltf::load(path, files, bytes, options)?,
     };
-    if model.mesh.triangles.is_empty() {
+    if model.triangle_count() == 0 {
         return Err(ModelError::NoTriangles { path: path.to_owned() });
     }
     Ok(model)
@@ -177,7 +177,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
 
 /// Common steps of all formats: lengths in bounding radii, and a warning on unusable triangles.
 fn finish(model: &mut Model) {
-    let framing = Framing::of(&model.mesh);
+    let framing = Framing::of(model);
     let radius = framing.world_units_per_unit as f32;
     for slot in &mut model.slots {
         slot.attenuation_distance /= radius;
@@ -187,7 +187,7 @@ fn finish(model: &mut Model) {
         slot.roughest_texel = texture.map_or(1.0, |texture| texture.brightest(1));
     }
     (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
-    let all = model.mesh.triangles.len();
+    let all = model.triangle_count();
     let no_area = all - framing.dropped_not_finite - framing.usable;
     let cameras = model.cameras.len();
     note_lights(&mut model.report, &model.lights);

@@ -11,8 +11,13 @@ const LEAN_COSINE: f64 = 0.9945;
 /// The share of the surface that may lean further: poles, lips and tips. Of the built-in teapot 4 % do.
 const SHARE_MAX: f64 = 0.08;
 
-/// True if the normals of more than a twelfth of the surface lean far from their triangles.
-pub(super) fn is_coarse(part: &Part) -> bool {
+/// True if more than a twelfth of the surface is coarse, by [`leaning_areas`].
+pub(super) fn is_coarse([all, leaning]: [f64; 2]) -> bool {
+    leaning > SHARE_MAX * all
+}
+
+/// Twice the area of all triangles, and of those from which a normal leans far.
+pub(super) fn leaning_areas(part: &Part) -> [f64; 2] {
     let areas = (0..part.triangles.len()).into_par_iter().map(|triangle| {
         let [a, b, c] = part
             .corners(triangle)
@@ -26,6 +31,5 @@ pub(super) fn is_coarse(part: &Part) -> bool {
         });
         [area, if leans { area } else { 0.0 }]
     });
-    let [all, leaning] = areas.reduce(|| [0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
-    leaning > SHARE_MAX * all
+    areas.reduce(|| [0.0; 2], |[a, b], [c, d]| [a + c, b + d])
 }

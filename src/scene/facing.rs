@@ -4,7 +4,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::geometry::Geometry;
-use super::part::Vertex;
 
 /// Deviation of a corner's normal from its face's, as 1 − cosine: the rounding of f32 normals.
 const TOLERANCE: f64 = 1e-6;
@@ -18,11 +17,11 @@ pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
             .corners(triangle)
             .map(|corner| DVec3::from_array(corner.map(f64::from)));
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        let is_along = |vertex: &Vertex| {
-            let shading = DVec3::from_array(vertex.normal.map(f64::from)).normalize_or_zero();
+        let is_along = |shading: [f32; 3]| {
+            let shading = DVec3::from_array(shading.map(f64::from)).normalize_or_zero();
             shading == DVec3::ZERO || shading.dot(normal).abs() > 1.0 - TOLERANCE
         };
-        if !geometry.vertices(triangle).into_iter().all(is_along) {
+        if !geometry.normals(triangle).into_iter().all(is_along) {
             return 0.0;
         }
         // The height of the eye above the face is the same everywhere on it, and its farthest place is a corner.

@@ -1,36 +1,35 @@
 //! Triangles ready to trace, in one f32 coordinate system of unit size. The model and its surroundings (ground, area lights)
 //! have a hierarchy each.
 
+use std::cell::LazyCell;
 use std::sync::Arc;
 
 use fearless_simd::Level;
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 use rayon::prelude::*;
 
 use super::area_shape::AreaShape;
-use super::coarse::is_coarse;
+use super::coarse::{is_coarse, leaning_areas};
 use super::convex::is_convex;
 use super::ground::Ground;
 use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Wide};
+use super::instanced::{Instanced, Traceable};
 use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::memory::prefetch;
-use super::mesh::Mesh;
 use super::model::{Model, Slot};
-use super::part::{Part, Vertex, has_area};
+use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
 use crate::instructions;
 
 /// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.
 const GROUND_GAP: f64 = 1e-4;
 
-/// Object index of triangles that belong to no object of the model.
-pub const NO_OBJECT: u32 = u32::MAX;
-
 /// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
 /// is `center_world + world_units_per_unit · p` in the world (right-handed, +Y up). Models that differ in scale or
 /// place only give the same numbers here, up to the last bit.
 ///
-/// Triangles are numbered through both parts, the model's first. What is around the model has a hierarchy of its own: moving
+/// Triangles are numbered through both parts, the model's first, and then through the instances of repeated meshes. What is
+/// around the model has a hierarchy of its own: moving
 /// a light costs what the lights cost, however many triangles the model has.
 #[derive(Clone, Debug)]
 pub struct Geometry {
@@ -39,6 +38,8 @@ pub struct Geometry {
     /// The ground's and the area lights' triangles: the ground's slot is the number of the model's slots, those of area
     /// lights follow.
     pub around: Part,
+    /// The model's instances, shared like `model`.
+    instanced: Arc<Instanced>,
     /// Number of the model's slots.
     model_slots: u32,
     /// True if the model is one convex body.
@@ -83,8 +84,9 @@ impl Geometry {
             bounds_world,
             center_world,
             world_units_per_unit,
-        } = Framing::of(mesh);
-        let is_usable = |triangle: &usize| is_usable(mesh.corners(*triangle));
+            traceable,
+        } = Framing::of(model);
+        let is_usable = |triangle: &usize| is_traceable(mesh.corners(*triangle));
         let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
         let is_shown = |triangle: &usize| {
             let object = model.object_of(*triangle);
@@ -100,17 +102,28 @@ impl Geometry {
         };
         loading.check()?;
         part.build(loading)?;
+        let units_from_world =
+            DMat4::from_scale(DVec3::splat(world_units_per_unit.recip())) * DMat4::from_translation(-center_world);
+        let (instanced, closed_instances) = Instanced::new(
+            (&model.repeated, &model.instances),
+            &traceable,
+            hidden,
+            units_from_world,
+            loading,
+        )?;
+        let [own, repeated] = [leaning_areas(&part), instanced.leaning_areas()];
         Ok(Self {
-            model_is_convex: is_convex(&part.positions, &part.triangles, loading)?,
-            model_is_coarse: is_coarse(&part),
+            model_is_convex: instanced.is_empty() && is_convex(&part.positions, &part.triangles, loading)?,
+            model_is_coarse: is_coarse([own[0] + repeated[0], own[1] + repeated[1]]),
             model: Arc::new(part),
             around: Part::default(),
+            instanced: Arc::new(instanced),
             model_slots: model.slots.len() as u32,
             center_world,
             world_units_per_unit,
             bounds_world,
             dropped_not_finite,
-            dropped_no_area: mesh.triangles.len() - dropped_not_finite - usable + closed,
+            dropped_no_area: model.triangle_count() - dropped_not_finite - usable + closed + closed_instances,
         })
     }
 
@@ -131,6 +144,7 @@ impl Geometry {
         around.build(&Loading::default()).expect("nobody cancels it");
         Self {
             model: self.model.clone(),
+            instanced: self.instanced.clone(),
             around,
             ..*self
         }
@@ -149,6 +163,12 @@ impl Geometry {
     /// Number of triangles.
     #[inline(always)]
     pub fn triangle_count(&self) -> usize {
+        self.first_instanced() + self.instanced.triangle_count()
+    }
+
+    /// Number of the first triangle of the instances.
+    #[inline(always)]
+    fn first_instanced(&self) -> usize {
         self.model.triangles.len() + self.around.triangles.len()
     }
 
@@ -158,46 +178,132 @@ impl Geometry {
         [(&self.model, 0), (&self.around, self.model.triangles.len())]
     }
 
-    /// The part that a triangle is in, and its number there.
+    /// The part that a triangle is in, and its number there; its number among the instances' if it is one of them.
     #[inline(always)]
-    fn part_of(&self, triangle: usize) -> (&Part, usize) {
+    fn part_of(&self, triangle: usize) -> Result<(&Part, usize), usize> {
         match triangle.checked_sub(self.model.triangles.len()) {
-            None => (&self.model, triangle),
-            Some(after) => (&self.around, after),
+            None => Ok((&self.model, triangle)),
+            Some(after) => match after.checked_sub(self.around.triangles.len()) {
+                None => Ok((&self.around, after)),
+                Some(instanced) => Err(instanced),
+            },
         }
-    }
-
-    /// The triangle at a place in the order in which the GPU has them.
-    pub fn triangle_at(&self, place: u32) -> u32 {
-        let (part, place_there) = self.part_of(place as usize);
-        part.compressed().triangles[place_there] + (place - place_there as u32)
     }
 
     /// The material slot of a triangle.
     #[inline(always)]
     pub fn slot(&self, triangle: usize) -> u32 {
-        let (part, triangle) = self.part_of(triangle);
-        part.slots[triangle]
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.slots[triangle],
+            Err(triangle) => self.instanced.slot(triangle),
+        }
+    }
+
+    /// The material slots of all triangles in order.
+    pub fn slots(&self) -> impl Iterator<Item = u32> {
+        let parts = self.model.slots.iter().chain(&self.around.slots);
+        parts.copied().chain(self.instanced.slots())
     }
 
     /// The model's object that a triangle belongs to; [`NO_OBJECT`] for ground and area lights.
     pub fn object(&self, triangle: usize) -> u32 {
-        let (part, triangle) = self.part_of(triangle);
-        part.objects[triangle]
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.objects[triangle],
+            Err(triangle) => self.instanced.object(triangle),
+        }
     }
 
     /// The places of a triangle's corners.
     #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
-        let (part, triangle) = self.part_of(triangle);
-        part.corners(triangle)
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.corners(triangle),
+            Err(triangle) => self.instanced.corners(triangle),
+        }
     }
 
-    /// Shading attributes of a triangle's vertices.
+    /// Shading attributes of a triangle's vertices; for normals and tangents, which an instance turns, see
+    /// [`Geometry::normals`] and [`Geometry::tangents`].
     #[inline(always)]
     pub fn vertices(&self, triangle: usize) -> [&Vertex; 3] {
-        let (part, triangle) = self.part_of(triangle);
-        part.triangles[triangle].map(|vertex| &part.vertices[vertex as usize])
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.vertices_of(triangle),
+            Err(triangle) => self.instanced.vertices(triangle),
+        }
+    }
+
+    /// Normals at a triangle's corners.
+    #[inline(always)]
+    pub fn normals(&self, triangle: usize) -> [[f32; 3]; 3] {
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.vertices_of(triangle).map(|vertex| vertex.normal),
+            Err(triangle) => self.instanced.normals(triangle),
+        }
+    }
+
+    /// Tangents at a triangle's corners, with the signs of their bitangents.
+    #[inline(always)]
+    pub fn tangents(&self, triangle: usize) -> [[f32; 4]; 3] {
+        match self.part_of(triangle) {
+            Ok((part, triangle)) => part.vertices_of(triangle).map(|vertex| {
+                let [x, y, z] = vertex.tangent;
+                [x, y, z, vertex.side()]
+            }),
+            Err(triangle) => self.instanced.tangents(triangle),
+        }
+    }
+
+    /// The model with the triangles of its instances one by one, as the GPU has it.
+    pub fn whole_model(&self) -> &Part {
+        match self.instanced.is_empty() {
+            true => &self.model,
+            false => &self.instanced.whole(&self.model).part,
+        }
+    }
+
+    /// Both parts as the GPU has them, each with the place of its first triangle there.
+    pub fn whole_parts(&self) -> [(&Part, usize); 2] {
+        let model = self.whole_model();
+        [(model, 0), (&self.around, model.triangles.len())]
+    }
+
+    /// The triangle at a place in the order in which the GPU has them.
+    pub fn triangle_at(&self, place: u32) -> u32 {
+        let [(model, _), (around, first)] = self.whole_parts();
+        let own = self.model.triangles.len() as u32;
+        match place.checked_sub(first as u32) {
+            None => self.number_of(model.compressed().triangles[place as usize]),
+            Some(after) => around.compressed().triangles[after as usize] + own,
+        }
+    }
+
+    /// The number of a triangle of [`Geometry::whole_model`].
+    fn number_of(&self, triangle: u32) -> u32 {
+        if self.instanced.is_empty() {
+            return triangle;
+        }
+        let number = self.instanced.whole(&self.model).numbers[triangle as usize];
+        let is_own = (number as usize) < self.model.triangles.len();
+        number + if is_own { 0 } else { self.around.triangles.len() as u32 }
+    }
+
+    /// Place of a triangle in the order in which the GPU has them: the inverse of [`Geometry::triangle_at`].
+    pub fn places(&self) -> impl Fn(u32) -> u32 {
+        let [(model, _), (around, first)] = self.whole_parts();
+        // The model's places are only needed if the model emits.
+        let of_model = LazyCell::new(|| match self.instanced.is_empty() {
+            true => model.compressed().places(),
+            false => self.instanced.whole(&self.model).places(),
+        });
+        let of_around = LazyCell::new(|| around.compressed().places());
+        let own = self.model.triangles.len() as u32;
+        move |triangle| match triangle.checked_sub(own) {
+            None => of_model[triangle as usize],
+            Some(after) => match after.checked_sub(around.triangles.len() as u32) {
+                None => of_around[after as usize] + first as u32,
+                Some(instanced) => of_model[(own + instanced) as usize],
+            },
+        }
     }
 
     /// Number of the model's slots; the ground's and the area lights' follow.
@@ -207,12 +313,12 @@ impl Geometry {
 
     /// Memory in bytes, with the hierarchies built so far; data shared with other geometries counts, too.
     pub fn bytes(&self) -> usize {
-        self.model.bytes() + self.around.bytes()
+        self.model.bytes() + self.around.bytes() + self.instanced.bytes()
     }
 
     /// Builds the CPU's hierarchies, if not built yet, instead of at the first ray. Returns their memory in bytes.
     pub fn prepare(&self) -> usize {
-        self.model.wide().bytes() + self.around.wide().bytes()
+        self.model.wide().bytes() + self.around.wide().bytes() + self.instanced.prepare()
     }
 
     /// The closest hit on a ray with 0 < t < `t_max`, in the geometry's units. The direction may have any length but 0.
@@ -231,6 +337,13 @@ impl Geometry {
             let triangle = hit.triangle + self.model.triangles.len() as u32;
             nearest = Some(Hit { triangle, ..hit });
         }
+        if !self.instanced.is_empty() {
+            let reach = nearest.map_or(t_max, |hit| hit.t);
+            if let Some(hit) = self.instanced.closest_hit(level, &frame, reach) {
+                let triangle = hit.triangle + self.first_instanced() as u32;
+                nearest = Some(Hit { triangle, ..hit });
+            }
+        }
         nearest
     }
 
@@ -244,7 +357,9 @@ impl Geometry {
     #[inline]
     pub fn occluded_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         let frame = RayFrame::new(origin.into(), direction.into());
-        self.model.is_hit(level, &frame, t_max) || self.around.is_hit(level, &frame, t_max)
+        self.model.is_hit(level, &frame, t_max)
+            || self.around.is_hit(level, &frame, t_max)
+            || (!self.instanced.is_empty() && self.instanced.is_hit(level, &frame, t_max))
     }
 
     /// The closest hit of each ray of a packet, the same as by [`Geometry::intersect`]. `level` is the instruction set.
@@ -258,10 +373,10 @@ impl Geometry {
     #[inline(always)]
     pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut report: impl FnMut([Option<Hit>; PACKET])) {
         let entry_points = self.parts().map(|(part, _)| part.wide().entry_points(level, packets));
-        if entry_points
+        let are_empty = entry_points
             .iter()
-            .all(|entry_points| entry_points.as_ref().is_some_and(EntryPoints::is_empty))
-        {
+            .all(|entry_points| entry_points.as_ref().is_some_and(EntryPoints::is_empty));
+        if are_empty && self.instanced.is_empty() {
             return;
         }
         for packet in packets {
@@ -291,7 +406,8 @@ impl Geometry {
         hits
     }
 
-    /// Traces a packet through both parts by `trace`. Returns false if its rays are not in one octant.
+    /// Traces a packet through both parts by `trace`. Returns false if its rays are not in one octant, or there are
+    /// instances: then rays are traced one by one.
     #[inline(always)]
     fn trace_parts(
         &self,
@@ -299,6 +415,9 @@ impl Geometry {
         packet_hits: &mut PacketHits,
         trace: impl Fn(&Wide, Option<&EntryPoints>, &mut PacketHits) -> bool,
     ) -> bool {
+        if !self.instanced.is_empty() {
+            return false;
+        }
         for ((part, first), entry_points) in self.parts().into_iter().zip(entry_points) {
             packet_hits.first = first as u32;
             if !part.is_empty() && !trace(part.wide(), entry_points.as_ref(), packet_hits) {
@@ -328,7 +447,9 @@ impl Geometry {
     /// Prefetches the data that shading a triangle reads.
     #[inline(always)]
     pub fn prefetch(&self, triangle: u32) {
-        let (part, triangle) = self.part_of(triangle as usize);
+        let Ok((part, triangle)) = self.part_of(triangle as usize) else {
+            return;
+        };
         prefetch(&part.slots, triangle);
         for vertex in part.triangles[triangle] {
             prefetch(&part.vertices, vertex as usize);
@@ -393,30 +514,47 @@ pub struct Framing {
     pub center_world: DVec3,
     /// See [`Geometry::world_units_per_unit`].
     pub world_units_per_unit: f64,
+    /// Of each of the model's repeated meshes.
+    traceable: Vec<Traceable>,
 }
 
 impl Framing {
-    /// The framing of a mesh.
-    pub fn of(mesh: &Mesh) -> Self {
+    /// The framing of a model.
+    pub fn of(model: &Model) -> Self {
+        let mesh = &model.mesh;
+        let traceable = Traceable::of_meshes(&model.repeated);
+        let in_instances = |count: fn(&Traceable) -> usize| {
+            let counts = model.instances.iter().map(|instance| count(&traceable[instance.mesh]));
+            counts.sum::<usize>()
+        };
+        let of_instances = || {
+            model.instances.par_iter().flat_map_iter(|instance| {
+                let places = traceable[instance.mesh].places.iter();
+                places.map(|place| instance.world_from_mesh.transform_point3(*place))
+            })
+        };
         let corners = || {
             let triangles = (0..mesh.triangles.len()).into_par_iter();
             triangles.map(|triangle| mesh.corners(triangle))
         };
-        let usable = || corners().filter(|corners| is_usable(*corners));
-        let low = usable().flatten_iter().reduce(|| DVec3::INFINITY, DVec3::min);
-        let high = usable().flatten_iter().reduce(|| DVec3::NEG_INFINITY, DVec3::max);
+        let usable = || corners().filter(|corners| is_traceable(*corners));
+        let places = || usable().flatten_iter().chain(of_instances());
+        let low = places().reduce(|| DVec3::INFINITY, DVec3::min);
+        let high = places().reduce(|| DVec3::NEG_INFINITY, DVec3::max);
         let has_any = low.x <= high.x;
         let bounds_world = if has_any { [low, high] } else { [DVec3::ZERO; 2] };
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
-        let distances = usable().flatten_iter().map(|corner| corner.distance(center_world));
+        let distances = places().map(|corner| corner.distance(center_world));
         let radius = distances.reduce(|| 0.0, f64::max);
         let has_radius = radius > 0.0 && radius.is_finite();
         Self {
-            usable: usable().count(),
-            dropped_not_finite: corners().filter(|corners| !is_finite(corners)).count(),
+            usable: usable().count() + in_instances(|mesh| mesh.count),
+            dropped_not_finite: corners().filter(|corners| !is_finite(corners)).count()
+                + in_instances(|mesh| mesh.not_finite),
             bounds_world,
             center_world,
             world_units_per_unit: if has_radius { radius } else { 1.0 },
+            traceable,
         }
     }
 }
@@ -424,14 +562,6 @@ impl Framing {
 impl Model {
     /// Bounding radius in world units, from the centre of the bounding box to the farthest vertex; 1 without triangles.
     pub fn bounding_radius(&self) -> f64 {
-        Framing::of(&self.mesh).world_units_per_unit
+        Framing::of(self).world_units_per_unit
     }
-}
-
-fn is_finite(corners: &[DVec3; 3]) -> bool {
-    corners.iter().all(|corner| corner.is_finite())
-}
-
-fn is_usable(corners: [DVec3; 3]) -> bool {
-    is_finite(&corners) && has_area(corners)
 }

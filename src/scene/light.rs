@@ -15,7 +15,6 @@ use super::alias::{AliasEntry, alias_table, grid_place};
 use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
-use super::part::Part;
 use super::surface::{POSITION_ERROR, position_error};
 use super::texture::{Textures, emission_at, uvs_at, vertex_factors};
 use crate::optics::material::Material;
@@ -56,19 +55,19 @@ impl Lights {
         if luminances.iter().all(|luminance| *luminance <= 0.0) {
             return Self::default();
         }
-        // A model none of whose materials emits is not looked through.
-        let has_any = |(_, first): &(&Part, usize)| {
-            let slots = if *first == 0 {
-                ..geometry.model_slots()
-            } else {
-                ..luminances.len()
-            };
-            luminances[slots].iter().any(|luminance| *luminance > 0.0)
+        let (first, count) = if luminances[..geometry.model_slots()]
+            .iter()
+            .any(|luminance| *luminance > 0.0)
+        {
+            (0, geometry.triangle_count())
+        } else {
+            // A model none of whose materials emits is not looked through.
+            (geometry.parts()[1].1, geometry.around.triangles.len())
         };
-        let emitting = geometry.parts().into_iter().filter(has_any).flat_map(|(part, first)| {
-            let luminances = part.slots.iter().map(|&slot| luminances[slot as usize]);
-            luminances.zip(first as u32..).filter(|(luminance, _)| *luminance > 0.0)
-        });
+        let emitting = (first as u32..).zip(geometry.slots().skip(first).take(count));
+        let emitting = emitting
+            .map(|(triangle, slot)| (luminances[slot as usize], triangle))
+            .filter(|(luminance, _)| *luminance > 0.0);
         let (mut weights, triangles): (Vec<f64>, Vec<u32>) = emitting
             .map(|(luminance, triangle)| (area(geometry, triangle) * luminance, triangle))
             .unzip();

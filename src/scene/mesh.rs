@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
+use glam::{DMat4, DVec2, DVec3, Vec2, Vec3, Vec4};
 
 use super::loading::Loading;
 
@@ -29,6 +29,17 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The material slot of each triangle.
     pub slots: Vec<u32>,
+}
+
+/// A mesh at one of several places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshInstance {
+    /// Index into [`Model::repeated`](super::Model::repeated).
+    pub mesh: usize,
+    /// Transform into model space; it can be inverted.
+    pub world_from_mesh: DMat4,
+    /// Index of the object that it belongs to.
+    pub object: usize,
 }
 
 impl Mesh {

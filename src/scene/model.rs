@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::mesh::Mesh;
+use super::mesh::{Mesh, MeshInstance};
 use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
@@ -81,8 +81,12 @@ impl From<ModelSource> for String {
 pub struct Model {
     /// The built-in name, or the file's name without folder and extension.
     pub name: String,
-    /// The triangles, all nodes of the scene together.
+    /// The triangles of all nodes together, without the repeated meshes.
     pub mesh: Mesh,
+    /// Meshes with many instances, each in a space of its own and with slots as in `mesh`.
+    pub repeated: Vec<Mesh>,
+    /// Instances of `repeated`.
+    pub instances: Vec<MeshInstance>,
     /// The material slots that `mesh.slots` counts.
     pub slots: Vec<Slot>,
     /// Texture maps of the slots.
@@ -158,27 +162,18 @@ impl Model {
         }
     }
 
-    /// The number of the object that a triangle of the mesh belongs to.
-    pub fn object_of(&self, triangle: usize) -> Option<usize> {
-        let object = self.objects.partition_point(|object| object.triangles.end <= triangle);
-        let is_it = |found: &ModelObject| found.triangles.contains(&triangle);
-        self.objects.get(object).is_some_and(is_it).then_some(object)
-    }
-
-    /// The slots whose materials an object shows, each once.
-    pub fn slots_of(&self, object: usize) -> Vec<usize> {
-        let triangles = self.objects.get(object).map(|object| object.triangles.clone());
-        let slots = self.mesh.slots.get(triangles.unwrap_or_default()).unwrap_or_default();
-        let mut slots: Vec<usize> = slots.iter().map(|slot| *slot as usize).collect();
-        slots.sort_unstable();
-        slots.dedup();
-        slots
-    }
-
     /// Appends another model, in its own file's space.
     pub fn join(&mut self, mut other: Self) {
         let (slots, textures) = (self.slots.len() as u32, self.textures.len());
-        other.mesh.slots.iter_mut().for_each(|slot| *slot += slots);
+        let meshes = other.repeated.iter_mut().chain([&mut other.mesh]);
+        meshes.flat_map(|mesh| &mut mesh.slots).for_each(|slot| *slot += slots);
+        let (repeated, objects) = (self.repeated.len(), self.objects.len());
+        self.instances.extend(other.instances.drain(..).map(|one| MeshInstance {
+            mesh: one.mesh + repeated,
+            object: one.object + objects,
+            ..one
+        }));
+        self.repeated.append(&mut other.repeated);
         for slot in &mut other.slots {
             slot.texture_refs_mut()
                 .for_each(|reference| reference.texture += textures);
@@ -201,7 +196,8 @@ impl Model {
     /// Bytes in memory, near enough.
     pub fn bytes(&self) -> usize {
         let pictures: usize = self.textures.iter().map(Texture::bytes).sum();
-        self.mesh.bytes() + pictures
+        let repeated: usize = self.repeated.iter().map(Mesh::bytes).sum();
+        self.mesh.bytes() + repeated + pictures
     }
 }
 

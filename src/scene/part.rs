@@ -55,6 +55,17 @@ impl Vertex {
         }
     }
 
+    /// The vertex with another normal, tangent, and sign of the bitangent.
+    pub(super) fn turned(&self, normal: [f32; 3], tangent: [f32; 3], side: f32) -> Self {
+        const SIDE: u32 = 1 << 31;
+        Self {
+            normal,
+            tangent,
+            blue_side: self.blue_side & !SIDE | if side < 0.0 { 0 } else { SIDE },
+            ..*self
+        }
+    }
+
     /// The linear colour that multiplies the material's.
     pub fn rgb(&self) -> [f32; 3] {
         let fraction = |bits: u32| f32::from(bits as u16) / 65535.0;
@@ -76,6 +87,9 @@ impl Vertex {
     }
 }
 
+/// Object index of triangles that belong to no object of the model.
+pub const NO_OBJECT: u32 = u32::MAX;
+
 /// Triangles in one f32 coordinate system, in the order in which their hierarchy's leaves refer to them.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
@@ -93,13 +107,25 @@ pub struct Part {
 }
 
 impl Part {
-    /// Builds the hierarchy over the triangles that have been added, and puts them into its order.
-    pub(super) fn build(&mut self, loading: &Loading) -> Result<(), Cancelled> {
+    /// Builds the hierarchy over the triangles that have been added, and puts them into its order, which it returns.
+    pub(super) fn build(&mut self, loading: &Loading) -> Result<Vec<u32>, Cancelled> {
         let corners = |triangle| self.corners(triangle as usize);
         let (hierarchy, order) = Hierarchy::new(self.triangles.len(), corners, loading)?;
         self.hierarchy = hierarchy;
         self.sort(&order);
-        Ok(())
+        Ok(order)
+    }
+
+    /// The same triangles, to add more.
+    pub(super) fn without_hierarchy(&self) -> Self {
+        Self {
+            positions: self.positions.clone(),
+            vertices: self.vertices.clone(),
+            triangles: self.triangles.clone(),
+            slots: self.slots.clone(),
+            objects: self.objects.clone(),
+            hierarchy: Hierarchy::default(),
+        }
     }
 
     /// True without triangles.
@@ -133,6 +159,12 @@ impl Part {
     #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
         self.corners_of(&self.triangles[triangle])
+    }
+
+    /// Shading attributes of a triangle's vertices.
+    #[inline(always)]
+    pub(super) fn vertices_of(&self, triangle: usize) -> [&Vertex; 3] {
+        self.triangles[triangle].map(|vertex| &self.vertices[vertex as usize])
     }
 
     #[inline(always)]
@@ -215,6 +247,16 @@ impl Part {
     }
 }
 
-pub(super) fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+/// Whether a triangle's corners are finite.
+pub(super) fn is_finite(corners: &[DVec3; 3]) -> bool {
+    corners.iter().all(|corner| corner.is_finite())
+}
+
+/// Whether a triangle can be traced: its corners are finite, and it has an area.
+pub(super) fn is_traceable(corners: [DVec3; 3]) -> bool {
+    is_finite(&corners) && has_area(corners)
+}
+
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }

@@ -72,7 +72,7 @@ impl<T: Real> SurfacePoint<T> {
     pub fn round(&mut self, geometry: &Geometry, hits: &Hits<T>) {
         let weights = hit_weights::<T>(hits);
         let corners = at_corners(hits, |triangle| geometry.corners(triangle));
-        let normals = at_corners(hits, |triangle| geometry.vertices(triangle).map(|vertex| vertex.normal));
+        let normals = at_corners(hits, |triangle| geometry.normals(triangle));
         let flat = self.surface.normal;
         let is_turned = between(&normals, &weights).dot(flat).less(T::zero());
         let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
@@ -226,7 +226,7 @@ pub fn surfaces_at<T: Real>(
         is_back,
     } = hit_place(geometry, hits, direction);
     let wo = -direction;
-    let normals = at_corners(hits, |triangle| geometry.vertices(triangle).map(|vertex| vertex.normal));
+    let normals = at_corners(hits, |triangle| geometry.normals(triangle));
     let interpolated = between(&normals, &weights);
     let smoothed = normalize_or(interpolated, normal);
     let is_turned = smoothed.dot(normal).less(T::zero());
@@ -251,14 +251,13 @@ pub fn surfaces_at<T: Real>(
     if has_map || is_stretched {
         tangent = between(
             &at_corners(hits, |triangle| {
-                geometry.vertices(triangle).map(|vertex| vertex.tangent)
+                geometry.tangents(triangle).map(|[x, y, z, _]| [x, y, z])
             }),
             &weights,
         );
         side = T::from_lanes(|lane| {
-            let vertices = geometry.vertices(triangle(lane));
-            let part =
-                |i: usize| T::Scalar::from_f64(f64::from(vertices[i].side())) * weights_of_lanes[i].as_ref()[lane];
+            let sides = geometry.tangents(triangle(lane)).map(|[_, _, _, side]| side);
+            let part = |i: usize| T::Scalar::from_f64(f64::from(sides[i])) * weights_of_lanes[i].as_ref()[lane];
             part(0) + part(1) + part(2)
         });
     }

@@ -1,5 +1,6 @@
 //! Reading and writing JSON files with care.
 
+use std::borrow::Cow;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
@@ -7,6 +8,7 @@ use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
 use crate::import::resource;
+use crate::scene::path_text::{path_of_text, path_text};
 
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +46,24 @@ pub(super) fn seen_from(path: &Path) -> impl Fn(&Path) -> PathBuf {
         let named = absolute(named);
         named.strip_prefix(&folder).map(Path::to_owned).unwrap_or(named)
     }
+}
+
+/// Names of files as texts of the file `path`: as [`seen_from`] it, or addresses where they are not Unicode.
+pub(super) fn written_in(path: &Path) -> impl Fn(&Path) -> PathBuf {
+    let seen = seen_from(path);
+    move |named| {
+        let seen = seen(named);
+        match path_text(&seen) {
+            Cow::Borrowed(_) => seen,
+            Cow::Owned(_) => path_text(&absolute(named)).into_owned().into(),
+        }
+    }
+}
+
+/// Files by their names in the file `path`, the inverse of [`written_in`].
+pub(super) fn named_in(path: &Path) -> impl Fn(&Path) -> PathBuf {
+    let folder = folder(path);
+    move |named| folder.join(named.to_str().map_or(named.to_owned(), path_of_text))
 }
 
 /// The path from the root, nothing looked up; as it is where the current folder is gone.

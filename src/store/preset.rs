@@ -149,7 +149,7 @@ pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettin
         path: path.to_owned(),
         reason: error.to_string(),
     })?;
-    material.user_textures.map_files(|named| file::folder(path).join(named));
+    material.user_textures.map_files(file::named_in(path));
     warnings.extend(unknown_keys(&material).map(|warning| format!("{}: {warning}", path.display())));
     Ok(Loaded {
         value: material,
@@ -216,7 +216,7 @@ pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), Fil
 pub fn material_text(path: &Path, material: &MaterialSettings) -> String {
     let mut material = material.clone();
     let mark = own::mark(path, &named(&material));
-    material.user_textures.map_files(file::seen_from(path));
+    material.user_textures.map_files(file::written_in(path));
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
     object.extend(Map::from(material));

@@ -96,7 +96,7 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
             .user_textures
             .set(TextureTarget::BaseColor, Some(texture));
     }
-    map_paths(&mut document, |named| file::folder(path).join(named));
+    map_paths(&mut document, file::named_in(path));
     let mut warnings = Vec::new();
     if version > VERSION {
         warnings.push(format!(
@@ -173,27 +173,18 @@ pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
 /// The contents of a document's file at `path`, the same for every user who saves it.
 ///
 /// # Errors
-/// [`FileError::Content`] for file names that are no Unicode.
+/// [`FileError::Content`] for what JSON cannot hold.
 pub fn document_text(path: &Path, document: &Document) -> Result<String, FileError> {
     Ok(file::text(&document_object(path, document)?))
 }
 
 fn document_object(path: &Path, document: &Document) -> Result<Map<String, Json>, FileError> {
     let mut document = document.clone();
-    map_paths(&mut document, file::seen_from(path));
+    map_paths(&mut document, file::written_in(path));
     let content = |reason: String| FileError::Content {
         path: path.to_owned(),
         reason,
     };
-    // The environment's path refuses by itself.
-    if let ModelSource::File(model) = &document.model
-        && model.to_str().is_none()
-    {
-        return Err(content(format!(
-            "{} is not named in Unicode; rename the file",
-            model.display()
-        )));
-    }
     let known = known_part(&document).map_err(content)?;
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
@@ -204,7 +195,7 @@ fn document_object(path: &Path, document: &Document) -> Result<Map<String, Json>
 
 /// The document as JSON, `extra` left out. By way of text, so that an f32 is written with no more digits than it has.
 fn known_part(document: &Document) -> Result<Map<String, Json>, String> {
-    let text = serde_json::to_string(document).map_err(|error| format!("{error}; rename the file"))?;
+    let text = serde_json::to_string(document).map_err(|error| error.to_string())?;
     serde_json::from_str(&text).map_err(|error| error.to_string())
 }
 

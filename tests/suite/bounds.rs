@@ -1,5 +1,7 @@
 //! Small files that ask for large work end soon, or with a message: each of these once took a minute or for ever.
 
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
 use serde_json::json;
 
 use super::cli_support::Workplace;
@@ -162,12 +164,12 @@ fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
         assert_eq!(batch(out)["status"], "kept");
         texts.push(text);
     }
-    // And so are models, environments and materials on the command line.
+    // And so are models, environments and materials on the command line, and the document in an image names them.
     let render = |option: &str, name: &str| {
         let mut argument = std::ffi::OsString::from(format!("{option}="));
         argument.push(folder.join(name));
         let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
-            .args("render --engine cpu --size 8x8 --samples 1 --output a.exr".split(' '))
+            .args("render --engine cpu --size 8x8 --samples 1 --output a.png".split(' '))
             .arg(argument)
             .current_dir(place.path(""))
             .output()
@@ -178,7 +180,23 @@ fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
             String::from_utf8_lossy(&output.stderr)
         );
     };
-    render("--model", "m.obj");
-    render("--environment", "l.hdr");
-    render("--material", "mine.json");
+    for (option, name) in [
+        ("--model", "m.obj"),
+        ("--environment", "l.hdr"),
+        ("--material", "mine.json"),
+    ] {
+        render(option, name);
+        let loaded = glossmith::store::picture::load_picture_document(&place.path("a.png"))
+            .unwrap()
+            .value;
+        match option {
+            "--model" => assert_eq!(loaded.model, ModelSource::File(folder.join(name))),
+            "--environment" => {
+                let of_file = EnvironmentSource::File(folder.join(name));
+                assert_eq!(loaded.lighting.environment, of_file);
+            }
+            _ => assert_eq!(loaded.materials[0].name, glossmith::store::PRESETS[2].name),
+        }
+        place.done("render a.png --engine cpu --output b.exr");
+    }
 }

@@ -70,7 +70,7 @@ fn the_gpu_denoises_and_the_cpu_takes_over_where_it_fails() {
     };
     let working = folder("working", TWO_DEVICES);
     let failing = folder("failing", &TWO_DEVICES.replace("int fails = 0", "int fails = 1"));
-    let absent = folder("absent", &TWO_DEVICES.replace("int opens = 1", "int opens = 0"));
+    let absent = folder("absent", &TWO_DEVICES.replace("opens = 1", "opens = 0"));
     // Whether the image is red, and what was said.
     let reddened = |library: &Path, device: &str| {
         let arguments = "render --engine cpu --model plane --environment furnace --environment-strength 0.2 --size 8x8";
@@ -97,7 +97,7 @@ fn the_gpu_denoises_and_the_cpu_takes_over_where_it_fails() {
         (red > green.saturating_add(50), text)
     };
     let (is_cpu, text) = reddened(&working, "auto");
-    assert!(!is_cpu && !text.contains("denois"), "{text}");
+    assert!(!is_cpu && !text.contains("WARN"), "{text}");
     assert!(reddened(&working, "cpu").0);
     let (is_cpu, text) = reddened(&failing, "gpu");
     assert!(is_cpu && text.contains("the CUDA device stopped denoising"), "{text}");
@@ -138,7 +138,7 @@ const TWO_DEVICES: &str = r#"
     void oidnExecuteFilter(void *filter) {
         if (filter == &devices[0] && fails) { error = 3; return; }
         memcpy(output->data, color->data, color->size);
-        if (filter == &devices[1]) for (size_t i = 0; i < color->size / 4; i += 3) ((float *)output->data)[i] = 1000;
+        if (filter == &devices[1]) for (size_t i = 0; i < color->size / 4; i += 3) ((float *)output->data)[i] = 1;
     }
     void oidnSetFilterBool() {} void oidnSetFilterInt() {} int oidnGetFilterInt() { return 1; }
     void oidnSetFilterFloat() {} void oidnCommitFilter() {} void oidnSetFilterProgressMonitorFunction() {}

@@ -59,7 +59,10 @@ fn result_row(file: &str, report: &Report, engine: &EngineReport) -> Vec<String>
     vec![
         format!("[{file}]({file})"),
         name,
-        report.version.clone(),
+        match report.build.as_str() {
+            "release" => report.version.clone(),
+            build => format!("{}, {build} build", report.version),
+        },
         value("samples", "default"),
         value("rays", "default"),
         value("to clean", "default"),

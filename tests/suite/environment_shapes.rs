@@ -397,6 +397,7 @@ fn coarse_chroma_is_spread_over_the_luminance() {
         vec![0; 8 * height],
     ]
     .concat();
+    let header = bytes[..bytes.len() - 8 * height].to_vec();
     let half = |x: f32| exr::prelude::f16::from_f32(x).to_le_bytes();
     for row in 0..height {
         let mut line: Vec<u8> = Vec::new();
@@ -427,5 +428,18 @@ fn coarse_chroma_is_spread_over_the_luminance() {
     for length in (0..bytes.len()).step_by(7) {
         std::fs::write(&path, &bytes[..length]).unwrap();
         assert!(load(&EnvironmentSource::File(path.clone())).is_err(), "{length} bytes");
+    }
+    // The same header with another compression, and one chunk.
+    let words = b"compression\0compression\0\x01\0\0\0";
+    let place = header.windows(words.len()).position(|window| window == words);
+    let place = place.expect("the attribute") + words.len();
+    for code in [6, 7] {
+        let mut bytes = [header.clone(), vec![0; 8], numbers(&[0, 4]), vec![0; 4]].concat();
+        bytes[place] = code;
+        std::fs::write(&path, &bytes).unwrap();
+        let error = load(&EnvironmentSource::File(path.clone())).unwrap_err().to_string();
+        let told = ["B44", "coarse chroma", "not supported", "re-save it as a plain RGB"];
+        assert!(told.into_iter().all(|part| error.contains(part)), "{error}");
+        assert!(!error.contains("damaged"), "{error}");
     }
 }

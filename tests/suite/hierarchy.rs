@@ -2,11 +2,13 @@
 //! against the others.
 
 use fearless_simd::Level;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DMat4, DQuat, DVec3, EulerRot, Vec3, Vec4};
 use glossmith::import::load;
 use glossmith::instructions::Instructions;
 use glossmith::scene::mesh::Mesh;
-use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, ray_octant, shapes, teapot};
+use glossmith::scene::{
+    Geometry, Hit, MeshInstance, Model, ModelSource, PACKET, Packet, Slot, ray_octant, shapes, teapot,
+};
 use rayon::prelude::*;
 
 use super::cli_support::Workplace;
@@ -73,11 +75,35 @@ fn geometries() -> Vec<(&'static str, Geometry)> {
         ),
         ("sphere", Geometry::build(&model_of(shapes::sphere(24, 16)), false)),
         ("needles", Geometry::build(&model_of(needles()), false)),
+        ("instances", Geometry::build(&instances(), true)),
         (
             "two triangles",
             Geometry::build(&load(&ModelSource::Plane).unwrap(), false),
         ),
     ]
+}
+
+/// A sphere with small teapots about it, turned, stretched and mirrored.
+fn instances() -> Model {
+    let at = |i: usize| {
+        let angle = i as f64;
+        let mirrored = if i.is_multiple_of(2) { -1.0 } else { 1.0 };
+        DMat4::from_scale_rotation_translation(
+            DVec3::new(0.2 * mirrored, 0.1 + 0.05 * (angle % 3.0), 0.3),
+            DQuat::from_euler(EulerRot::XYZ, angle, 0.7 * angle, 0.2),
+            DVec3::new(1.5 * angle.cos(), 0.5 * (3.0 * angle).sin(), 1.5 * angle.sin()),
+        )
+    };
+    let instance = |i: usize| MeshInstance {
+        mesh: usize::from(i == 6),
+        world_from_mesh: if i == 6 { DMat4::IDENTITY } else { at(i) },
+        object: i,
+    };
+    Model {
+        repeated: vec![teapot::mesh(2), shapes::sphere(24, 16)],
+        instances: (0..7).map(instance).collect(),
+        ..model_of(Mesh::default())
+    }
 }
 
 /// A fan of triangles ten thousand times as long as wide, and one that is there nine times.
@@ -192,14 +218,14 @@ fn all_instruction_sets_give_the_same_bits_and_both_hierarchies_the_same_hits() 
     geometries.push(("fine teapot", Geometry::build(&model_of(teapot::mesh(25)), true)));
     for (name, geometry) in geometries {
         let parts = geometry
-            .parts()
-            .map(|(part, first)| (CompressedRays::new(part), first as u32));
+            .whole_parts()
+            .map(|(part, first)| (CompressedRays::new(part), part.compressed().places(), first as u32));
         let nearest = |ray: &Ray| {
             let mut nearest: Option<Hit> = None;
-            for (rays, first) in &parts {
+            for (rays, places, first) in &parts {
                 let reach = nearest.map_or(ray.t_max, |hit| hit.t);
                 if let Some(hit) = rays.trace::<false>(ray.origin, ray.direction, reach) {
-                    let triangle = hit.triangle + first;
+                    let triangle = geometry.triangle_at(places[hit.triangle as usize] + first);
                     nearest = Some(Hit { triangle, ..hit });
                 }
             }

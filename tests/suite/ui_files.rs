@@ -331,3 +331,34 @@ fn what_another_program_saves_is_read_again_and_edits_stay() {
     undo(&mut harness);
     assert!(harness.state().document().materials[0] != edited);
 }
+
+#[test]
+fn damaged_files_are_named_and_change_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("a temporary file");
+        path
+    };
+    let files = [
+        write("text.glb", b"this is no model"),
+        write(
+            "short.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n\x02\x02",
+        ),
+        write("half.json", b"{\"glossmith\": 1, \"material\": {"),
+        write("notes.txt", b"hello"),
+    ];
+    let mut harness = editor();
+    let (document, before) = (harness.state().document().clone(), picture(&harness));
+    for path in files {
+        request(&mut harness, Action::Open(path.clone()));
+        let name = path.display().to_string();
+        wait(&mut harness, "a message", |app| {
+            app.messages().iter().any(|text| text.contains(&name))
+        });
+    }
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), document);
+    assert_eq!(picture(&harness), before);
+}

@@ -10,6 +10,7 @@ use siphasher::sip128::{Hasher128 as _, SipHasher13};
 use crate::document::Document;
 use crate::scene::Model;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::mesh::Mesh;
 use crate::store::project::document_text;
 
 /// To be raised where the same inputs make other files than before.
@@ -57,15 +58,11 @@ impl Inputs {
 
     /// What a model is: its files may be many.
     fn model(&mut self, model: &Model) {
-        let mesh = &model.mesh;
-        self.bytes(bytemuck::cast_slice(&mesh.positions));
-        self.bytes(bytemuck::cast_slice(&mesh.normals));
-        self.bytes(bytemuck::cast_slice(&mesh.uvs));
-        self.bytes(bytemuck::cast_slice(&mesh.second_uvs));
-        self.bytes(bytemuck::cast_slice(&mesh.colors));
-        self.bytes(bytemuck::cast_slice(&mesh.tangents));
-        self.bytes(bytemuck::cast_slice(&mesh.triangles));
-        self.bytes(bytemuck::cast_slice(&mesh.slots));
+        self.mesh(&model.mesh);
+        model.repeated.iter().for_each(|mesh| self.mesh(mesh));
+        for instance in &model.instances {
+            self.text(&format!("{instance:?}"));
+        }
         for slot in &model.slots {
             self.text(&format!("{slot:?}"));
         }
@@ -74,6 +71,17 @@ impl Inputs {
             self.bytes(&texture.rgba8);
             self.bytes(bytemuck::cast_slice(&texture.rgba16));
         }
+    }
+
+    fn mesh(&mut self, mesh: &Mesh) {
+        self.bytes(bytemuck::cast_slice(&mesh.positions));
+        self.bytes(bytemuck::cast_slice(&mesh.normals));
+        self.bytes(bytemuck::cast_slice(&mesh.uvs));
+        self.bytes(bytemuck::cast_slice(&mesh.second_uvs));
+        self.bytes(bytemuck::cast_slice(&mesh.colors));
+        self.bytes(bytemuck::cast_slice(&mesh.tangents));
+        self.bytes(bytemuck::cast_slice(&mesh.triangles));
+        self.bytes(bytemuck::cast_slice(&mesh.slots));
     }
 
     /// A file's contents, or those of a folder's files.

@@ -6,6 +6,7 @@
 
 mod accessor;
 mod anisotropy;
+mod assembly;
 mod compressed;
 mod container;
 mod draco;
@@ -17,31 +18,22 @@ mod nodes;
 mod pose;
 mod primitive;
 mod specular_glossiness;
-mod transform;
 
 use std::path::Path;
-
-use glam::DMat4;
 
 pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
 pub use self::material::GLTF_PARAMETERS;
 pub use self::material_extensions::kept_keys;
 
+use self::assembly::assemble;
 use self::container::Document;
 use self::material::Materials;
 use self::nodes::MeshNode;
 use self::pose::Pose;
-use self::primitive::Bending;
 use crate::files::Files;
 use crate::model_error::ModelError;
-use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{Model, ModelObject, ModelOptions};
-
-/// More vertices than this are refused, so that indices of 32 bits suffice with the ground and split vertices added.
-const MAX_VERTICES: usize = 1 << 31;
-/// More vertices than this are not made by repeating meshes: a small file could ask for any amount of memory.
-const MAX_REPEATED_VERTICES: usize = 1 << 25;
+use crate::scene::{Model, ModelOptions};
 
 /// Loads the contents of a .gltf or .glb file; `path` is named in messages.
 pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
@@ -51,109 +43,23 @@ pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOpt
     let pose = Pose::new(&document, options.time_s);
     let contents = nodes::contents(&document, &pose, options.scene, &mut report);
     let mut materials = Materials::new(&document, options);
-    let (mesh, objects) = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
-    if mesh.triangles.is_empty() {
+    let assembled = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
+    if assembled.triangle_count() == 0 {
         return Err(nothing_to_show(&document, path, &contents.meshes, &report));
     }
     let (slots, textures) = materials.finish(&mut report);
     document.files.import.loading.check()?;
     Ok(Model {
-        mesh,
         slots,
         textures,
-        objects,
         report,
         cameras: contents.cameras,
         lights: contents.lights,
         variants: materials_variants(&document),
         scenes: scene_names(&document),
         duration_s: duration_s(&document),
-        ..Model::default()
+        ..assembled
     })
-}
-
-/// Joins all meshes of a scene.
-fn assemble(
-    document: &Document,
-    pose: &Pose,
-    nodes: &[MeshNode],
-    materials: &mut Materials,
-    report: &mut ImportReport,
-) -> Result<(Mesh, Vec<ModelObject>), ModelError> {
-    let mut kept: Vec<Option<Mesh>> = vec![None; document.root.meshes.len()];
-    let mut is_first_use = vec![true; document.root.meshes.len()];
-    let mut uses_left = vec![0_usize; document.root.meshes.len()];
-    for node in nodes {
-        if let Some(uses) = uses_left.get_mut(node.mesh) {
-            *uses += 1;
-        }
-    }
-    let mut whole = Mesh::default();
-    let mut objects: Vec<ModelObject> = Vec::new();
-    let mut last_node = None;
-    let mut left_out = 0;
-    for (place, node) in nodes.iter().enumerate() {
-        document
-            .files
-            .import
-            .loading
-            .step(format!("mesh {} of {}", place + 1, nodes.len()))?;
-        let name = nodes::node_name(&document.root, node.node);
-        let Some(uses_left) = uses_left.get_mut(node.mesh) else {
-            report.note(Fate::Missing, "a mesh that is out of bounds", &name);
-            continue;
-        };
-        *uses_left -= 1;
-        let is_first = std::mem::replace(&mut is_first_use[node.mesh], false);
-        let skin = document.root.nodes[node.node].skin.map(|skin| skin.value());
-        let weights = pose.weights(document, node.node);
-        let is_bent = skin.is_some() || weights.iter().any(|weight| *weight != 0.0);
-        let joints = skin.and_then(|skin| pose.joints(document, skin));
-        let bending = Bending {
-            weights,
-            joints: joints.as_deref(),
-        };
-        let local = match kept[node.mesh].take() {
-            Some(mesh) if !is_bent => mesh,
-            _ => {
-                let mut once = ImportReport::default();
-                let mesh = primitive::read_mesh(document, node.mesh, bending, materials, &mut once);
-                if is_first {
-                    report.append(once);
-                }
-                mesh
-            }
-        };
-        let vertices = whole.positions.len() + local.positions.len();
-        if vertices > MAX_VERTICES {
-            return Err(document.invalid(format!("its scene has more than {MAX_VERTICES} vertices")));
-        }
-        if !is_first && vertices > MAX_REPEATED_VERTICES {
-            left_out += 1;
-            continue;
-        }
-        // Joints have already placed a skinned mesh.
-        let world_from_mesh = if joints.is_some() {
-            DMat4::IDENTITY
-        } else {
-            node.world_from_node
-        };
-        if !is_bent && *uses_left > 0 {
-            kept[node.mesh] = Some(local.clone());
-        }
-        let first = whole.triangles.len();
-        whole.append(transform::transformed(local, world_from_mesh));
-        let triangles = first..whole.triangles.len();
-        match objects.last_mut() {
-            // Instances of a node come one after the other: they are one object.
-            Some(last) if last_node == Some(node.node) => last.triangles.end = triangles.end,
-            _ => objects.push(ModelObject { name, triangles }),
-        }
-        last_node = Some(node.node);
-    }
-    report.count(Fate::Used, "meshes", "", nodes.len() - left_out);
-    report.count(Fate::Ignored, "repeated meshes, too many for the memory", "", left_out);
-    Ok((whole, objects))
 }
 
 /// Reason for an empty scene: a missing part, or damaged triangles.

@@ -9,10 +9,10 @@ use serde_json::Value as Json;
 use super::compressed::DracoPrimitive;
 use super::container::Document;
 use super::material::{Materials, UvUse};
-use super::transform::normal_matrix;
 use crate::model_error::ModelError;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
+use crate::scene::transform::normal_matrix;
 
 /// Relative imbalance of a surface's area vectors from which it counts as open.
 const OPEN: f64 = 0.01;

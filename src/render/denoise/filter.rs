@@ -53,7 +53,7 @@ pub(super) struct Device<'a> {
 }
 
 impl<'a> Device<'a> {
-    /// The first device that works of those that the choice names; the reason is logged where one does not.
+    /// The first device that works of those that the choice names.
     pub(super) fn of(library: &'a Library, choice: DenoiseDevice) -> Result<Self, LibraryError> {
         let functions = &library.functions;
         // SAFETY: the library is asked for its devices, and then for each of them by its number.
@@ -65,12 +65,12 @@ impl<'a> Device<'a> {
             match Self::open(functions, place as c_int, kinds[place]) {
                 Ok(device) => {
                     if choice == DenoiseDevice::Gpu && !device.is_gpu() {
-                        log::warn!("no GPU can denoise here, so the CPU does");
+                        warn_once(&format!("no GPU can denoise here ({failure}), so the CPU does"));
                     }
                     return Ok(device);
                 }
                 Err(error) => {
-                    log::warn!("the denoiser's {} device does not work: {error}", kinds[place].name());
+                    log::info!("the denoiser's {} device does not work: {error}", kinds[place].name());
                     failure = error;
                 }
             }
@@ -136,6 +136,14 @@ impl Drop for Device<'_> {
             // SAFETY: live, and nothing of the device is left: filters and buffers hold it by an `Arc`.
             unsafe { (self.functions.release_device)(self.handle) };
         }
+    }
+}
+
+/// Logs a warning, if it is the first one: devices are opened more than once.
+fn warn_once(text: &str) {
+    static WAS_SAID: AtomicBool = AtomicBool::new(false);
+    if !WAS_SAID.swap(true, Relaxed) {
+        log::warn!("{text}");
     }
 }
 

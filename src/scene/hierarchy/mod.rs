@@ -2,6 +2,7 @@
 
 mod binary;
 mod compressed;
+mod instances;
 mod interval;
 mod packet;
 #[cfg(test)]
@@ -17,6 +18,7 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
+pub(in crate::scene) use instances::{Bottom, Placement};
 pub(in crate::scene) use interval::EntryPoints;
 pub(in crate::scene) use packet::PacketHits;
 pub use packet::{OCTANTS, PACKET, Packet, ray_octant};
@@ -125,6 +127,11 @@ impl Hierarchy {
         drop(built);
         Some(make(&tree.of_halves()))
     }
+}
+
+/// A box as a triangle with the same box, to build hierarchies over boxes.
+pub(in crate::scene) fn triangle_of_box([low, high]: [[f32; 3]; 2]) -> [[f32; 3]; 3] {
+    [low, high, high]
 }
 
 fn triangle_box(corners: [[f32; 3]; 3]) -> Aabb {

@@ -426,7 +426,7 @@ impl<S: Simd> PacketRays<S> {
                 far_offset: splats(self.far_offset),
                 near: self.near,
             },
-            triangles: TriangleRay {
+            leaves: TriangleRay {
                 origin: splats(self.origin),
                 direction: splats(self.direction),
                 axes: self.axes,

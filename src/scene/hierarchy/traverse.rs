@@ -9,7 +9,7 @@
 
 use std::mem::MaybeUninit;
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, mask32x8};
 use glam::Vec3A;
 
 use super::DEPTH_MAX;
@@ -46,15 +46,11 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
     }
     let ray = SingleRay {
         boxes: BoxRay::new(simd, frame, wide),
-        triangles: TriangleRay::new(simd, frame),
+        leaves: TriangleRay::new(simd, frame),
     };
-    let mut closest = ClosestHit {
-        t: t_max,
-        triangle: None,
-        areas: [0.0; 3],
-    };
+    let mut closest = ClosestHit::before(t_max);
     ray.traverse::<ANY, _>(wide, Entry::ROOT, &mut closest);
-    Some(Hit::of(closest.t, closest.triangle?, closest.areas))
+    closest.hit()
 }
 
 /// Receiver of a ray's hits.
@@ -67,11 +63,29 @@ pub(super) trait HitSink {
 }
 
 /// Keeps the closest hit. At equal distance the lowest index wins, so that the order of traversal does not matter.
-struct ClosestHit {
+pub(super) struct ClosestHit {
     t: f32,
     triangle: Option<u32>,
     /// See [`BlockHits::areas`].
     areas: [f32; 3],
+}
+
+impl ClosestHit {
+    /// No hit yet with t < `t_max`.
+    #[inline(always)]
+    pub fn before(t_max: f32) -> Self {
+        Self {
+            t: t_max,
+            triangle: None,
+            areas: [0.0; 3],
+        }
+    }
+
+    /// The hit.
+    #[inline(always)]
+    pub fn hit(&self) -> Option<Hit> {
+        Some(Hit::of(self.t, self.triangle?, self.areas))
+    }
 }
 
 impl HitSink for ClosestHit {
@@ -89,16 +103,24 @@ impl HitSink for ClosestHit {
     }
 }
 
-/// A ray prepared for single-ray traversal.
-pub(super) struct SingleRay<S: Simd> {
-    pub boxes: BoxRay<S>,
-    pub triangles: TriangleRay<S>,
+/// A ray's test against the contents of a leaf.
+pub(super) trait Leaves {
+    /// Tests a block whose box is entered at distance `entered`. Returns true if anything in it is hit. If `ANY`, the first
+    /// hit is enough.
+    fn intersect<const ANY: bool, M: HitSink>(&self, wide: &Wide, block: usize, entered: f32, sink: &mut M) -> bool;
 }
 
-impl<S: Simd> SingleRay<S> {
-    /// Traverses the subtree of `child` and reports ever closer hits to `sink`; stops after the first hit if `ANY`.
+/// A ray prepared for single-ray traversal.
+pub(super) struct SingleRay<S: Simd, L = TriangleRay<S>> {
+    pub boxes: BoxRay<S>,
+    pub leaves: L,
+}
+
+impl<S: Simd, L: Leaves> SingleRay<S, L> {
+    /// Traverses the subtree of `child` and reports ever closer hits to `sink`; stops after the first hit if `ANY`. Returns
+    /// true if so stopped.
     #[inline(always)]
-    pub fn traverse<const ANY: bool, M: HitSink>(&self, wide: &Wide, child: Entry, sink: &mut M) {
+    pub fn traverse<const ANY: bool, M: HitSink>(&self, wide: &Wide, child: Entry, sink: &mut M) -> bool {
         let mut stack = Stack::new();
         let mut next = child;
         loop {
@@ -108,39 +130,30 @@ impl<S: Simd> SingleRay<S> {
                     next = nearest;
                     continue;
                 }
-            } else if self.intersect_block(wide, (child & !BLOCK) as usize, next.distance(), sink) && ANY {
-                return;
+            } else if self
+                .leaves
+                .intersect::<ANY, M>(wide, (child & !BLOCK) as usize, next.distance(), sink)
+                && ANY
+            {
+                return true;
             }
             match stack.pop_before(sink.t_max()) {
                 Some(entry) => next = entry,
-                None => return,
+                None => return false,
             }
         }
     }
+}
 
-    /// Tests the triangles of a block whose box is entered at distance `entered`. Returns true if any is hit.
+impl<S: Simd> Leaves for TriangleRay<S> {
     #[inline(always)]
-    fn intersect_block<M: HitSink>(&self, wide: &Wide, block: usize, entered: f32, sink: &mut M) -> bool {
-        let reach = [entered, sink.t_max()];
-        let triangles = self
-            .triangles
-            .intersect_block(&wide.blocks[block], &wide.normals[block], reach);
-        let BlockHits { mut hit_bits, t, areas } = triangles;
-        if hit_bits == 0 {
+    fn intersect<const ANY: bool, M: HitSink>(&self, wide: &Wide, block: usize, entered: f32, sink: &mut M) -> bool {
+        let Some(inside) = self.inside(&wide.blocks[block]) else {
             return false;
-        }
-        let distances = t.to_array();
-        let areas = [areas[0].to_array(), areas[1].to_array(), areas[2].to_array()];
-        while hit_bits != 0 {
-            let lane = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
-            hit_bits &= hit_bits - 1;
-            // An earlier hit of this block may be closer by now.
-            if distances[lane] <= sink.t_max() {
-                let areas = [areas[0][lane], areas[1][lane], areas[2][lane]];
-                sink.record(distances[lane], wide.firsts[block] + lane as u32, areas);
-            }
-        }
-        true
+        };
+        let reach = [entered, sink.t_max()];
+        let hits = self.hits(&wide.blocks[block], &wide.normals[block], inside, reach);
+        hits.record(wide.firsts[block], sink)
     }
 }
 
@@ -166,14 +179,20 @@ pub(super) struct BoxRay<S: Simd> {
 
 impl<S: Simd> BoxRay<S> {
     #[inline(always)]
-    fn new(simd: S, frame: &RayFrame, wide: &Wide) -> Self {
-        let (origin, direction) = (frame.origin, frame.direction);
+    pub fn new(simd: S, frame: &RayFrame, wide: &Wide) -> Self {
+        let margin = |size: Vec3A| (wide.reach + frame.origin.abs()) * size * RELATIVE_ERROR;
+        Self::with_margin(simd, frame.origin, frame.direction, margin)
+    }
+
+    /// A ray with a `margin` of distances, made of the sizes of its inverse directions.
+    #[inline(always)]
+    pub fn with_margin(simd: S, origin: Vec3A, direction: Vec3A, margin: impl FnOnce(Vec3A) -> Vec3A) -> Self {
         // −0 is positive here as in `backward`; NaN becomes the largest inverse.
         let is_backward = direction.cmplt(Vec3A::ZERO);
         let size = direction.abs().recip().min(Vec3A::splat(INVERSE_MAX));
         let inverse = Vec3A::select(is_backward, -size, size);
         let shift = -origin * inverse;
-        let margin = (wide.reach + origin.abs()) * size * RELATIVE_ERROR;
+        let margin = margin(size);
         let backward = is_backward.bitmask() as usize;
         Self {
             inverse: splat(simd, inverse),
@@ -223,6 +242,24 @@ impl<S: Simd> BoxRay<S> {
         stack.pop()
     }
 
+    /// Bit mask of the boxes `[low, high][axis][box]` that are hit before `t_max`, and their entry distances. Boxes of NaN are
+    /// missed.
+    #[inline(always)]
+    pub fn intersect_boxes(&self, sides: [&[[f32; WIDTH]; 3]; 2], t_max: f32) -> (u32, [f32; WIDTH]) {
+        let simd = self.inverse[0].token();
+        let (mut near, mut far) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, t_max));
+        let mut axis = 0;
+        while axis < 3 {
+            let side = |far: usize| f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ far) & 1][axis]);
+            near = near.max(side(0) * self.inverse[axis] + self.near_offset[axis]);
+            far = far.min(side(1) * self.inverse[axis] + self.far_offset[axis]);
+            axis += 1;
+        }
+        let low = f32x8::load_array_ref(simd, &sides[0][0]);
+        let is_hit = near.simd_le(far) & low.simd_eq(low);
+        (is_hit.to_bitmask() as u32, near.to_array())
+    }
+
     /// Distances to the children's near sides.
     #[inline(always)]
     fn near(&self, node: &Node, axis: usize) -> f32x8<S> {
@@ -259,14 +296,44 @@ impl Children {
     }
 }
 
+/// Triangles of a block that a ray's line passes through.
+pub(super) struct Inside<S: Simd> {
+    mask: mask32x8<S>,
+    /// See [`BlockHits::areas`].
+    areas: [f32x8<S>; 3],
+}
+
 /// Hits of a ray in a block.
-struct BlockHits<S: Simd> {
+pub(super) struct BlockHits<S: Simd> {
     /// Bit mask of the hit triangles.
     hit_bits: u32,
     /// Distances.
     t: f32x8<S>,
     /// Twice the signed areas into which the ray divides each projected triangle, opposite to its corners.
     areas: [f32x8<S>; 3],
+}
+
+impl<S: Simd> BlockHits<S> {
+    /// Records the hits on a block of triangles from `first` on. Returns true if there are any.
+    #[inline(always)]
+    pub fn record<M: HitSink>(self, first: u32, sink: &mut M) -> bool {
+        let Self { mut hit_bits, t, areas } = self;
+        if hit_bits == 0 {
+            return false;
+        }
+        let distances = t.to_array();
+        let areas = [areas[0].to_array(), areas[1].to_array(), areas[2].to_array()];
+        while hit_bits != 0 {
+            let lane = (hit_bits.trailing_zeros() % WIDTH as u32) as usize;
+            hit_bits &= hit_bits - 1;
+            // An earlier hit of this block may be closer by now.
+            if distances[lane] <= sink.t_max() {
+                let areas = [areas[0][lane], areas[1][lane], areas[2][lane]];
+                sink.record(distances[lane], first + lane as u32, areas);
+            }
+        }
+        true
+    }
 }
 
 /// A ray prepared for tests against triangles: the shear of [`RayFrame`].
@@ -279,7 +346,7 @@ pub(super) struct TriangleRay<S: Simd> {
 
 impl<S: Simd> TriangleRay<S> {
     #[inline(always)]
-    fn new(simd: S, frame: &RayFrame) -> Self {
+    pub fn new(simd: S, frame: &RayFrame) -> Self {
         let [_, _, along] = frame.axes;
         Self {
             origin: splat(simd, frame.origin),
@@ -292,24 +359,31 @@ impl<S: Simd> TriangleRay<S> {
         }
     }
 
-    /// The triangles of a block that are hit with 0 < t ≤ `t_max`; t is raised to `entered`.
+    /// The triangles of a block that the ray's line passes through; `None` if there are none.
     #[inline(always)]
-    fn intersect_block(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> BlockHits<S> {
-        let simd = self.origin[0].token();
-        let zero = f32x8::splat(simd, 0.0);
+    pub fn inside(&self, block: &Block) -> Option<Inside<S>> {
+        let zero = f32x8::splat(self.origin[0].token(), 0.0);
         let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
         // Watertight: neighbours compute the same area for a shared edge but for its sign, as no product is fused.
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
-        let areas = [u, v, w];
-        let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
+        let mask = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
             | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
-        if is_inside.all_false() {
-            return BlockHits {
-                hit_bits: 0,
-                t: zero,
-                areas,
-            };
-        }
+        let areas = [u, v, w];
+        (!mask.all_false()).then_some(Inside { mask, areas })
+    }
+
+    /// The triangles of a block that are hit with 0 < t ≤ `t_max`; t is raised to `entered`.
+    #[inline(always)]
+    pub fn hits(
+        &self,
+        block: &Block,
+        normals: &Normals,
+        Inside { mask, areas }: Inside<S>,
+        [entered, t_max]: [f32; 2],
+    ) -> BlockHits<S> {
+        let simd = self.origin[0].token();
+        let zero = f32x8::splat(simd, 0.0);
+        let [u, v, w] = areas;
         let x = f32x8::load_array_ref(simd, &normals.axes[0]);
         let y = f32x8::load_array_ref(simd, &normals.axes[1]);
         let z = f32x8::load_array_ref(simd, &normals.axes[2]);
@@ -323,7 +397,7 @@ impl<S: Simd> TriangleRay<S> {
         let clamped = t.max(f32x8::splat(simd, entered));
         // False for a triangle seen edge-on and for NaN.
         let is_before = t.simd_gt(zero) & clamped.simd_le(f32x8::splat(simd, t_max));
-        let is_hit = is_inside & !(u + v + w).simd_eq(zero) & is_before;
+        let is_hit = mask & !(u + v + w).simd_eq(zero) & is_before;
         BlockHits {
             hit_bits: is_hit.to_bitmask() as u32,
             t: clamped,

@@ -194,7 +194,7 @@ pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], 
         if has_box {
             let between = |[a, b, c]: [Vec3<T>; 3]| a * weights[0] + b * weights[1] + c * weights[2];
             let places = geometry.corners(triangle).map(Vec3::from_f32);
-            let smooth = between(corners.map(|corner| Vec3::from_f32(corner.normal)));
+            let smooth = between(geometry.normals(triangle).map(Vec3::from_f32));
             box_uv(between(places), normalize_or(smooth, triangle_normal(places)))
         } else {
             [T::zero(); 2]

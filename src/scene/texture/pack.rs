@@ -478,13 +478,14 @@ fn decoded_codes() -> impl Iterator<Item = u32> {
 /// Whether the triangles of each slot have texture coordinates: not the same ones at all corners.
 pub fn slots_with_coordinates(model: &Model) -> Vec<bool> {
     let mut has = vec![false; model.slots.len()];
-    let mesh = &model.mesh;
-    for (triangle, slot) in mesh.triangles.iter().zip(&mesh.slots) {
-        let Some(has) = has.get_mut(*slot as usize).filter(|has| !**has) else {
-            continue;
-        };
-        let [a, b, c] = triangle.map(|vertex| mesh.uvs.get(vertex as usize));
-        *has = a != b || b != c;
+    for mesh in model.meshes() {
+        for (triangle, slot) in mesh.triangles.iter().zip(&mesh.slots) {
+            let Some(has) = has.get_mut(*slot as usize).filter(|has| !**has) else {
+                continue;
+            };
+            let [a, b, c] = triangle.map(|vertex| mesh.uvs.get(vertex as usize));
+            *has = a != b || b != c;
+        }
     }
     has
 }

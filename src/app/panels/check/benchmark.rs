@@ -32,21 +32,24 @@ impl BenchmarkState {
 pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
     widgets::note(
         ui,
-        "Measures every engine and adapter: rates, time to a clean image, kernels, checks. Takes three minutes.",
+        "Measures every engine and adapter: rates, time to a clean image, kernels, checks.",
     );
     ui.checkbox(&mut state.quick, "Quick")
         .on_hover_text("Small images and few scenes, to see that it works.");
     let quick = state.quick;
     let help = "Pauses the viewport and measures this machine.";
-    state.worker.controls(ui, desk, ("Run the benchmark", help), None, |_| {
-        let options = BenchmarkOptions {
-            engine: EngineChoice::Auto,
-            seconds: SECONDS[usize::from(quick)],
-            quick,
-            program: program(),
-        };
-        Box::new(move |watch| benchmark(&options, watch))
-    });
+    let takes = (!quick).then(|| "takes three minutes".to_owned());
+    state
+        .worker
+        .controls(ui, desk, ("Run the benchmark", help), takes, |_| {
+            let options = BenchmarkOptions {
+                engine: EngineChoice::Auto,
+                seconds: SECONDS[usize::from(quick)],
+                quick,
+                program: program(),
+            };
+            Box::new(move |watch| benchmark(&options, watch))
+        });
     let Some(report) = state.worker.found() else { return };
     if ui
         .button("Copy the result")

@@ -1,7 +1,8 @@
 //! Two reports side by side, and which of their differences are noise.
 //!
 //! A ratio is noise if its logarithm is within the tolerance: K √(s_A² + s_B²), with s the robust relative standard deviation
-//! of a turn and K larger for few turns. On the same machine, the drift of its pace between the runs is added.
+//! of a turn and K larger for few turns. Where the CPU does the work, s includes the spread of the machine's pace, and on the
+//! same machine the drift of the pace between the runs is added.
 
 use std::fmt::Write as _;
 
@@ -60,12 +61,18 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
             continue;
         };
         let is_on_cpu = of_a.is_software && of_b.is_software;
-        let drift = pace_ratio
-            .filter(|_| is_same_machine && is_on_cpu)
-            .map_or(0.0, |ratio| ratio.ln().abs());
+        let unrest = Unrest {
+            drift: pace_ratio
+                .filter(|_| is_same_machine && is_on_cpu)
+                .map_or(0.0, |ratio| ratio.ln().abs()),
+            pace: [(a, of_a), (b, of_b)].map(|(report, engine)| {
+                let pace = report.pace.as_ref().filter(|_| engine.is_software);
+                pace.map_or(0.0, deviation)
+            }),
+        };
         for row in &of_a.rows {
             match of_b.row(&row.step, &row.case) {
-                Some(other) => rows.push(compared((of_a, row), (of_b, other), drift)),
+                Some(other) => rows.push(compared((of_a, row), (of_b, other), unrest)),
                 None => unmatched.push(format!("{}, {}, {}: only in A", of_a.name(), row.step, row.case)),
             }
         }
@@ -78,6 +85,13 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
     }
 }
 
+/// How uneven the machines' pace was: between the runs, and relative standard deviations within each.
+#[derive(Clone, Copy, Default)]
+struct Unrest {
+    drift: f64,
+    pace: [f64; 2],
+}
+
 fn counterpart<'a>(engine: &EngineReport, of: &Report, among: &'a Report) -> Option<&'a EngineReport> {
     let same_kind = |report: &'a Report| report.engines.iter().filter(|other| other.engine == engine.engine);
     let exact = same_kind(among).find(|other| (&other.adapter, &other.backend) == (&engine.adapter, &engine.backend));
@@ -88,12 +102,14 @@ fn counterpart<'a>(engine: &EngineReport, of: &Report, among: &'a Report) -> Opt
     exact.or(only)
 }
 
-fn compared((a, row): (&EngineReport, &Row), (b, other): (&EngineReport, &Row), drift: f64) -> ComparedRow {
+fn compared((a, row): (&EngineReport, &Row), (b, other): (&EngineReport, &Row), unrest: Unrest) -> ComparedRow {
     let ratio = other.value.median / row.value.median;
     let turns = row.value.turns.min(other.value.turns) as f64;
     // Deviations of few turns are uncertain themselves, as Student's t says.
     let factor = 2.0 + 6.0 / (turns - 1.0).max(1.0);
-    let tolerance = (factor * deviation(&row.value).hypot(deviation(&other.value)) + drift).exp();
+    let [of_a, of_b] = [(&row.value, unrest.pace[0]), (&other.value, unrest.pace[1])];
+    let [s_a, s_b] = [of_a, of_b].map(|(value, pace)| deviation(value).hypot(pace));
+    let tolerance = (factor * s_a.hypot(s_b) + unrest.drift).exp();
     let is_noise = ratio.ln().abs() <= tolerance.ln();
     let verdict = match (is_noise, (ratio > 1.0) == row.more_is_better) {
         (true, _) => "noise",
@@ -196,18 +212,29 @@ mod tests {
         }
     }
 
-    fn verdict(a: Row, b: Row, drift: f64) -> &'static str {
-        compared((&engine(a.clone()), &a), (&engine(b.clone()), &b), drift).verdict
+    fn verdict(a: Row, b: Row, unrest: Unrest) -> &'static str {
+        compared((&engine(a.clone()), &a), (&engine(b.clone()), &b), unrest).verdict
     }
 
     #[test]
     fn what_lies_within_the_spread_is_noise() {
-        assert_eq!(verdict(row(10.0, 0.01, 9), row(10.4, 0.01, 9), 0.0), "noise");
-        assert_eq!(verdict(row(10.0, 0.01, 9), row(12.0, 0.01, 9), 0.0), "better");
-        assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), 0.0), "worse");
-        assert_eq!(verdict(row(10.0, 0.10, 9), row(12.0, 0.10, 9), 0.0), "noise");
-        // A machine that was slower as a whole, and a single measurement.
-        assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), 0.2), "noise");
-        assert_eq!(verdict(row(12.0, 0.0, 1), row(10.0, 0.0, 1), 0.0), "noise");
+        let calm = Unrest::default();
+        assert_eq!(verdict(row(10.0, 0.01, 9), row(10.4, 0.01, 9), calm), "noise");
+        assert_eq!(verdict(row(10.0, 0.01, 9), row(12.0, 0.01, 9), calm), "better");
+        assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), calm), "worse");
+        assert_eq!(verdict(row(10.0, 0.10, 9), row(12.0, 0.10, 9), calm), "noise");
+        assert_eq!(
+            verdict(row(12.0, 0.0, 1), row(10.0, 0.0, 1), calm),
+            "noise",
+            "a single turn"
+        );
+        // A machine that was slower as a whole, and one that was busy for a while.
+        let slower = Unrest { drift: 0.2, ..calm };
+        assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), slower), "noise");
+        let busy = Unrest {
+            pace: [0.3, 0.2],
+            ..calm
+        };
+        assert_eq!(verdict(row(12.0, 0.01, 9), row(6.0, 0.01, 9), busy), "noise");
     }
 }

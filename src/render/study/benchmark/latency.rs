@@ -14,7 +14,7 @@ pub const VIEWPORT: [u32; 2] = [806, 780];
 /// Least time that a hand needs between two edits.
 pub const INTERVAL: Duration = Duration::from_millis(16);
 /// Least time to wait for an image.
-const PATIENCE_MIN: Duration = Duration::from_secs(5);
+const PATIENCE_MIN: Duration = Duration::from_secs(15);
 /// Polling interval of the worker.
 const GLANCE: Duration = Duration::from_millis(1);
 /// Samples of a render that is always interrupted.
@@ -79,9 +79,19 @@ pub(super) fn edits(
     };
     // What is compiled now is not compiled again: the time of the next steps gives way.
     let patience = (2 * slot.left()).max(PATIENCE_MIN);
-    if first_image(&worker, &document, patience).is_none() || !await_kernel(&worker, patience) {
-        let why = format!("no image within {:.0} s", patience.as_secs_f64());
-        report.leave_out("edit", name, why);
+    let lacking = if first_image(&worker, &document, patience).is_none() {
+        Some("image")
+    } else if !await_kernel(&worker, patience) {
+        Some("kernel")
+    } else {
+        None
+    };
+    if let Some(what) = lacking {
+        report.leave_out(
+            "edit",
+            name,
+            format!("no {what} within {:.0} s", patience.as_secs_f64()),
+        );
         return Ok(());
     }
     let mut milliseconds = Vec::new();

@@ -22,7 +22,6 @@ use super::sampling::{SamplingOptions, sampling};
 use super::{Steps, StudyError, Watch};
 use crate::document::Document;
 use crate::gpu::{GpuAdapter, GpuError, Traversal};
-use crate::instructions;
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, Session};
 use goal::Goal;
@@ -336,7 +335,7 @@ fn machine() -> Machine {
         threads: rayon::current_num_threads(),
         memory_mib: system.map_or(0, |system| system.total_memory() >> 20),
         system: System::long_os_version().unwrap_or_else(|_| std::env::consts::OS.to_owned()),
-        instructions: instructions::level_name().to_owned(),
+        instructions: crate::cpu::instruction_set().to_owned(),
     }
 }
 

@@ -31,7 +31,7 @@ const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::f
 /// The interval is this share of the render's age.
 const PUBLISH_SHARE: f64 = 0.1;
 /// Publishing takes at most one part in this many of the time.
-const PUBLISH_COST: u32 = 8;
+const PUBLISH_COST: u32 = 12;
 /// Weight of the latest measurement in the running mean of the speed.
 const SPEED_WEIGHT: f64 = 0.1;
 

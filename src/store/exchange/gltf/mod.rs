@@ -62,9 +62,8 @@ impl Format for Gltf {
         let budget = Budget::of_import();
         let _ = budget.take((model.bytes() as u64).min(budget.left()));
         let used = model
-            .mesh
-            .slots
-            .iter()
+            .meshes()
+            .flat_map(|mesh| &mesh.slots)
             .copied()
             .max()
             .map_or(1, |slot| slot as usize + 1);
@@ -167,7 +166,7 @@ fn radius_of(model: &Model) -> f64 {
     if model.radius > 0.0 {
         return model.radius;
     }
-    let places = &model.mesh.positions;
+    let places = &model.whole_mesh().positions;
     let (low, high) = places
         .iter()
         .fold((glam::DVec3::MAX, glam::DVec3::MIN), |(low, high), place| {
@@ -339,7 +338,7 @@ impl Builder {
 
     /// One primitive a slot, over shared vertices.
     fn primitives(&mut self, model: &Model, materials: &[Json]) -> Vec<Json> {
-        let mut mesh = model.mesh.clone();
+        let mut mesh = model.whole_mesh().into_owned();
         mesh.split_flat();
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
         let normals: Vec<[f32; 3]> = mesh

@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use roxmltree::Document;
 
-use super::graph::{Images, shaders, worth};
+use super::graph::{shaders, worth};
+use super::images::Images;
 use crate::scene::Loading;
 
 /// The program of MaterialX, and the folder that it lies in where [`TOOLS_VARIABLE`] does not say another.

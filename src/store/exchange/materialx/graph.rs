@@ -1,18 +1,13 @@
 //! What inputs of a MaterialX document are worth: constants, images by their mean, and what the usual nodes compute of these.
 
-use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::cell::Cell;
+use std::path::PathBuf;
 
 use roxmltree::Node;
 
-use crate::import::Budget;
-use crate::import::picture::mean_of_file;
-use crate::import::resource::Reach;
+use super::images::Images;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
-use crate::scene::Loading;
-use crate::scene::texture::TextureMean;
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
@@ -124,43 +119,6 @@ fn of_interface<'a>(place: Node<'a, 'a>) -> Option<Node<'a, 'a>> {
     let name = place.attribute("interfacename")?;
     let graph = place.ancestors().find(|node| node.has_tag_name("nodegraph"))?;
     child(graph, name)
-}
-
-/// Images that a document names: each is read once, within one budget.
-pub(super) struct Images<'p> {
-    /// Folder of the document.
-    folder: &'p Path,
-    /// Cancellation, and images that were refused.
-    loading: &'p Loading,
-    budget: Budget,
-    means: RefCell<HashMap<PathBuf, Result<TextureMean, String>>>,
-}
-
-impl<'p> Images<'p> {
-    /// Images of a document in a folder, none read.
-    pub(super) fn in_folder(folder: &'p Path, loading: &'p Loading) -> Self {
-        Self {
-            folder,
-            loading,
-            budget: Budget::of_import(),
-            means: RefCell::default(),
-        }
-    }
-
-    /// Mean of an image by its name in the document.
-    fn mean(&self, file: &Path) -> Result<TextureMean, String> {
-        if let Some(known) = self.means.borrow().get(file) {
-            return known.clone();
-        }
-        let path = self.folder.join(file);
-        let reached = Reach::of_folder(self.folder).check(&path, self.loading);
-        let wanted = self.loading.check().map_err(|cancelled| cancelled.to_string());
-        let mean = wanted
-            .and_then(|()| reached.map_err(|error| error.to_string()))
-            .and_then(|()| mean_of_file(&path, &self.budget));
-        self.means.borrow_mut().insert(file.to_owned(), mean.clone());
-        mean
-    }
 }
 
 /// What an input is worth; nothing where it has no value of its own.
@@ -430,9 +388,12 @@ pub(super) fn value_of(input: Node<'_, '_>, text: &str) -> Option<[f32; 4]> {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use roxmltree::Document;
 
     use super::*;
+    use crate::scene::Loading;
 
     /// What the input `x` of a document's last element is worth.
     fn worth_of(elements: &str, folder: &Path) -> Result<Option<Worth>, Unknown> {

@@ -3,6 +3,7 @@
 mod artistic;
 mod bake;
 mod graph;
+mod images;
 mod include;
 mod inputs;
 mod read;

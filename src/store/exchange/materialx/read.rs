@@ -6,7 +6,8 @@ use std::path::Path;
 use roxmltree::{Document, Node};
 
 use super::bake::Baker;
-use super::graph::{Images, Unknown, child, shaders, source_of, worth};
+use super::graph::{Unknown, child, shaders, source_of, worth};
+use super::images::Images;
 use super::include::whole_text;
 use super::inputs::Inputs;
 use super::surfaces::SurfaceKind;

@@ -2,10 +2,10 @@
 
 use glam::{DMat3, DMat4};
 
-use crate::scene::mesh::Mesh;
+use super::mesh::Mesh;
 
 /// A mesh moved by a node's transform. One that mirrors turns the triangles round, so that they still face outwards.
-pub(super) fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
+pub fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
     let linear = DMat3::from_mat4(world_from_node);
     let mirrors = linear.determinant() < 0.0;
     let normals_from = normal_matrix(linear);
@@ -28,7 +28,7 @@ pub(super) fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
 
 /// Transform of normals, up to a positive factor: the inverse transpose, as the cofactor matrix, which also works for
 /// flattening transforms.
-pub(super) fn normal_matrix(linear: DMat3) -> DMat3 {
+pub fn normal_matrix(linear: DMat3) -> DMat3 {
     let largest = linear
         .to_cols_array()
         .into_iter()

@@ -1,0 +1,48 @@
+//! Images that a MaterialX document names.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use crate::import::Budget;
+use crate::import::picture::mean_of_file;
+use crate::import::resource::Reach;
+use crate::scene::Loading;
+use crate::scene::texture::TextureMean;
+
+/// Images that a document names: each is read once, within one budget.
+pub(super) struct Images<'p> {
+    /// Folder of the document.
+    folder: &'p Path,
+    /// Cancellation, and images that were refused.
+    loading: &'p Loading,
+    budget: Budget,
+    means: RefCell<HashMap<PathBuf, Result<TextureMean, String>>>,
+}
+
+impl<'p> Images<'p> {
+    /// Images of a document in a folder, none read.
+    pub(super) fn in_folder(folder: &'p Path, loading: &'p Loading) -> Self {
+        Self {
+            folder,
+            loading,
+            budget: Budget::of_import(),
+            means: RefCell::default(),
+        }
+    }
+
+    /// Mean of an image by its name in the document.
+    pub(super) fn mean(&self, file: &Path) -> Result<TextureMean, String> {
+        if let Some(known) = self.means.borrow().get(file) {
+            return known.clone();
+        }
+        let path = self.folder.join(file);
+        let reached = Reach::of_folder(self.folder).check(&path, self.loading);
+        let wanted = self.loading.check().map_err(|cancelled| cancelled.to_string());
+        let mean = wanted
+            .and_then(|()| reached.map_err(|error| error.to_string()))
+            .and_then(|()| mean_of_file(&path, &self.budget));
+        self.means.borrow_mut().insert(file.to_owned(), mean.clone());
+        mean
+    }
+}
