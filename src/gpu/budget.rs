@@ -190,13 +190,8 @@ mod tests {
         assert_eq!((least(2e4, 64), least(1e9, 64)), (1, PASS_SAMPLES_MAX));
     }
 
-<<<<<<< HEAD
-    /// Between two dispatches the host needs about 60 µs: a window of 144 images per second still gets its turn, and the
-    /// adapter works nine tenths of the time.
-=======
     /// Between two dispatches the host needs about 60 µs: a window of 144 images per second gets its turn within half the
     /// time of an image, and the adapter works nine tenths of the time.
->>>>>>> fe2154814f04afd08aa15aa65cdf284fcb52b663
     #[test]
     fn a_fast_adapter_is_kept_busy_and_lets_the_window_in() {
         let mut budget = Budget::new(DISPATCH);
