@@ -27,6 +27,7 @@ pages! {
     "how-to/farm.md"
     "how-to/explain.md"
     "how-to/profile.md"
+    "how-to/benchmark.md"
     "reference/window.md"
     "reference/render.md"
     "reference/commands.md"
@@ -44,6 +45,7 @@ pages! {
     "STABILITY.md"
     "PERFORMANCE.md"
     "FIGURES.md"
+    "results/README.md"
 }
 
 /// The address of the list of all pages.

@@ -179,6 +179,8 @@ impl Behavior<Pane> for Panes<'_, '_> {
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
         let active = tabs.active.and_then(|tile| tiles.get(tile));
         if let Some(Tile::Pane(pane)) = active {
+            // Nothing stands at the very edge.
+            ui.add_space(6.0);
             help_button(ui, pane.title(), pane.manual());
         }
     }

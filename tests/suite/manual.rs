@@ -162,3 +162,24 @@ fn the_help_menu_opens_the_contents() {
     assert!(shows(&harness, CONTENTS));
     harness.check_accessibility();
 }
+
+/// Text that no font of the window has would be empty boxes.
+#[test]
+fn every_character_of_the_manual_has_a_glyph() {
+    let harness = editor();
+    let fonts = [egui::FontId::proportional(13.0), egui::FontId::monospace(12.0)];
+    let mut lacking = Vec::new();
+    for (page, text) in PAGES {
+        for character in text.chars().filter(|character| !character.is_control()) {
+            let is_there = harness
+                .ctx
+                .fonts_mut(|fonts_of_window| fonts.iter().all(|font| fonts_of_window.has_glyph(font, character)));
+            if !is_there {
+                lacking.push(format!("{page}: {character} (U+{:04X})", u32::from(character)));
+            }
+        }
+    }
+    lacking.sort();
+    lacking.dedup();
+    assert!(lacking.is_empty(), "{lacking:?}");
+}

@@ -140,30 +140,25 @@ fn every_dependency_is_used() {
     let src = root.join("src");
     let engine = of_the_engine(&src);
     assert!(engine.iter().any(|module| module == "optics"), "{engine:?}");
-    let code = |of_engine: bool| {
-        let mut files = files_with("rs", &src);
-        let top = |file: &Path| {
-            let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
-            Path::new(first.as_os_str())
-                .file_stem()
-                .unwrap()
-                .to_str()
-                .unwrap()
-                .to_owned()
-        };
-        files.retain(|file| engine.contains(&top(file)) == of_engine);
-        files
-            .iter()
-            .map(|file| fs::read_to_string(file).unwrap())
-            .collect::<String>()
+    let package_of = |file: &Path| {
+        let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
+        match Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap() {
+            "import" => "src/import",
+            module if engine.iter().any(|of_engine| of_engine == module) => "src/engine",
+            _ => ".",
+        }
     };
-    for (manifest, code) in [
-        (root.join("Cargo.toml"), code(false)),
-        (src.join("engine/Cargo.toml"), code(true)),
-    ] {
+    let files = files_with("rs", &src);
+    for package in [".", "src/engine", "src/import"] {
+        let of_package = files.iter().filter(|file| package_of(file) == package);
+        let code: String = of_package.map(|file| fs::read_to_string(file).unwrap()).collect();
+        let manifest = root.join(package).join("Cargo.toml");
         let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
         let names = manifest["dependencies"].as_table().unwrap().keys();
-        let is_unused = |name: &&String| !code.contains(&format!("{}::", name.replace('-', "_")));
+        let is_unused = |name: &&String| {
+            let name = name.replace('-', "_");
+            !["::", " as "].iter().any(|end| code.contains(&format!("{name}{end}")))
+        };
         let unused: Vec<&String> = names.filter(is_unused).collect();
         assert!(unused.is_empty(), "nothing in the package's sources uses {unused:?}");
     }

@@ -106,8 +106,11 @@ pub(super) fn controls(harness: &Editor) -> Controls {
     let mut found = HashMap::new();
     for node in harness.root().children_recursive() {
         let node = node.accesskit_node();
+        // Links and code of the manual are there as far as they are scrolled into view.
+        let of_manual = |name: &String| node.role() == Role::Link || name == "🗐";
         let Some(name) = node
             .label()
+            .filter(|name| !of_manual(name))
             .filter(|_| node.data().supports_action(accesskit::Action::Click))
         else {
             continue;

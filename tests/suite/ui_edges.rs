@@ -2,7 +2,7 @@
 //! they are meant for, and failures that are told.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Pos2, Rect, Vec2};
+use egui::{Event, Key, Modifiers, Pos2, Rect, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
@@ -228,7 +228,7 @@ fn a_number_found_in_the_palette_is_replaced_at_once() {
 fn keys_and_mouse_scroll_in_a_low_window() {
     let mut harness = editor();
     harness.set_size(Vec2::new(900.0, 500.0));
-    harness.key_press(Key::F1);
+    harness.key_press_modifiers(Modifiers::SHIFT, Key::F1);
     harness.run_steps(4);
     let window = Rect::from_min_size(Pos2::ZERO, Vec2::new(900.0, 500.0));
     // The heading; a command among the keys is called the same.

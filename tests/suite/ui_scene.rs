@@ -195,6 +195,8 @@ fn lights_are_muted_soloed_and_warmed() {
     let all = press(&mut harness, "Solo area light 1");
     assert_eq!(muted(&harness), [false, false]);
     assert_eq!(all, both);
+    harness.get_by_label("Choose area light 1").click_accesskit();
+    harness.run_steps(2);
     harness
         .get_by_role_and_label(Role::SpinButton, "Area light 1 temperature")
         .set_value_accesskit(2700.0);

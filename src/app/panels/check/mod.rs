@@ -92,7 +92,7 @@ impl Panel for CheckPanel {
             Some(Standing::Done(checks)) => table(ui, &checks),
         });
         ui.separator();
-        hard_cases::show(ui, &mut state.hard, engine);
+        widgets::comes_and_goes(ui, |ui| hard_cases::show(ui, &mut state.hard, engine));
         ui.separator();
         benchmark::show(ui, &mut state.benchmark, desk);
     }
