@@ -17,8 +17,8 @@ const HINTS: [&str; 5] = [
 const WIDTH: f32 = 380.0;
 const HEIGHT: f32 = 64.0;
 
-/// Width of what stands in the viewport's lower left corner, points.
-const CORNER: f32 = 160.0;
+/// Largest width of what stands in the viewport's lower left corner, points: the offer of the denoiser.
+const CORNER: f32 = 270.0;
 
 /// How far what stands in the lower left corner is raised, so that no hint lies over it.
 pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
