@@ -1,4 +1,4 @@
-//! A GPU that is lost, at every moment at which it can be: opened anew thrice, then the processor goes on.
+//! A GPU that is lost, at every moment at which it can be: opened again three times, then the CPU goes on.
 
 use std::time::{Duration, Instant};
 
@@ -80,7 +80,7 @@ fn a_lost_device_is_opened_anew() {
         let worker = gpu_worker();
         worker.lose_device(moment, 1);
         worker.submit(&long_document(), Pace::Still);
-        let told = warnings_until(&worker, "opened anew (1 of 3 times)");
+        let told = warnings_until(&worker, "opened again (1 of 3 times)");
         assert_eq!(told.len(), 1, "{moment:?}: {told:?}");
         wait(&worker, "the GPU's picture", |snapshot| {
             snapshot.picture.is_some() && !snapshot.progress.is_fallback && snapshot.progress.samples_per_pixel > 0

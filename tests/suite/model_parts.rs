@@ -101,7 +101,7 @@ fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
     let (source, options) = (ModelSource::File(model), with(vec![buffer, picture]));
     let loading = Loading::default();
     load_watched(&source, &options, &loading).expect("loads");
-    assert_eq!(loading.doing(), "picture 1 of 1");
+    assert_eq!(loading.doing(), "texture 1 of 1");
     loading.cancel();
     let error = load_watched(&source, &options, &loading).expect_err("called off");
     assert!(matches!(error, ModelError::Cancelled(_)), "{error}");

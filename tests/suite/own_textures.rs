@@ -486,7 +486,7 @@ fn the_command_line_puts_pictures_on_materials() {
     place.refused(
         2,
         "render --texture shine=red.png --output t.exr",
-        &["shine is nothing that a texture is put on"],
+        &["shine takes no texture"],
     );
     place.refused(
         2,

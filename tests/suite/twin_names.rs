@@ -17,6 +17,7 @@ const ALONE: &[(&str, &[&str])] = &[
             "node_words",
             "slot_at",
             "table_number",
+            "table_numbers",
             "texel_place",
             "texture_word",
             "vertex_at",
