@@ -559,7 +559,7 @@ mod tests {
         assert_eq!(
             words(&entry),
             "Exact Fresnel (instead of Schlick's): no measurable cost, 5.1 × the noise, changes the \
-             picture by less than 0.21 %"
+             image by less than 0.21 %"
         );
     }
 }
