@@ -7,6 +7,7 @@ mod attendant;
 pub mod background;
 mod calibration;
 pub mod check;
+mod chosen;
 mod compile;
 mod convergence;
 pub mod denoise;

@@ -1,9 +1,9 @@
 //! Use of hardware ray queries.
 
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::named::{Named, named};
+use crate::render::chosen::Chosen;
 
 named! {
     /// Whether kernels use ray queries instead of our own traversal.
@@ -16,20 +16,17 @@ named! {
     }
 }
 
-/// The process-wide choice, as a number.
-static CHOSEN: AtomicU32 = AtomicU32::new(RayQueries::Auto as u32);
+static CHOSEN: Chosen<RayQueries> = Chosen::first();
 
 impl RayQueries {
     /// Holds for all engines that are opened from now on.
     pub fn choose(self) {
-        CHOSEN.store(self as u32, Relaxed);
+        CHOSEN.set(self);
     }
 
     /// The latest choice.
     pub fn chosen() -> Self {
-        let number = CHOSEN.load(Relaxed);
-        let is_it = |choice: &&Self| **choice as u32 == number;
-        Self::ALL.iter().find(is_it).copied().unwrap_or_default()
+        CHOSEN.get()
     }
 }
 

@@ -97,8 +97,8 @@ mod tests {
         report.note(Fate::Ignored, "iridescence", "lens");
         report.note(Fate::Ignored, "iridescence", "visor");
         add_import(&mut log, "car.glb", &report);
-        let told = "car.glb: iridescence, in lens and 1 more – is not shown. One thing more differs.";
-        assert_eq!((log[0].text.as_str(), log[0].is_of_import), (told, true));
+        let expected = "car.glb: iridescence, in lens and 1 more – is not shown. One thing more differs.";
+        assert_eq!((log[0].text.as_str(), log[0].is_of_import), (expected, true));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Choice of the device that denoises.
 
 use std::str::FromStr;
-use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use crate::named::{Named, named};
+use crate::render::chosen::Chosen;
 
 named! {
     /// Device that the user asks for.
@@ -23,20 +23,17 @@ impl FromStr for DenoiseDevice {
     }
 }
 
-/// The process-wide choice, as a number.
-static CHOSEN: AtomicU32 = AtomicU32::new(DenoiseDevice::Auto as u32);
+static CHOSEN: Chosen<DenoiseDevice> = Chosen::first();
 
 impl DenoiseDevice {
     /// Holds for all denoisers that are opened from now on.
     pub fn choose(self) {
-        CHOSEN.store(self as u32, Relaxed);
+        CHOSEN.set(self);
     }
 
     /// The latest choice.
     pub fn chosen() -> Self {
-        let number = CHOSEN.load(Relaxed);
-        let is_it = |choice: &&Self| **choice as u32 == number;
-        Self::ALL.iter().find(is_it).copied().unwrap_or_default()
+        CHOSEN.get()
     }
 
     /// Devices to try in order, by their places in the library's list, which begins with the fastest.
