@@ -11,9 +11,13 @@
 //! − ea. Likewise (A − B)²/4 estimates the squared error of the samples' mean X, and (D − E)(A − B)/4 the product of both
 //! errors. The three give the blend of M and X with the least error. See docs/MATHEMATICS.md, section 8.
 
+mod moments;
+
 use std::ops::Range;
 
 use rayon::prelude::*;
+
+use moments::Moments;
 
 use super::halves::Distance;
 use super::noise::{BAND, MAP_RADIUS, bands, box_sums};
@@ -22,8 +26,6 @@ use crate::job::tiles::{TILE_SIDE, TileGrid};
 
 /// Radius in tiles over which a tile's errors are averaged to choose its blend.
 const RADIUS: usize = 2;
-/// Standard errors that the denoised image's error must exceed before samples are blended in.
-const DOUBT_SIGMAS: f64 = 1.0;
 
 /// Kurtosis of the difference of two denoised pixels. The filter averages, so their noise is near to normal.
 const KURTOSIS: f64 = 3.0;
@@ -31,9 +33,6 @@ const KURTOSIS: f64 = 3.0;
 const CORRELATED_RADIUS: i32 = 4;
 /// Number of rows from which the correlation is estimated.
 const CORRELATED_ROWS: usize = 256;
-
-/// Smallest effective number of tiles behind a standard error. With fewer, the expansion of Student's quantile fails.
-const TILES_MIN: f64 = 3.0;
 
 /// A linear RGB image, row by row.
 pub type Colors = Vec<[f32; 3]>;
@@ -47,80 +46,6 @@ pub struct DenoisedHalves<'a> {
     pub denoised: [&'a [[f32; 3]]; 2],
     /// Width of the images in pixels.
     pub width: usize,
-}
-
-/// Unbiased estimates of a pixel's squared errors, or sums of these over pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Moments {
-    /// Squared error of the denoised image.
-    denoised: f64,
-    /// The part of `denoised` that is known without noise.
-    known: f64,
-    /// Squared error of the samples' mean.
-    noisy: f64,
-    /// Product of both errors.
-    product: f64,
-    /// Variance of `denoised`, from the neighbourhood of each pixel. Too small if the noise differs between pixels, or comes
-    /// from rare samples.
-    variance: f64,
-    /// The same from whole tiles, by the differences of the halves' squares. Too large for noise with long tails, where the
-    /// error is uncertain anyway.
-    by_squares: f64,
-    /// The same from the difference of the denoised halves in each pixel, and its correlation with those around it. Needed if
-    /// the filter leaves noise that differs between pixels, of which the other two see too little.
-    by_pixels: f64,
-    /// Sum over tiles of `by_squares` squared.
-    fourth_powers: f64,
-    /// Squared difference of the denoised image and the samples' mean.
-    difference: f64,
-    /// Number of pixels.
-    pixels: f64,
-}
-
-impl std::ops::AddAssign for Moments {
-    fn add_assign(&mut self, other: Self) {
-        self.denoised += other.denoised;
-        self.known += other.known;
-        self.noisy += other.noisy;
-        self.product += other.product;
-        self.variance += other.variance;
-        self.by_squares += other.by_squares;
-        self.by_pixels += other.by_pixels;
-        self.fourth_powers += other.fourth_powers;
-        self.difference += other.difference;
-        self.pixels += other.pixels;
-    }
-}
-
-impl Moments {
-    /// Squared error of the denoised image, at least its certain part.
-    fn denoised(&self) -> f64 {
-        self.denoised.max(self.known)
-    }
-
-    /// Standard error of `denoised`.
-    fn deviation(&self) -> f64 {
-        self.variance.max(self.by_squares).max(self.by_pixels).sqrt()
-    }
-
-    /// Half width of the 95 % interval in standard errors: Student's quantile (expansion of Cornish and Fisher). The
-    /// standard error is itself an estimate, mostly from few tiles. Their number follows from the kurtosis.
-    fn band_factor(&self) -> f64 {
-        let tiles = (3.0 * self.by_squares * self.by_squares / self.fourth_powers).max(TILES_MIN);
-        let square = BAND * BAND;
-        let terms = [
-            (square + 1.0) / (4.0 * tiles),
-            (5.0 * square * square + 16.0 * square + 3.0) / (96.0 * tiles * tiles),
-        ];
-        BAND * (1.0 + terms[0] + terms[1])
-    }
-
-    /// The share in [0, 1] of the samples' mean in the blend of least error, lowered by [`DOUBT_SIGMAS`].
-    fn share(&self) -> f64 {
-        let denoised = (self.denoised - DOUBT_SIGMAS * self.deviation()).max(self.known);
-        let share = (denoised - self.product) / self.difference;
-        if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
-    }
 }
 
 /// Luminances A, B, D and E of a pixel.
@@ -450,38 +375,6 @@ mod tests {
     use crate::optics::random::{Sequence, random_pair, random_state};
 
     const SIDE: usize = 64;
-
-    #[test]
-    fn moments_add_up_each_by_itself() {
-        let fields = |moments: &Moments| {
-            [
-                moments.denoised,
-                moments.known,
-                moments.noisy,
-                moments.product,
-                moments.variance,
-                moments.by_squares,
-                moments.by_pixels,
-                moments.fourth_powers,
-                moments.difference,
-                moments.pixels,
-            ]
-        };
-        let [mut sum, other] = [1.0, 100.0].map(|unit: f64| Moments {
-            denoised: unit,
-            known: 2.0 * unit,
-            noisy: 3.0 * unit,
-            product: 4.0 * unit,
-            variance: 5.0 * unit,
-            by_squares: 6.0 * unit,
-            by_pixels: 7.0 * unit,
-            fourth_powers: 8.0 * unit,
-            difference: 9.0 * unit,
-            pixels: 10.0 * unit,
-        });
-        sum += other;
-        assert_eq!(fields(&sum), std::array::from_fn(|i| 101.0 * (i as f64 + 1.0)));
-    }
 
     /// Two halves of an image of luminance 1 with noise `noise(pixel)`, and both filtered by the mean of 3 × 3 pixels plus
     /// `bias(pixel)`.
