@@ -1,4 +1,4 @@
-//! The program: picks a face, prints the error chain, sets the exit code.
+//! The program: dispatches to the editor or the command line, prints the error chain, sets the exit code.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -10,6 +10,16 @@ use anyhow::Context as _;
 use clap::Parser;
 use glossmith::cli::Arguments;
 use glossmith::say;
+
+#[cfg(feature = "window")]
+macro_rules! pages {
+    ($($path:literal)*) => {
+        /// Pages of the manual as they were when the program was built: it needs no network and no files.
+        const PAGES: glossmith::app::book::Pages = &[$(($path, include_str!(concat!("../docs/", $path)))),*];
+    };
+}
+#[cfg(feature = "window")]
+include!("book_pages.rs");
 
 fn main() -> ExitCode {
     let mut logger = env_logger::Builder::from_env(
@@ -100,7 +110,7 @@ fn open_window(_: Arguments) -> anyhow::Result<()> {
 #[cfg(feature = "window")]
 fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
-        return glossmith::app::run(arguments.files, arguments.engine);
+        return glossmith::app::run(arguments.files, arguments.engine, PAGES);
     }
     say::line(format_args!(
         "There is no display to open a window on: rendering a quick image to glossmith.png instead."

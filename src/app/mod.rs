@@ -72,10 +72,11 @@ const MOVING: Duration = Duration::from_millis(150);
 ///
 /// # Errors
 /// Where no window can be opened.
-pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
+pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> anyhow::Result<()> {
     let options = Options {
         files,
         engine,
+        pages,
         data: settings::data_folder(),
         cache: settings::cache_folder(),
         offers_downloads: true,
@@ -118,6 +119,8 @@ pub struct Options {
     pub offers_downloads: bool,
     /// The name of the workspace instead of the one that was left.
     pub workspace: Option<String>,
+    /// Pages of the manual.
+    pub pages: book::Pages,
 }
 
 /// The editor.
@@ -254,7 +257,7 @@ impl App {
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
-            manual: Manual::default(),
+            manual: Manual::new(options.pages),
             turntable: TurntableSheet::default(),
             export: ExportSheet::default(),
             files: handlers::files::Files::new(creation.egui_ctx.clone())?,

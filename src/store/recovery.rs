@@ -222,7 +222,7 @@ fn lock_path(path: &Path) -> PathBuf {
     path.with_extension("lock")
 }
 
-/// Keeps other windows from the folder until it is dropped: between making a file and locking it there is a moment.
+/// A lock on the folder until it is dropped: it closes the gap between creating a file and locking it.
 fn guard(folder: &Path) -> Result<File, FileError> {
     let path = folder.join(GUARD);
     let lock = || {
