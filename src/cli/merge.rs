@@ -61,7 +61,7 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         ..Rendered::from(&image)
     };
     write_pictures(&arguments.outputs, rendered, &whole.document)?;
-    say!("{samples:.0} samples a pixel of {} films", arguments.films.len());
+    say!("{samples:.0} samples per pixel of {} films", arguments.films.len());
     say_written(&arguments.outputs);
     let mut answer = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),

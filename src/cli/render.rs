@@ -252,7 +252,7 @@ fn step_to_end(
         let error = progress.noise.map_or(String::new(), |noise| {
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
-        bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
+        bar.set_message(format!("{:.0} samples per pixel{error}", progress.mean_samples));
         keep_going()
     };
     let mut attendant = Attendant::new(document);
@@ -269,7 +269,7 @@ fn step_to_end(
 /// What came of a render, in a line.
 fn summary(progress: &Progress) -> String {
     let samples = format!(
-        "{:.0} samples a pixel in {:.1} s",
+        "{:.0} samples per pixel in {:.1} s",
         progress.mean_samples, progress.render_seconds
     );
     let Some(noise) = progress.noise else { return samples };

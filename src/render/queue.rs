@@ -379,7 +379,7 @@ fn picture(
     let [samples, seconds] = [ended.progress.mean_samples, ended.progress.render_seconds];
     let path = path.display();
     Ok(format!(
-        "rendered {path}: {samples:.0} samples a pixel in {seconds:.1} s"
+        "rendered {path}: {samples:.0} samples per pixel in {seconds:.1} s"
     ))
 }
 

@@ -52,7 +52,7 @@ impl App {
             output::write(&path, picture.rendered(), &picture.document).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
-                "saved {} ({size}, {} samples a pixel)",
+                "saved {} ({size}, {} samples per pixel)",
                 path.display(),
                 picture.samples_per_pixel
             ))

@@ -48,7 +48,7 @@ fn unknown(render: &RenderSettings) -> String {
 fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
     let noise = &last.noise;
     ui.label(format!(
-        "Error {} after {} and {:.0} samples a pixel",
+        "Error {} after {} and {:.0} samples per pixel",
         with_band(noise),
         duration(last.engine_seconds),
         last.samples_per_pixel,
