@@ -106,7 +106,7 @@ fn open_window(_: Arguments) -> anyhow::Result<()> {
     )
 }
 
-/// Opens the editor; without a display renders the default scene to a picture instead, and says how to go on.
+/// Opens the editor; without a display renders the default scene to an image instead, and says how to go on.
 #[cfg(feature = "window")]
 fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
