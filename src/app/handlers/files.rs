@@ -334,7 +334,7 @@ impl App {
         }
     }
 
-    /// The system's dialog was left without a file, or was never seen: which, it does not tell.
+    /// The system's dialog was left without a file, or was never seen; it does not report which.
     pub(in crate::app) fn say_unsaved(&mut self, purpose: Purpose) {
         let text = format!(
             "{}: no file was chosen, nothing is saved. If no dialog was seen: File › Type file names",

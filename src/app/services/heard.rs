@@ -1,4 +1,4 @@
-//! Failures that other libraries only write to the log and that the window has to tell: a file dialog that could not
+//! Failures that other libraries only write to the log and that the window reports: a file dialog that could not
 //! open, a clipboard that could not be reached. Neither rfd nor egui-winit returns them.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
