@@ -6,12 +6,13 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::book::{self, CONTENTS, OF_SHEETS, Pages, Section};
 use glossmith::app::layout::Pane;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use super::docs::text_of;
+use super::docs::{root, text_of};
 use super::ui::{Editor, editor, request};
 use super::ui_hands::press;
+use super::words::sources;
 
 macro_rules! pages {
     ($($path:literal)*) => {
@@ -72,6 +73,19 @@ fn the_manual_has_the_pages_of_the_book() {
     for link in links.filter(|link| *link != "PANELS.md") {
         assert!(PATHS.contains(&link), "src/book_pages.rs lacks {link}");
     }
+}
+
+/// Pages that the library embedded would compile it and all tests again at every edit of a page.
+#[test]
+fn the_program_alone_embeds_pages() {
+    let mut files = Vec::new();
+    sources(&root().join("src"), &mut files);
+    let embeds = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).expect("a source");
+        text.lines().any(|line| line.contains("include_str!") && line.contains("docs/"))
+    };
+    files.retain(embeds);
+    assert_eq!(files, [root().join("src/main.rs")]);
 }
 
 #[test]

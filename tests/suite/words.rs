@@ -151,7 +151,7 @@ fn pages_keep_to_the_style() {
 const NAMES_OF_OTHERS: [&str; 2] = ["Base Color", "Emission Color"];
 
 /// The sources below a folder.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         match path.is_dir() {
