@@ -9,7 +9,7 @@ use std::time::{Duration, SystemTime};
 use anyhow::Context as _;
 use clap::Parser;
 use glossmith::cli::Arguments;
-use glossmith::say;
+use glossmith::console;
 
 #[cfg(feature = "window")]
 macro_rules! pages {
@@ -36,11 +36,11 @@ fn main() -> ExitCode {
     #[cfg(not(feature = "window"))]
     logger.init();
     let done = run(Arguments::parse());
-    let printed = say::finish().context("standard output could not be written to");
+    let printed = console::finish().context("standard output could not be written to");
     match done.and(printed) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            say::line(format_args!("glossmith: {}", message(&error)));
+            console::message_line(format_args!("glossmith: {}", message(&error)));
             ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
@@ -112,11 +112,11 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine, PAGES);
     }
-    say::line(format_args!(
+    console::message_line(format_args!(
         "There is no display to open a window on: rendering a quick image to glossmith.png instead."
     ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
-    say::line(format_args!(
+    console::message_line(format_args!(
         "Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here."
     ));
     Ok(())

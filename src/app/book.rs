@@ -184,7 +184,10 @@ mod tests {
     fn tables_are_lists() {
         let mut head = None;
         let lines = ["| a | b | c |", "| --- | --- | --- |", "| x | `y\\|z` | |"];
-        let text: Vec<_> = lines.iter().map(|line| row(&cells(line), &mut head, TUTORIAL)).collect();
+        let text: Vec<_> = lines
+            .iter()
+            .map(|line| row(&cells(line), &mut head, TUTORIAL))
+            .collect();
         assert_eq!(text, ["", "", "- **x**; b: `y|z`"]);
     }
 }

@@ -115,7 +115,7 @@ impl Engine {
         }
     }
 
-    /// Renders for about `budget` towards a number of samples a pixel for each tile.
+    /// Renders for about `budget` towards a number of samples per pixel for each tile.
     pub(super) fn step(&mut self, budget: Duration, goals: &[u32], precision: Precision) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {

@@ -82,7 +82,8 @@ fn the_program_alone_embeds_pages() {
     sources(&root().join("src"), &mut files);
     let embeds = |file: &PathBuf| {
         let text = std::fs::read_to_string(file).expect("a source");
-        text.lines().any(|line| line.contains("include_str!") && line.contains("docs/"))
+        text.lines()
+            .any(|line| line.contains("include_str!") && line.contains("docs/"))
     };
     files.retain(embeds);
     assert_eq!(files, [root().join("src/main.rs")]);
@@ -92,7 +93,10 @@ fn the_program_alone_embeds_pages() {
 fn links_of_the_manual_lead_to_pages_and_headings() {
     let mut count = 0;
     for page in PATHS {
-        let text: String = book::sections(manual_pages(), page).into_iter().map(|section| section.text).collect();
+        let text: String = book::sections(manual_pages(), page)
+            .into_iter()
+            .map(|section| section.text)
+            .collect();
         for address in text.split("](book:").skip(1).filter_map(|rest| rest.split(')').next()) {
             section(address);
             count += 1;

@@ -25,7 +25,16 @@ const LEAST_WIDTH: u32 = 640;
 const NOISE_WIDTH: u32 = 480;
 const HERO_WIDTH: u32 = 1600;
 /// Drawings, which have no document.
-const DRAWN: [&str; 8] = ["scatter-", "race", "materialx-examples", "fig1-", "fig2", "fig3", "fig9", "fig10"];
+const DRAWN: [&str; 8] = [
+    "scatter-",
+    "race",
+    "materialx-examples",
+    "fig1-",
+    "fig2",
+    "fig3",
+    "fig9",
+    "fig10",
+];
 
 fn pictures() -> PathBuf {
     root().join("docs/pictures")

@@ -18,7 +18,7 @@ impl App {
     /// Hands the image over as soon as it is whole.
     pub(in crate::app) fn want_picture(&mut self, to: Destination) {
         if self.worker.snapshot().picture.is_none() {
-            self.say(Level::Warning, "there is no image yet");
+            self.report(Level::Warning, "there is no image yet");
         } else {
             self.files.wanted_pictures.push(to);
         }
