@@ -310,8 +310,8 @@ impl Session {
         self.change_over()?;
         let outcome = self.render(budget);
         self.is_stuck = outcome.is_err();
-        if let Some([software, processor]) = self.rates() {
-            calibration::compare_rates(software, processor);
+        if let Some([software, cpu]) = self.rates() {
+            calibration::compare_rates(software, cpu);
         }
         outcome
     }
