@@ -227,15 +227,10 @@ fn pareto_plot(race: &Race) -> PointPlot {
             is_logarithmic: true,
         },
         y: Axis {
-            label: format!("Bias (%); values under {} are not significant", small_number(least)),
+            label: format!("Bias (%); values under {least:.2} are not significant"),
             range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),
             is_logarithmic: true,
         },
         points,
     }
-}
-
-/// A small number for a label.
-fn small_number(value: f64) -> String {
-    format!("{value:.2e}").replace("e0", "")
 }
