@@ -53,7 +53,7 @@ docs: ## Build the book into target/book (mdBook, without a network)
 bench: ## Measure what docs/PERFORMANCE.md quotes
 	cargo bench $(ARGS)
 
-pictures: ## Render the images of the documentation again
+pictures: ## Make the images of the documentation again (GLOSSMITH=PROGRAM takes a build that is there)
 	@scripts/setup run
 	scripts/pictures
 

@@ -500,7 +500,7 @@ fn relative_error(image: &Image, reference: &Film) -> f64 {
 /// Seconds from an edit of the material to the first full picture below [`CLEAN`], in the worker behind the window.
 fn edits(session: &mut Session, scenes: &[(&str, Document)], is_quick: bool) -> Result<(), Failure> {
     let (side, reference_samples) = if is_quick { (128, 64) } else { (512, 256) };
-    println!("## From an edit to a relative mean squared error of {CLEAN}, {side} x {side}, s (samples a pixel)");
+    println!("## From an edit to a relative mean squared error of {CLEAN}, {side} x {side}, s (samples per pixel)");
     println!("| scene | without | fast | high | first picture denoised (high): s, error |");
     for (name, document) in scenes {
         let mut document = document.clone();

@@ -229,7 +229,7 @@ fn stopping(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
         "## True error of renders that stop at {STOP_NOISE}, {0} x {0}",
         extent.side
     );
-    println!("| scene | renders | samples a pixel | seconds each | least true error | most |");
+    println!("| scene | renders | samples per pixel | seconds each | least true error | most |");
     println!("| --- | --- | --- | --- | --- | --- |");
     for (name, document) in scenes {
         let mut document = document.clone();

@@ -169,7 +169,7 @@ struct ToGoal<'a> {
     case: &'a Scene,
     size: u32,
     is_adaptive: bool,
-    /// Samples a pixel, or one over the square of the noise: the error is about inverse to it.
+    /// Samples per pixel, or one over the square of the noise: the error is about inverse to it.
     effort: f64,
     renders: Vec<Render>,
 }
@@ -218,7 +218,7 @@ impl<'a> ToGoal<'a> {
     }
 }
 
-/// A render with so many samples a pixel.
+/// A render with so many samples per pixel.
 fn glossmith(folder: &Path, case: &Scene, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
     let mut document = case.document(folder, size);
     document.render.samples = samples;

@@ -1,4 +1,4 @@
-//! Which of the processor's instruction sets the engine on it computes with.
+//! The instruction set that the CPU engine computes with.
 
 use std::sync::OnceLock;
 
@@ -28,7 +28,7 @@ static ASKED_FOR: OnceLock<Level> = OnceLock::new();
 pub struct Missing(pub Instructions);
 
 impl Instructions {
-    /// The instruction set itself; `None` where the processor does not have it.
+    /// The instruction set itself; `None` if the CPU does not have it.
     pub fn level(self) -> Option<Level> {
         let best = best();
         match self {
@@ -48,7 +48,7 @@ impl Instructions {
     /// change nothing.
     ///
     /// # Errors
-    /// Where the processor does not have them; the message names those that it has.
+    /// If the CPU does not have them; the message names those that it has.
     pub fn force(self) -> Result<(), Missing> {
         let level = self.level().ok_or(Missing(self))?;
         ASKED_FOR.get_or_init(|| level);

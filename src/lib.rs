@@ -9,7 +9,7 @@
 pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, scene};
 pub use glossmith_import as import;
 
-pub mod say;
+pub mod console;
 
 pub mod plot;
 

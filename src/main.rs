@@ -1,4 +1,4 @@
-//! The program: picks a face, prints the error chain, sets the exit code.
+//! The program: dispatches to the editor or the command line, prints the error chain, sets the exit code.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -9,7 +9,17 @@ use std::time::{Duration, SystemTime};
 use anyhow::Context as _;
 use clap::Parser;
 use glossmith::cli::Arguments;
-use glossmith::say;
+use glossmith::console;
+
+#[cfg(feature = "window")]
+macro_rules! pages {
+    ($($path:literal)*) => {
+        /// Pages of the manual as they were when the program was built: it needs no network and no files.
+        const PAGES: glossmith::app::book::Pages = &[$(($path, include_str!(concat!("../docs/", $path)))),*];
+    };
+}
+#[cfg(feature = "window")]
+include!("book_pages.rs");
 
 fn main() -> ExitCode {
     let mut logger = env_logger::Builder::from_env(
@@ -26,11 +36,11 @@ fn main() -> ExitCode {
     #[cfg(not(feature = "window"))]
     logger.init();
     let done = run(Arguments::parse());
-    let printed = say::finish().context("standard output could not be written to");
+    let printed = console::finish().context("standard output could not be written to");
     match done.and(printed) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            say::line(format_args!("glossmith: {}", message(&error)));
+            console::message_line(format_args!("glossmith: {}", message(&error)));
             ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
@@ -96,17 +106,17 @@ fn open_window(_: Arguments) -> anyhow::Result<()> {
     )
 }
 
-/// Opens the editor; without a display renders the default scene to a picture instead, and says how to go on.
+/// Opens the editor; without a display renders the default scene to an image instead, and says how to go on.
 #[cfg(feature = "window")]
 fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
-        return glossmith::app::run(arguments.files, arguments.engine);
+        return glossmith::app::run(arguments.files, arguments.engine, PAGES);
     }
-    say::line(format_args!(
+    console::message_line(format_args!(
         "There is no display to open a window on: rendering a quick image to glossmith.png instead."
     ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
-    say::line(format_args!(
+    console::message_line(format_args!(
         "Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here."
     ));
     Ok(())

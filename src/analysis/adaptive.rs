@@ -141,7 +141,7 @@ mod tests {
 
     const SIDE: u32 = 48;
 
-    /// A film of 16 samples a pixel, each at the cost of `rays`, whose standard deviation a sample is `sigma` of its tile.
+    /// A film of 16 samples per pixel, each at the cost of `rays`, whose standard deviation a sample is `sigma` of its tile.
     fn film(sigma: &dyn Fn(usize) -> f64, rays: &dyn Fn(usize) -> f64) -> Film {
         let grid = TileGrid {
             width: SIDE,

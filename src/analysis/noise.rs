@@ -3,7 +3,7 @@
 //! The samples of a pixel come in two independent halves, for every sequence ([`crate::optics::random::path_state`]). With
 //! the errors a and b of the halves' means, ((a − b)/2)² estimates the pixel's squared error ((a + b)/2)² without bias: they
 //! differ by −ab, of expectation 0. Summed over the pixels this is precise, and the spread of the sum of ab gives the
-//! interval. The spread of the samples, as if they were independent, is the cross-check: it agrees for independent numbers
+//! interval. The spread of the samples, as if they were independent, is the cross-check: it agrees for uniform random numbers
 //! and overestimates the error of the Sobol sequence. See docs/MATHEMATICS.md, section 8.
 
 use std::ops::Range;
@@ -90,7 +90,7 @@ struct Band<'a> {
     around: Vec<[f64; 2]>,
     spread: Vec<f64>,
     /// Gain of the sequence around each pixel: variance by the half differences over that by the samples' spread. 1 for
-    /// independent numbers, below for better sequences, 0 without spread.
+    /// uniform random numbers, below for better sequences, 0 without spread.
     gains: Vec<f64>,
 }
 

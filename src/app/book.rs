@@ -1,52 +1,8 @@
-//! The pages of the book in `docs/`, as they were when the program was built: the manual needs no network and no files.
+//! The pages of the book in `docs/` as the manual shows them.
 
-macro_rules! pages {
-    ($($path:literal)*) => {
-        /// Pages of the book: path in `docs/`, and text.
-        pub const PAGES: &[(&str, &str)] = &[$(($path, include_str!(concat!("../../docs/", $path)))),*];
-    };
-}
-
-pages! {
-    "SUMMARY.md"
-    "README.md"
-    "install.md"
-    "tutorials/first-material.md"
-    "tutorials/your-model.md"
-    "tutorials/geometric-lobe.md"
-    "tutorials/accuracy.md"
-    "tutorials/automate.md"
-    "how-to/textures.md"
-    "how-to/glass.md"
-    "how-to/lights.md"
-    "how-to/ground.md"
-    "how-to/turntable.md"
-    "how-to/match.md"
-    "how-to/compare.md"
-    "how-to/export.md"
-    "how-to/farm.md"
-    "how-to/explain.md"
-    "how-to/profile.md"
-    "how-to/benchmark.md"
-    "reference/window.md"
-    "reference/render.md"
-    "reference/commands.md"
-    "reference/materials.md"
-    "reference/settings.md"
-    "reference/effects.md"
-    "reference/output.md"
-    "reference/files.md"
-    "FORMATS.md"
-    "CONVENTIONS.md"
-    "MATHEMATICS.md"
-    "mathematics/lobe.md"
-    "mathematics/layers.md"
-    "mathematics/estimation.md"
-    "STABILITY.md"
-    "PERFORMANCE.md"
-    "FIGURES.md"
-    "results/README.md"
-}
+/// Pages of the book: path in `docs/`, and text. `src/main.rs` embeds them, so that an edit of a page compiles the
+/// program alone.
+pub type Pages = &'static [(&'static str, &'static str)];
 
 /// The address of the list of all pages.
 pub const CONTENTS: &str = "SUMMARY.md";
@@ -75,6 +31,13 @@ pub struct Section {
     pub text: String,
 }
 
+/// Where a link stands: the pages of the book, and the folder of its own page.
+#[derive(Clone, Copy)]
+struct Origin<'a> {
+    pages: Pages,
+    folder: &'a str,
+}
+
 /// The heading's anchor as GitHub and mdBook make it.
 pub fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase().replace(' ', "-");
@@ -89,11 +52,14 @@ pub fn parts(address: &str) -> (&str, &str) {
 }
 
 /// The sections of a page; none if the book has no such page.
-pub fn sections(path: &str) -> Vec<Section> {
-    let Some((_, page)) = PAGES.iter().find(|(name, _)| *name == path) else {
+pub fn sections(pages: Pages, path: &str) -> Vec<Section> {
+    let Some((_, page)) = pages.iter().find(|(name, _)| *name == path) else {
         return Vec::new();
     };
-    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let from = Origin {
+        pages,
+        folder: path.rsplit_once('/').map_or("", |(folder, _)| folder),
+    };
     let mut sections: Vec<Section> = Vec::new();
     let mut is_code = false;
     let mut head = None;
@@ -115,11 +81,11 @@ pub fn sections(path: &str) -> Vec<Section> {
         if is_code {
             section.text += line;
         } else if line.starts_with('|') {
-            section.text += &row(&cells(line), &mut head, folder);
+            section.text += &row(&cells(line), &mut head, from);
         } else {
             head = None;
             if !line.starts_with("<!--") {
-                section.text += &linked(line, folder);
+                section.text += &linked(line, from);
             }
         }
         section.text.push('\n');
@@ -134,12 +100,12 @@ fn cells(line: &str) -> Vec<String> {
 }
 
 /// A line of a table as an item of a list: it wraps in a narrow window. The first line of a table becomes its head.
-fn row(cells: &[String], head: &mut Option<Vec<String>>, folder: &str) -> String {
+fn row(cells: &[String], head: &mut Option<Vec<String>>, from: Origin<'_>) -> String {
     let Some(head) = head else {
         *head = Some(cells.to_vec());
         return String::new();
     };
-    let mut texts = cells.iter().map(|cell| linked(cell, folder));
+    let mut texts = cells.iter().map(|cell| linked(cell, from));
     let first = texts.next().unwrap_or_default();
     if first.trim_start_matches([':', '-']).is_empty() {
         return String::new();
@@ -159,7 +125,7 @@ fn row(cells: &[String], head: &mut Option<Vec<String>>, folder: &str) -> String
 }
 
 /// The line with links that [`SCHEME`] marks where they lead to a page of the book; images by their descriptions.
-fn linked(line: &str, folder: &str) -> String {
+fn linked(line: &str, from: Origin<'_>) -> String {
     let mut text = String::new();
     let mut rest = line;
     while let Some((before, after)) = rest.split_once("](") {
@@ -172,16 +138,16 @@ fn linked(line: &str, folder: &str) -> String {
                 text += &before[..image];
                 text += &format!("(image: {})", &before[image + 2..]);
             }
-            _ => text += &format!("{before}]({})", resolved(target, folder)),
+            _ => text += &format!("{before}]({})", resolved(target, from)),
         }
     }
     text + rest
 }
 
 /// A link's target: with [`SCHEME`] and from `docs/` on where it is a page of the book.
-fn resolved(target: &str, folder: &str) -> String {
+fn resolved(target: &str, from: Origin<'_>) -> String {
     let (file, anchor) = parts(target);
-    let mut path: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
+    let mut path: Vec<&str> = from.folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in file.split('/') {
         match part {
             ".." => drop(path.pop()),
@@ -189,7 +155,7 @@ fn resolved(target: &str, folder: &str) -> String {
         }
     }
     let path = path.join("/");
-    let is_page = PAGES.iter().any(|(name, _)| *name == path);
+    let is_page = from.pages.iter().any(|(name, _)| *name == path);
     match (is_page, anchor) {
         (true, "") => format!("{SCHEME}{path}"),
         (true, anchor) => format!("{SCHEME}{path}#{anchor}"),
@@ -201,19 +167,27 @@ fn resolved(target: &str, folder: &str) -> String {
 mod tests {
     use super::*;
 
+    const TUTORIAL: Origin<'static> = Origin {
+        pages: &[("PERFORMANCE.md", "")],
+        folder: "tutorials",
+    };
+
     #[test]
     fn links_lead_from_page_to_page() {
         let line =
             "See [how](../PERFORMANCE.md#estimation), ![a pot](../pictures/pot.png) and [that](https://example.org).";
         let expected = "See [how](book:PERFORMANCE.md#estimation), (image: a pot) and [that](https://example.org).";
-        assert_eq!(linked(line, "tutorials"), expected);
+        assert_eq!(linked(line, TUTORIAL), expected);
     }
 
     #[test]
     fn tables_are_lists() {
         let mut head = None;
         let lines = ["| a | b | c |", "| --- | --- | --- |", "| x | `y\\|z` | |"];
-        let text: Vec<_> = lines.iter().map(|line| row(&cells(line), &mut head, "")).collect();
+        let text: Vec<_> = lines
+            .iter()
+            .map(|line| row(&cells(line), &mut head, TUTORIAL))
+            .collect();
         assert_eq!(text, ["", "", "- **x**; b: `y|z`"]);
     }
 }

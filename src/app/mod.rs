@@ -38,7 +38,7 @@ use panels::Panels;
 use services::autosave::{self, Autosave, Leftover};
 pub use services::crash::report_panics;
 use services::edits::Edits;
-pub use services::heard::listen;
+pub use services::log_failures::listen;
 use services::recent::Recent;
 pub use services::{compare, library, snapshots};
 use services::{environments, messages};
@@ -72,10 +72,11 @@ const MOVING: Duration = Duration::from_millis(150);
 ///
 /// # Errors
 /// Where no window can be opened.
-pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
+pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> anyhow::Result<()> {
     let options = Options {
         files,
         engine,
+        pages,
         data: settings::data_folder(),
         cache: settings::cache_folder(),
         offers_downloads: true,
@@ -118,6 +119,8 @@ pub struct Options {
     pub offers_downloads: bool,
     /// The name of the workspace instead of the one that was left.
     pub workspace: Option<String>,
+    /// Pages of the manual.
+    pub pages: book::Pages,
 }
 
 /// The editor.
@@ -254,7 +257,7 @@ impl App {
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
-            manual: Manual::default(),
+            manual: Manual::new(options.pages),
             turntable: TurntableSheet::default(),
             export: ExportSheet::default(),
             files: handlers::files::Files::new(creation.egui_ctx.clone())?,
@@ -322,7 +325,7 @@ impl App {
         self.shared.messages.iter().map(|entry| entry.text.clone()).collect()
     }
 
-    fn say(&mut self, level: Level, text: impl Into<String>) {
+    fn report(&mut self, level: Level, text: impl Into<String>) {
         messages::add(&mut self.shared.messages, level, text.into());
     }
 
@@ -338,12 +341,12 @@ impl App {
             let is_start = self.awaited > 0 && self.edits.is_saved(&self.document);
             match event {
                 Event::Message(level, text) => {
-                    self.say(level, text);
+                    self.report(level, text);
                     continue;
                 }
                 Event::ModelOpened(source, options, model) => {
                     if let ModelSource::File(path) = &source {
-                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.report(Level::Info, format!("opened {}", path.display()));
                         self.shared.recent.add(path);
                     }
                     let report = import_report(&model, self.shared.import_lobe);
@@ -354,7 +357,7 @@ impl App {
                 }
                 Event::EnvironmentOpened(source, _) => {
                     if let EnvironmentSource::File(path) = &source {
-                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.report(Level::Info, format!("opened {}", path.display()));
                         self.shared.recent.add(path);
                     }
                     self.document.lighting.environment = source;
@@ -373,7 +376,7 @@ impl App {
                     self.take_back_cancelled(ctx);
                     continue;
                 }
-                Event::OpenFailed(_, level, why) => self.say(level, why),
+                Event::OpenFailed(_, level, why) => self.report(level, why),
             }
             self.awaited = self.awaited.saturating_sub(1);
         }
@@ -462,7 +465,7 @@ impl App {
         );
         match self.dialogs.show(ui, self.shared.recent.paths()) {
             Some((purpose, Some(path))) => self.chosen(purpose, path),
-            Some((purpose, None)) if purpose.is_saving() => self.say_unsaved(purpose),
+            Some((purpose, None)) if purpose.is_saving() => self.report_unsaved(purpose),
             _ => {}
         }
         self.show_turntable(ui.ctx());
@@ -484,7 +487,7 @@ impl App {
         is_asked || self.sheet != Sheet::None
     }
 
-    fn put_aside(&mut self, ctx: &egui::Context) {
+    fn save_for_recovery(&mut self, ctx: &egui::Context) {
         if let Some(engine) = &self.worker.snapshot().engine {
             self.autosave.witness.see_engine(&engine.to_string());
         }
@@ -517,7 +520,7 @@ impl eframe::App for App {
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
-        self.tell_of_clipboard();
+        self.report_clipboard();
         self.watch_files();
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
@@ -549,7 +552,7 @@ impl eframe::App for App {
         self.hand_over_pictures(&ctx);
         self.watch_copies(&ctx);
         self.hold_thumbnails(&ctx);
-        self.put_aside(&ctx);
+        self.save_for_recovery(&ctx);
         self.guard_close(&ctx);
         self.set_title(&ctx);
     }

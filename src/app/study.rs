@@ -17,14 +17,14 @@ use crate::render::background::Background;
 use crate::render::study::{StudyError, StudyProgress, Watch};
 
 /// How often what is left is updated.
-const TOLD_EVERY: Duration = Duration::from_millis(500);
+const REPORT_INTERVAL: Duration = Duration::from_millis(500);
 
 /// What is to be done.
 type Work<R> = Box<dyn FnOnce(&mut Watch<'_>) -> Result<R, StudyError> + Send>;
 
 /// How a study stands.
 #[derive(Clone)]
-enum Standing<R> {
+enum Status<R> {
     Running(StudyProgress),
     Done(Arc<R>),
     Stopped,
@@ -33,7 +33,7 @@ enum Standing<R> {
 
 /// A study and its thread.
 pub(super) struct StudyWorker<R> {
-    worker: Option<Background<Work<R>, Standing<R>>>,
+    worker: Option<Background<Work<R>, Status<R>>>,
     stop: Arc<AtomicBool>,
     /// When it was started, where its end has not been noticed.
     begun: Option<Instant>,
@@ -132,11 +132,11 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let standing = self.worker.as_ref().and_then(Background::latest);
         widgets::comes_and_goes(ui, |ui| match standing {
             _ if self.is_stopped => widgets::note(ui, "Stopped."),
-            Some(Standing::Running(progress)) if is_busy => self.progress(ui, &progress),
-            Some(Standing::Failed(why)) => {
+            Some(Status::Running(progress)) if is_busy => self.progress(ui, &progress),
+            Some(Status::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
             }
-            Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
+            Some(Status::Stopped) => widgets::note(ui, "Stopped."),
             _ => {}
         });
         widgets::comes_and_goes(ui, |ui| {
@@ -161,7 +161,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             "You can go on editing: this measures the scene as it was at the start. Until it ends the viewport shows \
              edits with one sample.",
         );
-        ui.ctx().request_repaint_after(TOLD_EVERY);
+        ui.ctx().request_repaint_after(REPORT_INTERVAL);
     }
 
     /// Whether the document is another one by now than what was asked about.
@@ -180,15 +180,15 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         self.is_stopped = false;
         if self.worker.is_none() {
             let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
-            let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Standing<R>>| {
+            let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Status<R>>| {
                 let mut watch = |progress| {
-                    desk.publish(Standing::Running(progress));
+                    desk.publish(Status::Running(progress));
                     !stop.load(Ordering::Relaxed) && !desk.is_superseded()
                 };
                 desk.publish(match work(&mut watch) {
-                    Ok(result) => Standing::Done(Arc::new(result)),
-                    Err(StudyError::Stopped) => Standing::Stopped,
-                    Err(error) => Standing::Failed(error.to_string()),
+                    Ok(result) => Status::Done(Arc::new(result)),
+                    Err(StudyError::Stopped) => Status::Stopped,
+                    Err(error) => Status::Failed(error.to_string()),
                 });
             };
             // Without a thread the button does nothing; the log says why.
@@ -205,7 +205,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     /// What was found last.
     pub(super) fn found(&self) -> Option<Arc<R>> {
         match self.worker.as_ref()?.latest()? {
-            Standing::Done(found) => Some(found),
+            Status::Done(found) => Some(found),
             _ => None,
         }
     }

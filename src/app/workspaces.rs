@@ -37,7 +37,7 @@ pub(super) struct Workspaces {
 impl Workspaces {
     /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
     /// name, which earlier versions kept.
-    pub(super) fn new(kept: Kept, former: Option<Tree<Pane>>, wished: Option<String>) -> (Self, Tree<Pane>) {
+    pub(super) fn new(kept: Kept, former: Option<Tree<Pane>>, requested: Option<String>) -> (Self, Tree<Pane>) {
         let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
         let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
         for (name, layout) in kept.all.into_iter().filter_map(whole) {
@@ -48,7 +48,7 @@ impl Workspaces {
             put(&mut all, FORMER, former);
             current = FORMER.to_owned();
         }
-        let current = wished.unwrap_or(current);
+        let current = requested.unwrap_or(current);
         let shown = all
             .iter()
             .find(|workspace| workspace.name == current)

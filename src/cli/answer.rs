@@ -11,7 +11,7 @@ use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
 
-use crate::say::put;
+use crate::console::output;
 use crate::scene::path_text::path_text;
 use crate::store::replace::save_atomically;
 
@@ -139,7 +139,7 @@ impl Lines {
                 written.with_context(|| format!("{to}: the answer could not be written; is there room?"))
             }
             _ => {
-                put!("{text}");
+                output!("{text}");
                 Ok(())
             }
         }

@@ -6,11 +6,11 @@ use clap::Args;
 
 use super::answer::Answer;
 use super::study::Bar;
+use crate::console::output;
 use crate::render::EngineChoice;
 use crate::render::study::benchmark::compare::compare;
 use crate::render::study::benchmark::report::Report;
 use crate::render::study::benchmark::{BenchmarkOptions, SECONDS, benchmark, kernel::compile_on};
-use crate::say::put;
 
 /// Arguments of `glossmith benchmark`.
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ pub struct BenchmarkArguments {
 pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
     arguments.answer.check_writable()?;
     if let Some(adapter) = &arguments.compile_on {
-        put!("{}", compile_on(adapter)?.as_secs_f64());
+        output!("{}", compile_on(adapter)?.as_secs_f64());
         return Ok(());
     }
     let (text, is_written) = match &arguments.compare {
@@ -59,7 +59,7 @@ pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
         }
     };
     if arguments.answer.has_words() {
-        put!("{}", text.trim_end());
+        output!("{}", text.trim_end());
     }
     is_written
 }

@@ -8,10 +8,10 @@ use clap::Args;
 
 use super::answer::{Destination, write_json};
 use super::parse::check_writable;
+use crate::console::{message, output};
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 use crate::render::hard::{self, HardOptions, HardRow};
 use crate::render::{EngineChoice, EngineInfo, EngineKind};
-use crate::say::{put, say};
 use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith check`.
@@ -62,7 +62,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         thorough: arguments.thorough,
     };
     let never = AtomicBool::new(false);
-    let checks = run_checks(options, &never, |group| say!("checking {group} …"))?.unwrap_or_default();
+    let checks = run_checks(options, &never, |group| message!("checking {group} …"))?.unwrap_or_default();
     if arguments.has_words() {
         print_table(&checks, arguments.verbose);
     }
@@ -97,7 +97,7 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
             thorough: arguments.thorough,
             only: arguments.only.clone(),
         };
-        hard::run(&options, |name| say!("{name} …"))
+        hard::run(&options, |name| message!("{name} …"))
     };
     let (engine, rows) = run_on(arguments.engine)?;
     if arguments.has_words() {
@@ -116,7 +116,7 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
 
 /// A line a case, and more of those that fail (or of every one).
 fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
-    put!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
+    output!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
     for row in rows {
         let HardRow {
             case, check, seconds, ..
@@ -125,21 +125,21 @@ fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
         let Check {
             measure, value, limit, ..
         } = check;
-        put!(
+        output!(
             "{:8} {:34} {seconds:>7.2}  {verdict}: {measure} {value:.2e}, limit {limit:.0e}; naive: {}",
             case.group,
             case.name,
             (case.naive)()
         );
         if verbose || !check.passed {
-            put!("         {}; {}; {}", case.danger, case.made, case.must);
+            output!("         {}; {}; {}", case.danger, case.made, case.must);
         }
     }
 }
 
 /// A line a group, and a line for each check that failed (or every one).
 fn print_table(checks: &[Check], verbose: bool) {
-    put!("{:12} {:>7} {:>7}  worst", "group", "passed", "failed");
+    output!("{:12} {:>7} {:>7}  worst", "group", "passed", "failed");
     for of_group in summaries(checks) {
         let GroupSummary {
             group,
@@ -147,10 +147,10 @@ fn print_table(checks: &[Check], verbose: bool) {
             failed,
             worst,
         } = of_group;
-        put!("{group:12} {passed:>7} {failed:>7}  {worst}");
+        output!("{group:12} {passed:>7} {failed:>7}  {worst}");
     }
     for check in checks.iter().filter(|check| verbose || !check.passed) {
         let verdict = if check.passed { "  ok  " } else { "FAILED" };
-        put!("{verdict} {}: {check}", check.group);
+        output!("{verdict} {}: {check}", check.group);
     }
 }

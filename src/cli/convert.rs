@@ -8,10 +8,10 @@ use clap::Args;
 use super::answer::{Destination, write_json};
 use super::names;
 use super::parse::check_writable;
+use crate::console::message;
 use crate::document::ImportLobe;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
-use crate::say::say;
 use crate::scene::path_text::path_text;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
@@ -95,12 +95,12 @@ pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
     for (input, target) in inputs.iter().zip(&targets) {
         match convert(input, target, arguments) {
             Ok(report) => {
-                say!("{report}");
+                message!("{report}");
                 reports.push(report);
             }
             Err(error) if inputs.len() == 1 => return Err(error),
             Err(error) => {
-                say!("{error:#}");
+                message!("{error:#}");
                 failed += 1;
             }
         }
@@ -182,7 +182,7 @@ fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
         };
         let picture = path.with_file_name(format!("{stem}-{of_file}{number}.png"));
         save_by(&picture, |file| write_picture_sheet(file, &sheet))?;
-        say!("wrote {}", picture.display());
+        message!("wrote {}", picture.display());
     }
     Ok(())
 }

@@ -6,9 +6,9 @@ use clap::Args;
 use super::answer::Answer;
 use super::parse;
 use super::scene::SceneArguments;
+use crate::console;
 use crate::render::explain::{PathAccount, explain};
 use crate::render::{EngineChoice, Session};
-use crate::say;
 
 /// Arguments of `glossmith explain`: a pixel, a sample, and those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]
@@ -33,7 +33,7 @@ pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
     arguments.answer.check_writable()?;
     let account = account(arguments)?;
     if arguments.answer.has_words() {
-        say::print(format_args!("{account}"));
+        console::print(format_args!("{account}"));
     }
     arguments.answer.write(&account)
 }

@@ -11,13 +11,13 @@ use super::lobe_spec::lobe_model;
 use super::names;
 use super::parse::check_writable;
 use crate::analysis::fit::Merl;
+use crate::console::{message, output};
 use crate::document::MaterialSettings;
 use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;
 use crate::plot::lobe_view::LobeView;
-use crate::say::{put, say};
 use crate::store::save_material;
 
 /// View angles where none is given.
@@ -93,7 +93,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     };
     found.apply(&mut material);
     save_material(&arguments.output, &material)?;
-    say!("wrote {}", arguments.output.display());
+    message!("wrote {}", arguments.output.display());
     if let Some(path) = &arguments.plot {
         write_view(path, &LobeView::Lines(comparison(&target, &found)?))?;
     }
@@ -126,9 +126,9 @@ fn json(found: &LookMatch, arguments: &FitArguments) -> serde_json::Value {
 
 /// The residuals and what was found, a line each.
 fn print_match(found: &LookMatch) {
-    put!("target   {}, view angle {}°", found.target, found.view_angle_deg);
+    output!("target   {}, view angle {}°", found.target, found.view_angle_deg);
     let line = |word: &str, candidate: &Candidate| {
-        put!(
+        output!(
             "{word:<8} TV {:.4}  {}",
             candidate.total_variation,
             candidate.model.name
@@ -137,18 +137,18 @@ fn print_match(found: &LookMatch) {
     line("before", &found.before);
     line("nearest", &found.nearest);
     line("after", &found.after);
-    put!("R        {}", found.after.model.roughness);
+    output!("R        {}", found.after.model.roughness);
     if let Some(curve) = &found.curve {
         let points: Vec<String> = curve
             .points()
             .iter()
             .map(|[xi, distance]| format!("{xi}:{distance}"))
             .collect();
-        put!("curve    {}", points.join(","));
+        output!("curve    {}", points.join(","));
     }
     if let Some(colors) = &found.colors {
         let text = |color: Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");
-        put!("base     {}", text(colors.base));
-        put!("specular {}", text(colors.highlight));
+        output!("base     {}", text(colors.base));
+        output!("specular {}", text(colors.highlight));
     }
 }

@@ -9,12 +9,12 @@ use super::answer::{Answer, file_names};
 use super::lobe_spec::lobe_model;
 use super::names;
 use super::parse::check_writable;
+use crate::console::message;
 use crate::document::match_look::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
 use crate::plot::lobe_view_file;
-use crate::say::say;
 use crate::store::exchange::{self, ReadOptions};
 use crate::store::replace::save_atomically;
 
@@ -97,7 +97,7 @@ pub(super) fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
         lobe_view_file(path, view)?
     };
     save_atomically(path, &contents)?;
-    say!("wrote {}", path.display());
+    message!("wrote {}", path.display());
     Ok(())
 }
 

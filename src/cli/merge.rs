@@ -6,13 +6,13 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::{Answer, file_names};
-use super::render::{add_denoised, check_takes, say_written, write_pictures};
+use super::render::{add_denoised, check_takes, report_written, write_pictures};
 use super::{names, parse};
+use crate::console::message;
 use crate::document::Denoise;
 use crate::render::denoise::{Denoised, Denoiser};
 use crate::render::output::{Layers, Rendered};
 use crate::render::sums::KeptFilm;
-use crate::say::say;
 
 /// Arguments of `glossmith merge`.
 #[derive(Debug, Args)]
@@ -61,8 +61,8 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         ..Rendered::from(&image)
     };
     write_pictures(&arguments.outputs, rendered, &whole.document)?;
-    say!("{samples:.0} samples a pixel of {} films", arguments.films.len());
-    say_written(&arguments.outputs);
+    message!("{samples:.0} samples per pixel of {} films", arguments.films.len());
+    report_written(&arguments.outputs);
     let mut answer = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "films": arguments.films,

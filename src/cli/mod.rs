@@ -104,11 +104,11 @@ subcommands! {
     Render(Box<render::RenderArguments>) => render::run;
     /// Show which effects a scene calls for, and why.
     Plan(Box<plan::PlanArguments>) => plan::run;
-    /// Show everything that made one sample of one pixel.
+    /// Explain every event of one sample of one pixel.
     Explain(Box<explain::ExplainArguments>) => explain::run;
     /// Render a turntable as a video or numbered images.
     Turntable(Box<turntable::TurntableArguments>) => turntable::run;
-    /// Prove on this machine that the renderer is right.
+    /// Verify the renderer on this machine.
     Check(check::CheckArguments) => check::run;
     /// Measure every engine and adapter of this machine in three minutes, or compare two such measurements.
     Benchmark(benchmark::BenchmarkArguments) => benchmark::run;
@@ -116,13 +116,13 @@ subcommands! {
     Scatter(scatter::ScatterArguments) => scatter::run;
     /// Match the look of another lobe or of a measured material.
     Fit(fit::FitArguments) => fit::run;
-    /// Take materials to other programs and back, and tell what is lost.
+    /// Convert materials to other programs and back, with a loss report.
     Convert(convert::ConvertArguments) => convert::run;
     /// Render all combinations of models, materials, environments, cameras and settings.
     Batch(batch::BatchArguments) => batch::run;
-    /// Merge films of the same image, rendered apart.
+    /// Merge films of one image that were rendered separately.
     Merge(merge::MergeArguments) => merge::run;
-    /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
+    /// Plot lobes: slices, surfaces, densities, albedo, reciprocity, losses.
     Lobe(lobe::LobeArguments) => lobe::run;
     /// Measure what accuracy costs in time.
     Study(study::StudyArguments) => study::run;

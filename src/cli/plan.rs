@@ -5,10 +5,10 @@ use clap::Args;
 
 use super::answer::Answer;
 use super::scene::SceneArguments;
+use crate::console::output;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::plan::Plan;
 use crate::render::{EngineChoice, Session};
-use crate::say::put;
 
 /// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]
@@ -39,9 +39,9 @@ fn print(plan: &Plan) {
     let width = plan.table().map(|(effect, _)| effect.name().len()).max().unwrap_or(0);
     for (effect, decision) in plan.table() {
         let word = if decision.is_on { "on" } else { "off" };
-        put!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
+        output!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
     }
-    put!(
+    output!(
         "{} of {} features active; {} of {} compile-time switches off or fixed",
         plan.effects().len(),
         plan.table().count(),

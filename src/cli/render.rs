@@ -13,12 +13,12 @@ use super::parse;
 use super::scene::SceneArguments;
 use super::signals::Signals;
 use super::waiting::Waiting;
+use crate::console::message;
 use crate::document::{Denoise, Document};
-use crate::render::Attendant;
+use crate::render::StepDenoiser;
 use crate::render::denoise::Denoised;
 use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
-use crate::say::say;
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
@@ -146,7 +146,7 @@ fn render(
     to_end::submit(&mut session, engine, document)?;
     drop(waiting);
     let signals = Signals::watch()?;
-    say!("{} ({})", session.engine(), session.engine().reason);
+    message!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
     let (progress, denoised) = step_to_end(&mut session, engine, document, &|| signals.received().is_none())?;
     let ended_by = signals.received().filter(|_| !progress.is_done);
@@ -164,8 +164,8 @@ fn render(
     };
     write_pictures(targets.outputs, rendered, document)?;
     // Words come after the image: who does not read them must not hold it up.
-    say!("{}", summary(&progress));
-    say_written(targets.outputs);
+    message!("{}", summary(&progress));
+    report_written(targets.outputs);
     if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
@@ -177,7 +177,7 @@ fn render(
     }
     let dropped = session.film()?.dropped();
     if dropped > 0 {
-        say!("{dropped} samples were left out because they were not finite");
+        message!("{dropped} samples were left out because they were not finite");
     }
     ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
@@ -190,8 +190,8 @@ pub(super) fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, docume
 }
 
 /// Says where images are.
-pub(super) fn say_written(outputs: &[PathBuf]) {
-    outputs.iter().for_each(|path| say!("wrote {}", path.display()));
+pub(super) fn report_written(outputs: &[PathBuf]) {
+    outputs.iter().for_each(|path| message!("wrote {}", path.display()));
 }
 
 /// Whether layers or sums have a place: in .exr images alone.
@@ -252,24 +252,24 @@ fn step_to_end(
         let error = progress.noise.map_or(String::new(), |noise| {
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
-        bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
+        bar.set_message(format!("{:.0} samples per pixel{error}", progress.mean_samples));
         keep_going()
     };
-    let mut attendant = Attendant::new(document);
-    let ended = to_end::step_to_end(session, engine, document, &mut attendant, &mut show_progress)?;
+    let mut step_denoiser = StepDenoiser::new(document);
+    let ended = to_end::step_to_end(session, engine, document, &mut step_denoiser, &mut show_progress)?;
     bar.finish_and_clear();
     if ended.progress.is_done {
         return Ok((ended.progress, ended.denoised));
     }
     // What there is of an image that was stopped is denoised as well.
-    let denoised = attendant.finish(session)?;
+    let denoised = step_denoiser.finish(session)?;
     Ok((session.progress(), denoised))
 }
 
 /// What came of a render, in a line.
 fn summary(progress: &Progress) -> String {
     let samples = format!(
-        "{:.0} samples a pixel in {:.1} s",
+        "{:.0} samples per pixel in {:.1} s",
         progress.mean_samples, progress.render_seconds
     );
     let Some(noise) = progress.noise else { return samples };

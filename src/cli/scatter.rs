@@ -7,13 +7,13 @@ use anyhow::bail;
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
+use crate::console::message;
 use crate::import::endings::ending;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
-use crate::say::say;
 use crate::store::replace::{save_atomically, save_by};
 
 use super::answer::{Answer, file_names};
@@ -82,7 +82,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     };
     let cloud = crate::render::Sampler::open(arguments.engine)?.draw(&request)?;
     if cloud.absorbed > 0 {
-        say!(
+        message!(
             "{} of {} samples were absorbed at the horizon",
             cloud.absorbed,
             request.count
@@ -95,7 +95,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
             save_atomically(&arguments.output, &contents)?;
         }
     }
-    say!("wrote {}", arguments.output.display());
+    message!("wrote {}", arguments.output.display());
     arguments.answer.write(&serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "lobe": arguments.lobe.name(),

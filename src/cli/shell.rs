@@ -5,7 +5,7 @@ use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::Arguments;
-use crate::say::print_bytes;
+use crate::console::print_bytes;
 
 /// Arguments of `glossmith completions`.
 #[derive(Debug, Args)]

@@ -11,10 +11,10 @@ use super::render::bar;
 use super::scene::SceneArguments;
 use super::signals::Signals;
 use super::{names, parse};
+use crate::console::message;
 use crate::document::turntable::Turn;
 use crate::render::Session;
 use crate::render::turntable::{FPS, Turntable, frame_path, render};
-use crate::say::say;
 use crate::scene::path_text::path_text;
 use crate::store::video::{self, VideoFormat};
 
@@ -84,7 +84,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         keeps_part: true,
     };
     let signals = Signals::watch()?;
-    say!("{} ({})", session.engine(), session.engine().reason);
+    message!("{} ({})", session.engine(), session.engine().reason);
     let bar = bar(
         "{bar:40} frame {msg}, {eta} left",
         u64::from(table.frames) * BAR_STEPS as u64,
@@ -100,14 +100,14 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         None => Vec::new(),
     };
     if let Some(last) = pictures.last() {
-        say!("wrote {} frames up to {}", outcome.frames, last.display());
+        message!("wrote {} frames up to {}", outcome.frames, last.display());
     }
     let video = table.video.as_ref().filter(|_| outcome.frames > 0);
     if let Some(path) = video {
-        say!("wrote {}: {} frames", path.display(), outcome.frames);
+        message!("wrote {}: {} frames", path.display(), outcome.frames);
     }
     if outcome.dropped > 0 {
-        say!("{} samples were left out because they were not finite", outcome.dropped);
+        message!("{} samples were left out because they were not finite", outcome.dropped);
     }
     let ended_by = signals.received().filter(|_| outcome.frames < table.frames);
     let ended = ended_by.map_or(Ok(()), |signal| Err(signal.into()));

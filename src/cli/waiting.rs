@@ -20,7 +20,7 @@ pub(super) struct Waiting {
 }
 
 impl Waiting {
-    /// Begins to tell.
+    /// Begins to report.
     pub(super) fn on(loading: &Loading) -> Self {
         let is_over = Arc::new(AtomicBool::new(false));
         let (loading, its_end) = (loading.clone(), is_over.clone());

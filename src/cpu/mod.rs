@@ -82,7 +82,7 @@ impl CpuEngine {
         self.step_towards_in::<f64>(budget, goals);
     }
 
-    /// Renders up to a number of samples a pixel for each tile with shading in `T`.
+    /// Renders up to a number of samples per pixel for each tile with shading in `T`.
     fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);

@@ -96,7 +96,7 @@ pub struct LookMatch {
 }
 
 impl LookMatch {
-    /// Gives a material this look. What the target does not tell stays.
+    /// Gives a material this look. What the target does not describe stays.
     pub fn apply(&self, material: &mut MaterialSettings) {
         material.lobe = self.after.model.lobe;
         material.roughness = self.after.model.roughness as f32;

@@ -55,13 +55,13 @@ pub mod range {
     pub const GLARE: RangeInclusive<f64> = 0.0..=1.0;
     /// Width and height, pixels; the random numbers' counters have 16 bits for each.
     pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
     /// Render time, seconds.
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
     /// Relative error of the image at which rendering stops.
     pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
-    /// Samples a pixel before an estimate of the error is believed.
+    /// Samples per pixel before an estimate of the error is believed.
     pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
@@ -287,7 +287,7 @@ pub struct RenderSettings {
     pub width: u32,
     /// Rows of pixels.
     pub height: u32,
-    /// Samples a pixel after which rendering stops.
+    /// Samples per pixel after which rendering stops.
     pub samples: u32,
     /// The number of the first of them: a part of an image's samples is rendered where it is not 0.
     pub first_sample: u32,

@@ -18,7 +18,7 @@ use crate::job::film::{Film, HalfSums, luminance};
 use crate::job::guides::GuideSums;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
-/// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
+/// Samples per pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 pub const FLUSH_SAMPLES: u32 = 1024;
 /// Pixels per read by the host, to bound its memory.
 const READ_PIXELS: usize = 1 << 19;
@@ -259,7 +259,7 @@ impl GpuEngine {
         &self.schedule
     }
 
-    /// Completed samples a pixel.
+    /// Completed samples per pixel.
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()
     }

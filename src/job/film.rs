@@ -426,7 +426,7 @@ impl Film {
     }
 
     /// Variance of the mean luminance of each pixel as if its samples were independent; infinite below two samples.
-    /// Unbiased for independent numbers, too large for Sobol's: see `analysis::noise`.
+    /// Unbiased for uniform random numbers, too large for the Sobol sequence: see `analysis::noise`.
     pub fn variance_of_mean(&self) -> Vec<f64> {
         let of_pixel = |pixel| self.variance_of_mean_at(pixel);
         (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()

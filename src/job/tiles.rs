@@ -181,7 +181,7 @@ impl Schedule {
         self.grid
     }
 
-    /// Sets how many samples a pixel of each tile is to have; one number a tile.
+    /// Sets how many samples per pixel of each tile is to have; one number a tile.
     pub fn set_goals(&mut self, goals: &[u32]) {
         self.goals.clear();
         self.goals.extend_from_slice(goals);
@@ -246,7 +246,7 @@ impl Schedule {
         self.next >= self.pass.len() && std::iter::zip(&self.samples, &self.goals).all(|(n, goal)| n >= goal)
     }
 
-    /// Samples a pixel of each tile.
+    /// Samples per pixel of each tile.
     pub fn samples(&self) -> &[u32] {
         &self.samples
     }

@@ -5,8 +5,8 @@ pub const TEMPERATURES_K: [f64; 2] = [2000.0, 20000.0];
 
 /// Linear Rec. 709 of a black body at so many kelvin, its largest part 1.
 ///
-/// Source: Planck's law, seen by the CIE 1931 observer in the fit of Wyman, Sloan and Shirley, "Simple analytic approximations
-/// to the CIE XYZ color matching functions", JCGT 2(2), 2013.
+/// Source: Planck's law, seen by the CIE 1931 observer in the fit of Wyman, Sloan and Shirley,
+/// JCGT 2(2), 2013.
 pub fn blackbody_color(temperature_k: f64) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     for nanometres in (360..=830).step_by(5) {

@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use super::figure::round_step;
 use crate::plot::lobe_view::Axis;
 
-/// Fewer round values on a logarithmic axis tell too little.
+/// Fewer round values on a logarithmic axis are too few to read it by.
 const TICKS_MIN: usize = 4;
 
 /// Where values lie along an axis.

@@ -136,17 +136,17 @@ pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, Str
 
 /// Compares the rates of software Vulkan and the CPU engine on a render, in samples per second. If the CPU engine is faster,
 /// the stored measurement is invalid and is repeated.
-pub(super) fn compare_rates(software: f64, processor: f64) {
-    if is_doubtful(software, processor) && measure_when_quiet(AdapterKind::Software) {
+pub(super) fn compare_rates(software: f64, cpu: f64) {
+    if is_doubtful(software, cpu) && measure_when_quiet(AdapterKind::Software) {
         log::info!(
             "software Vulkan renders {:.1} × as fast as the CPU here: it is measured again",
-            software / processor
+            software / cpu
         );
     }
 }
 
-fn is_doubtful(software: f64, processor: f64) -> bool {
-    software > 0.0 && processor > DOUBT * software
+fn is_doubtful(software: f64, cpu: f64) -> bool {
+    software > 0.0 && cpu > DOUBT * software
 }
 
 /// Key of a measurement.

@@ -422,12 +422,12 @@ fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sess
     let mis = film(options.engine, Strategy::Mis, 0)?;
     let lobe = film(options.engine, Strategy::Lobe, 1)?;
     let light = film(options.engine, Strategy::Light, 2)?;
-    let processor = film(EngineChoice::Cpu, Strategy::Mis, 3)?;
+    let cpu = film(EngineChoice::Cpu, Strategy::Mis, 3)?;
     let compare = |group, name: &str, other: &Film| {
         let value = mis.difference_in_sigma(other).abs();
         Check::new(group, name, "sigma", value, 4.0)
     };
-    let dropped = [&mis, &lobe, &light, &processor]
+    let dropped = [&mis, &lobe, &light, &cpu]
         .iter()
         .map(|film| film.dropped())
         .sum::<u64>() as f64;

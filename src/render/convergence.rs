@@ -44,7 +44,7 @@ pub(super) struct Pacing {
 /// Rounds of rendering, each followed by an error measurement.
 #[derive(Debug, Default)]
 pub(super) struct Convergence {
-    /// Samples a pixel that each tile is to have at the end of the round.
+    /// Samples per pixel that each tile is to have at the end of the round.
     pub(super) goals: Vec<u32>,
     /// Measurements, oldest first.
     pub(super) history: Vec<Measurement>,

@@ -115,7 +115,7 @@ impl Engine {
         }
     }
 
-    /// Renders for about `budget` towards a number of samples a pixel for each tile.
+    /// Renders for about `budget` towards a number of samples per pixel for each tile.
     pub(super) fn step(&mut self, budget: Duration, goals: &[u32], precision: Precision) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
@@ -164,7 +164,7 @@ pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
     let threads = rayon::current_num_threads();
     let info = EngineInfo {
         kind: EngineKind::Cpu,
-        adapter: format!("{} ({threads} threads)", processor_name()),
+        adapter: format!("{} ({threads} threads)", cpu_name()),
         driver: String::new(),
         reason,
         traversal: Traversal::Own,
@@ -186,13 +186,13 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 }
 
 /// Name of the CPU, if the system reports it.
-pub(super) fn processor_name() -> String {
+pub(super) fn cpu_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()
         .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     name.map_or_else(
-        || format!("{} processor", std::env::consts::ARCH),
+        || format!("{} CPU", std::env::consts::ARCH),
         |(_, name)| name.trim().to_owned(),
     )
 }

@@ -3,7 +3,6 @@
 //! `submit` a document, `step` with a time budget until `progress` is done, read `film` or `image`.
 
 mod assets;
-mod attendant;
 pub mod background;
 mod calibration;
 pub mod check;
@@ -33,6 +32,7 @@ pub mod samples;
 pub mod seen_map;
 mod session;
 pub mod shown;
+mod step_denoiser;
 pub mod study;
 pub mod sums;
 pub mod thumbnails;
@@ -42,7 +42,6 @@ pub mod worker;
 mod workshop;
 
 pub use assets::{Assets, Reloaded};
-pub use attendant::Attendant;
 pub use convergence::Measurement;
 pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, Sampler};
 pub use error::SessionError;
@@ -50,3 +49,4 @@ pub use output::Layers;
 pub use progress::{Progress, StopReason};
 pub use ray_queries::RayQueries;
 pub use session::Session;
+pub use step_denoiser::StepDenoiser;

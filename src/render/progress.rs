@@ -20,7 +20,7 @@ pub enum StopReason {
 pub struct Progress {
     /// Completed samples per pixel: the maximum over tiles.
     pub samples_per_pixel: u32,
-    /// Samples a pixel to reach.
+    /// Samples per pixel to reach.
     pub samples_wanted: u32,
     /// Samples per pixel, averaged over the image: fewer if tiles pause.
     pub mean_samples: f64,

@@ -6,12 +6,12 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use super::assets::Assets;
-use super::attendant::Attendant;
 use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::output::{self, OutputError, Rendered};
 use super::quiet;
 use super::session::Session;
+use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use super::turntable::{self, Turntable, TurntableError};
 use crate::document::Document;
@@ -363,8 +363,8 @@ fn picture(
     check_saving(path)?;
     submit(session, engine, document)?;
     let limit_s = document.render.time_s;
-    let mut attendant = Attendant::new(document);
-    let ended = step_to_end(session, engine, document, &mut attendant, &mut |progress| {
+    let mut step_denoiser = StepDenoiser::new(document);
+    let ended = step_to_end(session, engine, document, &mut step_denoiser, &mut |progress| {
         on_progress(progress.share_done(limit_s))
     })?;
     if !ended.progress.is_done {
@@ -379,7 +379,7 @@ fn picture(
     let [samples, seconds] = [ended.progress.mean_samples, ended.progress.render_seconds];
     let path = path.display();
     Ok(format!(
-        "rendered {path}: {samples:.0} samples a pixel in {seconds:.1} s"
+        "rendered {path}: {samples:.0} samples per pixel in {seconds:.1} s"
     ))
 }
 

@@ -110,7 +110,7 @@ fn bits(values: impl Iterator<Item = f64> + Clone) -> [FlatSamples; 2] {
 }
 
 impl KeptFilm {
-    /// A film of up to `samples` samples a pixel that was just rendered.
+    /// A film of up to `samples` samples per pixel that was just rendered.
     pub fn of(film: Film, document: Document, samples: u32, world_units_per_unit: f64) -> Self {
         let first = document.render.first_sample;
         // Number of samples of either half before this range.

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use super::attendant::Attendant;
 use super::background::{Background, Responder};
 use super::denoise::Library;
 use super::display::display;
 use super::looks::ball;
+use super::step_denoiser::StepDenoiser;
 use super::{EngineChoice, Session, SessionError, picture_cache};
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::scene::ModelSource;
@@ -109,7 +109,7 @@ fn document(material: &MaterialSettings) -> Document {
 /// Renderer of thumbnails.
 struct Studio {
     session: Session,
-    attendant: Attendant,
+    step_denoiser: StepDenoiser,
 }
 
 /// `None` if superseded.
@@ -123,11 +123,11 @@ fn make<A>(
         return Ok(None);
     }
     let document = document(material);
-    let Studio { session, attendant } = match studio {
+    let Studio { session, step_denoiser } = match studio {
         Some(studio) => studio,
         None => studio.insert(Studio {
             session: Session::open(EngineChoice::Cpu)?,
-            attendant: Attendant::new(&document),
+            step_denoiser: StepDenoiser::new(&document),
         }),
     };
     session.submit(&document)?;
@@ -136,7 +136,7 @@ fn make<A>(
             return Ok(None);
         }
     }
-    let denoised = attendant.finish(session)?;
+    let denoised = step_denoiser.finish(session)?;
     let image = match denoised {
         Some(denoised) => denoised.image,
         None => Arc::new(session.image()?),

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use super::attendant::Attendant;
 use super::denoise::Denoised;
 use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::progress::Progress;
 use super::session::Session;
+use super::step_denoiser::StepDenoiser;
 use crate::document::Document;
 
 /// Session step between two checks for a stop.
@@ -42,7 +42,7 @@ pub fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
-    attendant: &mut Attendant,
+    step_denoiser: &mut StepDenoiser,
     on_progress: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Ended, SessionError> {
     loop {
@@ -54,11 +54,11 @@ pub fn step_to_end(
             Ok(())
         });
         or_fall_back(stepped, session, engine, document)?;
-        attendant.attend(session, &session.progress())?;
+        step_denoiser.attend(session, &session.progress())?;
         let progress = session.progress();
         let is_stopped = !on_progress(&progress);
         if progress.is_done {
-            let denoised = attendant.finish(session)?;
+            let denoised = step_denoiser.finish(session)?;
             let progress = session.progress();
             return Ok(Ended { progress, denoised });
         }

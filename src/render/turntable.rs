@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::attendant::Attendant;
 use super::display::display;
 use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::output::{self, OutputError, Rendered};
 use super::session::Session;
+use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
@@ -110,7 +110,7 @@ pub fn render(
     let mut video = table.begin()?;
     let mut outcome = TurntableOutcome::default();
     let mut center_world = [0.0; 3];
-    let mut attendant = Attendant::new(&table.document);
+    let mut step_denoiser = StepDenoiser::new(&table.document);
     for frame in 0..table.frames {
         let document = turned(&table.document, table.turn, frame, table.frames, center_world);
         submit(session, engine, &document)?;
@@ -119,7 +119,7 @@ pub fn render(
             center_world = job.geometry.center_world.to_array();
         }
         let mut is_stopped = false;
-        let ended = step_to_end(session, engine, &document, &mut attendant, &mut |progress| {
+        let ended = step_to_end(session, engine, &document, &mut step_denoiser, &mut |progress| {
             let share = progress.share_done(document.render.time_s);
             is_stopped = !on_progress(TurntableProgress { done: frame, share });
             !is_stopped

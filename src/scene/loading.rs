@@ -23,10 +23,10 @@ struct State {
 pub struct Cancelled;
 
 impl Loading {
-    /// Something else is begun: a wish to cancel from before is over.
+    /// Something else is begun: an earlier request to cancel is over.
     pub fn begin(&self) {
         self.0.is_cancelled.store(false, Relaxed);
-        self.say(String::new());
+        self.publish(String::new());
     }
 
     /// Reports the next step.
@@ -35,7 +35,7 @@ impl Loading {
     ///
     /// [`Cancelled`] if so.
     pub fn step(&self, doing: impl Into<String>) -> Result<(), Cancelled> {
-        self.say(doing.into());
+        self.publish(doing.into());
         self.check()
     }
 
@@ -87,7 +87,7 @@ impl Loading {
         Watched { loading, source }
     }
 
-    fn say(&self, doing: String) {
+    fn publish(&self, doing: String) {
         *self.0.doing.lock().unwrap_or_else(PoisonError::into_inner) = doing;
     }
 }

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec2, DVec3, Vec2, Vec3, Vec4};
 
 use super::loading::Loading;
 
-/// Triangles with attributes at their vertices. Counter-clockwise order seen from outside; right-handed, +Y up.
+/// Triangles with attributes at their vertices. Anticlockwise order seen from outside; right-handed, +Y up.
 ///
 /// All attribute vectors have the length of `positions` (`second_uvs` and `colors` may be empty), `slots` has the length
 /// of `triangles`.

@@ -12,7 +12,7 @@ named! {
     FileKind {
         Document, "document", "Projects and materials", "Projects and materials of Glossmith.";
         Model, "model", "Models", "Models, alone or in an archive.";
-        Light, "light", "Images of light", "Environments, and textures if assigned to a material.";
+        Light, "light", "Environment images", "Environments, and textures if assigned to a material.";
         Picture, "picture", "Images", "Images for screens: environments, textures, or images saved here, which have the document inside.";
         Material, "material", "Materials of other programs", "Materials in other programs' formats.";
         Measured, "measured", "Measured materials (MERL)", "Measurements that a material is fitted to.";

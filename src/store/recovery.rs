@@ -89,7 +89,7 @@ impl Slot {
     /// # Errors
     /// [`FileError`] where it can't be written; the last one is then still there.
     pub fn save(&self, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
-        put_aside(&self.path, document, project)
+        save_for_recovery(&self.path, document, project)
     }
 
     /// Whether something was saved for recovery.
@@ -190,7 +190,7 @@ pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
 ///
 /// # Errors
 /// [`FileError`] where it can't be written; what was there is then still there.
-pub fn put_aside(path: &Path, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
+pub fn save_for_recovery(path: &Path, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
     let mut document = document.clone();
     let project = project.and_then(Path::to_str);
     document.extra.insert(KEY.to_owned(), json!({ "project": project }));
@@ -222,7 +222,7 @@ fn lock_path(path: &Path) -> PathBuf {
     path.with_extension("lock")
 }
 
-/// Keeps other windows from the folder until it is dropped: between making a file and locking it there is a moment.
+/// A lock on the folder until it is dropped: it closes the gap between creating a file and locking it.
 fn guard(folder: &Path) -> Result<File, FileError> {
     let path = folder.join(GUARD);
     let lock = || {

@@ -31,7 +31,7 @@ pub struct Case {
     pub expected: [f64; 3],
     /// Those that find the light with an honest variance; the first one is tried in every way.
     pub strategies: &'static [Strategy],
-    /// Samples a pixel of a picture of 16 × 16.
+    /// Samples per pixel of a picture of 16 × 16.
     samples: u32,
     /// How many times as many the lobe takes alone, where it finds a light by chance.
     chance: u32,
@@ -106,7 +106,7 @@ impl Case {
         self.samples > 1280
     }
 
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub fn samples_of(&self, strategy: Strategy) -> u32 {
         self.samples * if strategy == Strategy::Lobe { self.chance } else { 1 }
     }

@@ -43,7 +43,7 @@ fn rival(harness: &Editor) -> Document {
     Document::clone(&snapshot.picture.as_ref().expect("it was waited for").document)
 }
 
-/// A picture that has cost some time stays when only the viewport's size changes; the wish for another size is another
+/// A picture that has cost some time stays when only the viewport's size changes; the request for another size is another
 /// matter.
 #[test]
 fn a_costly_picture_survives_a_comparison_and_panels_that_go() {

@@ -23,7 +23,7 @@ fn denoiser() -> Denoiser {
     Denoiser::open().unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A film of some samples a pixel: `seen` gives a pixel's albedo and true colour, which the samples scatter around by
+/// A film of some samples per pixel: `seen` gives a pixel's albedo and true colour, which the samples scatter around by
 /// `noise` times themselves.
 fn film(size: [u32; 2], samples: u32, noise: f32, seen: impl Fn(u32, u32) -> [[f32; 3]; 2]) -> Film {
     let extras = Extras {

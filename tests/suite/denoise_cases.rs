@@ -8,7 +8,7 @@ use glossmith::analysis::halves::Halves;
 use glossmith::document::turntable::{Turn, turned};
 use glossmith::document::{Background, Denoise, Document, assign};
 use glossmith::job::film::Image;
-use glossmith::render::Attendant;
+use glossmith::render::StepDenoiser;
 use glossmith::render::denoise::{Denoiser, Library, Noisy, data_folder};
 use glossmith::render::worker::{Pace, Worker};
 use glossmith::render::{EngineChoice, Session};
@@ -63,10 +63,10 @@ fn mirrors_glass_and_blur_come_out_nearer_to_the_truth() {
 }
 
 fn denoised(session: &mut Session, document: &Document) -> [Image; 2] {
-    let mut attendant = Attendant::new(document);
+    let mut step_denoiser = StepDenoiser::new(document);
     session.submit(document).unwrap();
     while !session.step(Duration::from_millis(100)).unwrap().is_done {}
-    let done = attendant.finish(session).unwrap().unwrap();
+    let done = step_denoiser.finish(session).unwrap().unwrap();
     [session.image().unwrap(), Image::clone(&done.image)]
 }
 

@@ -61,7 +61,7 @@ impl Desktop {
     }
 
     /// Documents put aside for after a crash.
-    pub fn put_aside(&self) -> Vec<Document> {
+    pub fn save_for_recovery(&self) -> Vec<Document> {
         let Ok(entries) = std::fs::read_dir(self.path("data/glossmith/recovery")) else {
             return Vec::new();
         };

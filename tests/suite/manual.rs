@@ -4,18 +4,36 @@ use egui::accesskit::Role;
 use egui::{Key, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
-use glossmith::app::book::{self, CONTENTS, OF_SHEETS, PAGES, Section};
+use glossmith::app::book::{self, CONTENTS, OF_SHEETS, Pages, Section};
 use glossmith::app::layout::Pane;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
-use super::docs::text_of;
+use super::docs::{root, text_of};
 use super::ui::{Editor, editor, request};
 use super::ui_hands::press;
+use super::words::sources;
+
+macro_rules! pages {
+    ($($path:literal)*) => {
+        const PATHS: &[&str] = &[$($path),*];
+    };
+}
+include!("../../src/book_pages.rs");
+
+/// The pages that the program embeds, read from their files: an edit of a page compiles no test.
+pub fn manual_pages() -> Pages {
+    static PAGES: LazyLock<Vec<(&'static str, &'static str)>> = LazyLock::new(|| {
+        let page = |path: &&'static str| (*path, &*text_of(&Path::new("docs").join(path)).leak());
+        PATHS.iter().map(page).collect()
+    });
+    &PAGES
+}
 
 /// The section that an address leads to.
 fn section(address: &str) -> Section {
     let (page, anchor) = book::parts(address);
-    let found = book::sections(page)
+    let found = book::sections(manual_pages(), page)
         .into_iter()
         .find(|section| anchor.is_empty() || section.anchor == anchor);
     found.unwrap_or_else(|| panic!("{address}: the book has no such page or heading"))
@@ -53,21 +71,32 @@ fn the_manual_has_the_pages_of_the_book() {
     let (for_users, _) = summary.split_once("# Contributing").expect("pages for contributors");
     let links = for_users.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     for link in links.filter(|link| *link != "PANELS.md") {
-        assert!(
-            PAGES.iter().any(|(page, _)| *page == link),
-            "src/app/book.rs lacks {link}"
-        );
+        assert!(PATHS.contains(&link), "src/book_pages.rs lacks {link}");
     }
-    for (page, text) in PAGES {
-        assert_eq!(*text, text_of(&Path::new("docs").join(page)), "{page}");
-    }
+}
+
+/// Pages that the library embedded would compile it and all tests again at every edit of a page.
+#[test]
+fn the_program_alone_embeds_pages() {
+    let mut files = Vec::new();
+    sources(&root().join("src"), &mut files);
+    let embeds = |file: &PathBuf| {
+        let text = std::fs::read_to_string(file).expect("a source");
+        text.lines()
+            .any(|line| line.contains("include_str!") && line.contains("docs/"))
+    };
+    files.retain(embeds);
+    assert_eq!(files, [root().join("src/main.rs")]);
 }
 
 #[test]
 fn links_of_the_manual_lead_to_pages_and_headings() {
     let mut count = 0;
-    for (page, _) in PAGES {
-        let text: String = book::sections(page).into_iter().map(|section| section.text).collect();
+    for page in PATHS {
+        let text: String = book::sections(manual_pages(), page)
+            .into_iter()
+            .map(|section| section.text)
+            .collect();
         for address in text.split("](book:").skip(1).filter_map(|rest| rest.split(')').next()) {
             section(address);
             count += 1;
@@ -169,7 +198,7 @@ fn every_character_of_the_manual_has_a_glyph() {
     let harness = editor();
     let fonts = [egui::FontId::proportional(13.0), egui::FontId::monospace(12.0)];
     let mut lacking = Vec::new();
-    for (page, text) in PAGES {
+    for (page, text) in manual_pages() {
         for character in text.chars().filter(|character| !character.is_control()) {
             let is_there = harness
                 .ctx

@@ -104,7 +104,7 @@ fn generally(job: &Job) -> Job {
     }
 }
 
-/// Four samples a pixel on the processor.
+/// Four samples per pixel on the processor.
 fn on_cpu(job: Job) -> Film {
     let mut engine = CpuEngine::default();
     engine.submit(Arc::new(job));

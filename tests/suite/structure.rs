@@ -9,7 +9,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
     ("instructions", &["named"]),
     ("panics", &[]),
-    ("say", &[]),
+    ("console", &[]),
     ("optics", &["named"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
     ("import", &["panics", "optics", "scene"]),
@@ -34,7 +34,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
         "cli",
         &[
             "named",
-            "say",
+            "console",
             "instructions",
             "optics",
             "scene",

@@ -9,13 +9,15 @@ use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
+use glossmith::app::workspaces::LOOK;
 use glossmith::app::{App, Options};
-use glossmith::document::GroundKind;
+use glossmith::document::{Document, GroundKind};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::shown::Shown;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::examples::still_life;
 use serde_json::Value;
 
 use super::cli_support::{Workplace, write_hdr};
@@ -26,6 +28,7 @@ use super::ui::{Editor, drag, editor, editor_of, options, request, see, see_labe
 use super::ui_files::{drop_on, wait_for_words};
 use super::ui_hands::{press, type_path};
 use super::ui_scene::choose;
+use super::worker::small_document;
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))
@@ -33,10 +36,14 @@ fn tutorial(name: &str) -> String {
 
 /// A window whose files are chosen by typing, with a folder for them.
 fn window() -> (Editor, tempfile::TempDir) {
+    window_with(options())
+}
+
+fn window_with(options: Options) -> (Editor, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor_of(Options {
         typed_paths: Some(folder.path().to_owned()),
-        ..options()
+        ..options
     });
     settle(&mut harness);
     (harness, folder)
@@ -134,13 +141,27 @@ fn names_of_the_window_that_the_pages_give_exist() {
 
 #[test]
 fn your_first_material() {
-    let (mut harness, folder) = window();
+    // What a newcomer gets: the still life in the workspace Look.
+    let still_life = Document {
+        render: small_document().render,
+        ..still_life()
+    };
+    let (mut harness, folder) = window_with(Options {
+        document: Some(still_life),
+        workspace: Some(LOOK.to_owned()),
+        ..options()
+    });
     let document = |harness: &Editor| harness.state().document().clone();
-    // 1. Choose a preset.
+    // 1. Choose a preset: it goes to the teapot.
     tab(&mut harness, Pane::Presets);
+    harness.get_by_role_and_label(Role::TextInput, "Search presets").click();
+    harness.run_steps(2);
+    harness.event(Event::Text("gold".to_owned()));
+    harness.run_steps(3);
     tap(&mut harness, "Gold");
     settle(&mut harness);
     assert_eq!(document(&harness).materials[0].name, "Gold");
+    assert_eq!(document(&harness).materials.len(), 4);
     // 2. Change the roughness: by the bar, by its label, and by a search.
     tab(&mut harness, Pane::Material);
     let gold = document(&harness).materials[0].roughness;
@@ -195,7 +216,7 @@ fn your_first_material() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::E);
     type_path(&mut harness, &path, "Save");
     wait_for_words(&mut harness, "saved");
-    tap(&mut harness, "Rubber");
+    tap(&mut harness, "Satin gold");
     settle(&mut harness);
     drop_on(&mut harness, &[path]);
     let is_back = |app: &App| app.document().materials == saved.materials;

@@ -20,6 +20,7 @@ use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::{PRESETS, save_document, save_material};
 
+use super::manual::manual_pages;
 use super::worker::small_document;
 
 /// The window without a screen.
@@ -37,6 +38,7 @@ pub(super) fn options() -> Options {
         workspace: Some(MEASURE.to_owned()),
         // The system's dialogs can't be used by a test, and some systems have none.
         typed_paths: Some(std::env::temp_dir()),
+        pages: manual_pages(),
         ..Options::default()
     }
 }

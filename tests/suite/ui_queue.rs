@@ -93,7 +93,7 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     wait(&mut harness, "the picture", |app| {
         app.messages()
             .iter()
-            .any(|text| text.contains("second.exr: 3 samples a pixel"))
+            .any(|text| text.contains("second.exr: 3 samples per pixel"))
     });
     assert!(!path("first.png").exists());
     see(&mut harness, "the turn under way", |harness| {

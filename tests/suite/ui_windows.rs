@@ -23,10 +23,18 @@ const SIZE: [u32; 2] = [1440, 900];
 /// Least width of an image that a reader looks at, and that of the small ones for comparing noise at its own size.
 const LEAST_WIDTH: u32 = 640;
 const NOISE_WIDTH: u32 = 480;
+const HERO_WIDTH: u32 = 1600;
 /// Drawings, which have no document.
-const DRAWN: [&str; 3] = ["scatter-", "race", "materialx-examples"];
-/// Screenshots, which have one once they are taken again: the list goes with that.
-const UNTIL_TAKEN: &str = "window";
+const DRAWN: [&str; 8] = [
+    "scatter-",
+    "race",
+    "materialx-examples",
+    "fig1-",
+    "fig2",
+    "fig3",
+    "fig9",
+    "fig10",
+];
 
 fn pictures() -> PathBuf {
     root().join("docs/pictures")
@@ -122,33 +130,38 @@ fn take_all() {
     take(&mut harness, "window-export");
 }
 
+/// The image is wide enough, a page shows it, and if it is a render or a screenshot it has its document.
+fn check(path: &Path, book: &str) {
+    let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+    assert!(book.contains(&format!("/{name})")), "no page shows {name}");
+    let (width, _) = image::image_dimensions(path).expect("an image");
+    let least = match name.split('-').next() {
+        Some("denoise") => NOISE_WIDTH,
+        Some("hero.png") => HERO_WIDTH,
+        _ => LEAST_WIDTH,
+    };
+    assert!(width >= least, "{name} is {width} pixels wide");
+    if !DRAWN.iter().any(|start| name.starts_with(start)) {
+        let document = load_picture_document(path);
+        assert!(document.is_ok(), "{name} has no document: run make pictures");
+    }
+}
+
 #[test]
 fn every_picture_has_its_document_and_is_shown() {
     if std::env::var_os("UPDATE_DOCS").is_some() {
         take_all();
     }
     let book: String = pages().iter().map(|page| text_of(page)).collect();
-    let entries = std::fs::read_dir(pictures()).expect("the folder");
     let mut count = 0;
-    for path in entries.map(|entry| entry.expect("an entry").path()) {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        if path.extension().is_none_or(|ending| ending != "png") {
-            continue;
+    for folder in [pictures(), pictures().join("figures")] {
+        let entries = std::fs::read_dir(folder).expect("the folder");
+        for path in entries.map(|entry| entry.expect("an entry").path()) {
+            if path.extension().is_some_and(|ending| ending == "png") {
+                check(&path, &book);
+                count += 1;
+            }
         }
-        count += 1;
-        assert!(book.contains(&format!("pictures/{name})")), "no page shows {name}");
-        if DRAWN.iter().chain([&UNTIL_TAKEN]).any(|start| name.starts_with(start)) {
-            continue;
-        }
-        let document = load_picture_document(&path);
-        assert!(document.is_ok(), "{name} has no document: run make pictures");
-        let (width, _) = image::image_dimensions(&path).expect("an image");
-        let least = if name.starts_with("denoise-") {
-            NOISE_WIDTH
-        } else {
-            LEAST_WIDTH
-        };
-        assert!(width >= least, "{name} is {width} pixels wide");
     }
-    assert!(count > 40, "{count} pictures");
+    assert!(count > 70, "{count} pictures");
 }

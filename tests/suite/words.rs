@@ -147,13 +147,11 @@ fn pages_keep_to_the_style() {
     }
 }
 
-/// Folders of `src` whose comments keep to the table as well.
-const COMMENTED: [&str; 5] = ["app", "cli", "document", "plot", "store"];
 /// Names that other programs give their inputs.
 const NAMES_OF_OTHERS: [&str; 2] = ["Base Color", "Emission Color"];
 
 /// The sources below a folder.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+pub fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         match path.is_dir() {
@@ -194,16 +192,12 @@ fn texts_and_comments_keep_to_the_table() {
             .display()
             .to_string()
             .replace('\\', "/");
-        let is_commented = COMMENTED
-            .iter()
-            .any(|folder| name.starts_with(&format!("src/{folder}/")));
         let text = std::fs::read_to_string(&file).unwrap();
         // Texts go on behind a backslash at the end of a line.
         let joined = text.replace("\\\n", " ");
         for line in joined.lines().take_while(|line| !line.starts_with("#[cfg(test)]")) {
             let texts = match line.trim_start().strip_prefix("//") {
-                Some(comment) if is_commented => vec![comment.to_owned()],
-                Some(_) => Vec::new(),
+                Some(comment) => vec![comment.to_owned()],
                 None => quoted(line),
             };
             let is_label = |text: &str| text.starts_with(char::is_uppercase) && text.contains(char::is_lowercase);

@@ -64,11 +64,11 @@ fn a_session_is_played_killed_and_recovered() {
     window.write("0.35");
     window.keys("Return");
     window.wait("the copy of what is unsaved", |_| {
-        let documents = desktop.put_aside();
+        let documents = desktop.save_for_recovery();
         documents.iter().any(|document| document.materials[0].roughness == 0.35)
     });
     window.kill();
-    let mut kept = desktop.put_aside();
+    let mut kept = desktop.save_for_recovery();
     let lost = kept.pop().expect("the kill left a copy");
     assert!(kept.is_empty(), "one window, one copy");
     assert_eq!(lost.camera, seen.camera);
@@ -93,5 +93,9 @@ fn a_session_is_played_killed_and_recovered() {
     let (status, said) = window.ended();
     assert!(status.success(), "{status}\n{said}");
     assert!(!said.contains("ERROR"), "{said}");
-    assert_eq!(desktop.put_aside(), [], "closed as it should be, it leaves nothing");
+    assert_eq!(
+        desktop.save_for_recovery(),
+        [],
+        "closed as it should be, it leaves nothing"
+    );
 }

@@ -3,7 +3,7 @@
 use egui::OutputCommand;
 
 use crate::app::App;
-use crate::app::services::heard;
+use crate::app::services::log_failures;
 use crate::render::worker::Level;
 
 /// What to do where copying fails.
@@ -11,13 +11,13 @@ const REMEDY: &str = "images can be saved by File › Save image…, materials b
 
 impl App {
     /// Says whether the last frame's copy was taken.
-    pub(in crate::app) fn tell_of_clipboard(&mut self) {
+    pub(in crate::app) fn report_clipboard(&mut self) {
         let words = self.copied.take();
-        if let Some(why) = heard::clipboard_failure() {
+        if let Some(why) = log_failures::clipboard_failure() {
             let text = format!("the system's clipboard failed: {why}; {REMEDY}");
-            self.say(Level::Error, text);
+            self.report(Level::Error, text);
         } else if let Some(words) = words {
-            self.say(Level::Info, words);
+            self.report(Level::Info, words);
         }
     }
 
@@ -30,16 +30,16 @@ impl App {
         }
         // What the clipboard did is known in the next frame.
         ctx.request_repaint();
-        if let Some(why) = heard::no_clipboard() {
+        if let Some(why) = log_failures::no_clipboard() {
             let text = format!("there is no system clipboard ({why}): copies stay within this window; {REMEDY}");
             self.copied = None;
-            self.say(Level::Warning, text);
+            self.report(Level::Warning, text);
         }
     }
 
     /// An image was pasted, which has no place to go to without a name.
     pub(in crate::app) fn refuse_pasted_picture(&mut self) {
         let text = "the clipboard holds an image: save it as a file, and open or drop that";
-        self.say(Level::Warning, text);
+        self.report(Level::Warning, text);
     }
 }

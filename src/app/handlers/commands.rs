@@ -239,11 +239,11 @@ impl App {
                 layout::reveal(&mut self.layout, Pane::Snapshots);
             }
             Command::Measure => {
-                self.panels.hear(command);
+                self.panels.on_command(command);
                 self.reveal(Pane::Effects);
             }
             Command::Race => {
-                self.panels.hear(command);
+                self.panels.on_command(command);
                 self.reveal(Pane::Race);
             }
             Command::Benchmark => self.reveal(Pane::Check),

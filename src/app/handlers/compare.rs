@@ -106,7 +106,7 @@ impl App {
                 .spawn_beside(engine.into(), move || repainting.request_repaint())
             else {
                 compare.is_on = false;
-                self.say(Level::Error, "cannot start a thread to render B");
+                self.report(Level::Error, "cannot start a thread to render B");
                 return;
             };
             compare.generation += 1;
@@ -135,7 +135,7 @@ impl App {
         compare.take_difference(ctx, Some(a));
         for event in events {
             if let Event::Message(level @ (Level::Warning | Level::Error), text) = event {
-                self.say(level, format!("B: {text}"));
+                self.report(level, format!("B: {text}"));
             }
         }
     }

@@ -116,7 +116,7 @@ impl App {
         if let [shown @ .., last] = environments.as_slice() {
             for path in shown {
                 let text = format!("{}: one environment at a time; {} is opened", name(path), name(last));
-                self.say(Level::Warning, text);
+                self.report(Level::Warning, text);
             }
             self.worker.open_environment(EnvironmentSource::File(last.clone()));
         }
@@ -162,7 +162,7 @@ impl App {
                 "{}: part of a model; drop it together with the .gltf or .obj that names it, or open that",
                 part.display()
             );
-            self.say(Level::Error, text);
+            self.report(Level::Error, text);
         }
         if let ([picture], Some(target)) = (pictures.as_slice(), self.shared.selection.texture) {
             self.put_textures(&[(target, UserTexture::of(picture.clone()))]);
@@ -197,7 +197,7 @@ impl App {
                  choose it in Material, beside its parameter",
                 name(file)
             );
-            self.say(Level::Warning, text);
+            self.report(Level::Warning, text);
         }
     }
 
@@ -213,13 +213,13 @@ impl App {
             self.drop_files(paths);
         } else {
             let shown: String = text.chars().take(80).collect();
-            self.say(Level::Warning, format!("the pasted text is not a file name: {shown}"));
+            self.report(Level::Warning, format!("the pasted text is not a file name: {shown}"));
         }
     }
 
     fn refuse_address(&mut self, address: &str) {
         let text = format!("{address}: web addresses are not opened; save the file and open it here");
-        self.say(Level::Error, text);
+        self.report(Level::Error, text);
     }
 }
 

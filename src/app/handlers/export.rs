@@ -27,14 +27,14 @@ impl App {
     pub(in crate::app) fn prepare_export(&mut self, path: PathBuf) {
         let format = match exchange::by_ending(&path) {
             Ok(format) => format,
-            Err(error) => return self.say(Level::Error, error.to_string()),
+            Err(error) => return self.report(Level::Error, error.to_string()),
         };
         let preset = self.files.exported.take();
         let takes_model = format.format.takes_models() && preset.is_none();
         let material = preset.unwrap_or_else(|| self.desk_material());
         let name = material.name.clone();
         let file = path.file_name().unwrap_or_default().to_string_lossy();
-        self.say(Level::Info, format!("{file}: rendering balls to show what it loses …"));
+        self.report(Level::Info, format!("{file}: rendering balls to show what it loses …"));
         let subject = if takes_model {
             Subject {
                 materials: self.document.materials.clone(),
@@ -66,7 +66,7 @@ impl App {
                 ctx.copy_text(text);
                 self.copied = Some(words);
             }
-            Err(error) => self.say(Level::Error, error),
+            Err(error) => self.report(Level::Error, error),
         }
     }
 
@@ -87,7 +87,7 @@ impl App {
     pub(in crate::app) fn take_prepared(&mut self, ctx: &egui::Context, ready: Result<Ready, String>) {
         match ready {
             Ok(ready) => self.export.ask(ctx, ready),
-            Err(error) => self.say(Level::Error, error),
+            Err(error) => self.report(Level::Error, error),
         }
     }
 }

@@ -125,7 +125,7 @@ impl App {
                     "{}: not a kind of file that can be opened; those are {what}",
                     path.display()
                 );
-                self.say(Level::Error, text);
+                self.report(Level::Error, text);
                 return false;
             }
         }
@@ -150,7 +150,7 @@ impl App {
                         self.shared.recent.add(&path);
                         self.files.project = Some(path.clone());
                     }
-                    self.say_saved(&path, saved.map_err(|error| error.to_string()));
+                    self.report_saved(&path, saved.map_err(|error| error.to_string()));
                 }
                 Done::Listed(listed) => self.take_library(listed),
                 Done::ChangedLibrary(changed) => {
@@ -165,12 +165,12 @@ impl App {
                 Done::Wrote(result) => {
                     has_failed |= result.is_err();
                     let (level, text) = words(result);
-                    self.say(level, text);
+                    self.report(level, text);
                 }
                 Done::Broke(task, why) => {
                     has_failed |= task == Task::Write;
                     self.awaited = self.awaited.saturating_sub(usize::from(task == Task::Open));
-                    self.say(
+                    self.report(
                         Level::Error,
                         format!("reading or writing a file failed by an internal error: {why}"),
                     );
@@ -186,7 +186,7 @@ impl App {
             Ok(Opened::Material(loaded)) => {
                 let is_saved = self.edits.is_saved(&self.document);
                 self.use_material(loaded.value);
-                self.say_all(loaded.warnings);
+                self.report_all(loaded.warnings);
                 self.shared.recent.add(&path);
                 self.count_as_start(is_at_start && is_saved);
             }
@@ -208,7 +208,7 @@ impl App {
                 self.put_pictures(&[path]);
             }
             Err(error) => {
-                self.say(Level::Error, error.to_string());
+                self.report(Level::Error, error.to_string());
                 if let ExchangeError::File(FileError::Outside { path, files }) = error {
                     self.ask_about(&path, files);
                 }
@@ -228,7 +228,7 @@ impl App {
 
     /// Goes on with a project that has been read.
     pub(in crate::app) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
-        self.say_all(loaded.warnings);
+        self.report_all(loaded.warnings);
         self.shared.recent.add(&path);
         self.document = loaded.value;
         self.shared.slot = 0;
@@ -240,7 +240,7 @@ impl App {
 
     /// Goes on with the document in an image: an edit like others, so that saving does not replace the image.
     fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
-        self.say_all(loaded.warnings);
+        self.report_all(loaded.warnings);
         self.shared.recent.add(path);
         self.document = loaded.value;
         self.shared.slot = 0;
@@ -258,9 +258,9 @@ impl App {
         self.edits.mark_saved();
     }
 
-    fn say_all(&mut self, warnings: Vec<String>) {
+    fn report_all(&mut self, warnings: Vec<String>) {
         for warning in warnings {
-            self.say(Level::Warning, warning);
+            self.report(Level::Warning, warning);
         }
     }
 
@@ -334,13 +334,13 @@ impl App {
         }
     }
 
-    /// The system's dialog was left without a file, or was never seen: which, it does not tell.
-    pub(in crate::app) fn say_unsaved(&mut self, purpose: Purpose) {
+    /// The system's dialog was left without a file, or was never seen; it does not report which.
+    pub(in crate::app) fn report_unsaved(&mut self, purpose: Purpose) {
         let text = format!(
             "{}: no file was chosen, nothing is saved. If no dialog was seen: File › Type file names",
             purpose.title()
         );
-        self.say(Level::Warning, text);
+        self.report(Level::Warning, text);
     }
 
     /// Changes how files are chosen.
@@ -349,7 +349,7 @@ impl App {
             true => "files are chosen by typing their paths in the window",
             false => "files are chosen in the system's dialog",
         };
-        self.say(Level::Info, text);
+        self.report(Level::Info, text);
     }
 
     /// Shows the image through a table of colours.
@@ -361,7 +361,7 @@ impl App {
                 self.document.view.lut = Some(path);
                 self.edits.note(format!("Show through {name}"), "");
             }
-            Err(error) => self.say(Level::Error, error.to_string()),
+            Err(error) => self.report(Level::Error, error.to_string()),
         }
     }
 
@@ -381,10 +381,10 @@ impl App {
         });
     }
 
-    fn say_saved(&mut self, path: &Path, saved: Result<(), String>) {
+    fn report_saved(&mut self, path: &Path, saved: Result<(), String>) {
         match saved {
-            Ok(()) => self.say(Level::Info, format!("saved {}", path.display())),
-            Err(error) => self.say(Level::Error, error),
+            Ok(()) => self.report(Level::Info, format!("saved {}", path.display())),
+            Err(error) => self.report(Level::Error, error),
         }
     }
 }

@@ -25,7 +25,7 @@ impl App {
     /// Changes the user's folder, beside the window.
     pub(in crate::app) fn change_library(&mut self, change: Change) {
         let Some(folder) = self.shared.library.folder.clone() else {
-            self.say(
+            self.report(
                 Level::Error,
                 "there is no folder for your materials: set HOME, or save the material as a file",
             );
@@ -72,7 +72,7 @@ impl App {
         match listed {
             Ok(listed) => {
                 if !listed.words.is_empty() {
-                    self.say(Level::Info, listed.words);
+                    self.report(Level::Info, listed.words);
                 }
                 self.shared.library.removed = listed.removed;
                 self.shared.library.take_list(listed.entries);
@@ -81,7 +81,7 @@ impl App {
                     self.shared.library.ask_name(path);
                 }
             }
-            Err(error) => self.say(Level::Error, error.to_string()),
+            Err(error) => self.report(Level::Error, error.to_string()),
         }
     }
 }

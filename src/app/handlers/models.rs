@@ -57,7 +57,7 @@ impl App {
             (camera.target, camera.distance, camera.position) = (None, None, None);
             let left_out = self.document.add_lights_and_cameras(model);
             if let Some(message) = lights_left_out(left_out) {
-                self.say(Level::Warning, message);
+                self.report(Level::Warning, message);
             }
         }
         self.edits.note(format!("{MODEL_CHANGED} {}", model.name), "");
@@ -78,7 +78,7 @@ impl App {
         let (Some(before), Some(model)) = (before, model) else {
             return;
         };
-        self.say(Level::Info, format!("read {} again", model.name));
+        self.report(Level::Info, format!("read {} again", model.name));
         if !matches!(self.document.model, ModelSource::File(_)) {
             return;
         }

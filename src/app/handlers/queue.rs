@@ -30,7 +30,7 @@ impl App {
     pub(in crate::app) fn take_queue_news(&mut self) {
         for ended in self.shared.queue.take_news() {
             let (level, text) = words(ended);
-            self.say(level, text);
+            self.report(level, text);
         }
     }
 

@@ -8,18 +8,18 @@ use crate::render::worker::Level;
 impl App {
     /// Takes the reports of the thread that saves documents for recovery.
     pub(in crate::app) fn take_autosave_reports(&mut self) {
-        for text in self.autosave.witness.take_told() {
-            self.say(Level::Error, text);
+        for text in self.autosave.witness.take_reported() {
+            self.report(Level::Error, text);
         }
         for report in self.autosave.take_reports() {
             match report {
                 autosave::Report::Found(leftovers) => {
                     let documents = leftovers.iter().filter(|leftover| leftover.contents.is_some());
-                    self.say(Level::Info, format!("unsaved documents found: {}", documents.count()));
+                    self.report(Level::Info, format!("unsaved documents found: {}", documents.count()));
                     self.leftovers = leftovers;
                 }
                 autosave::Report::Failed(error) => {
-                    self.say(
+                    self.report(
                         Level::Warning,
                         format!("unsaved edits are not kept for a crash: {error}"),
                     );
@@ -53,7 +53,7 @@ impl App {
             return;
         };
         for warning in &recovered.warnings {
-            self.say(Level::Warning, warning.clone());
+            self.report(Level::Warning, warning.clone());
         }
         let name = name(&recovered);
         self.document = recovered.document;
@@ -64,7 +64,7 @@ impl App {
         self.edits.mark_unsaved();
         self.autosave.keep(&self.document, self.files.project.as_deref());
         self.autosave.discard(leftover.index);
-        self.say(Level::Info, format!("restored {name}; it has not been saved yet"));
+        self.report(Level::Info, format!("restored {name}; it has not been saved yet"));
         self.leave_leftovers();
     }
 
@@ -72,7 +72,7 @@ impl App {
     fn leave_leftovers(&mut self) {
         if !self.leftovers.is_empty() {
             let count = self.leftovers.len();
-            self.say(
+            self.report(
                 Level::Info,
                 format!("unsaved documents left for the next start: {count}"),
             );

@@ -26,7 +26,7 @@ impl App {
     /// Changes the pinned states, beside the window.
     pub(in crate::app) fn change_snapshots(&mut self, change: PinChange) {
         let Some(folder) = self.shared.snapshots.folder.clone() else {
-            self.say(
+            self.report(
                 Level::Error,
                 "there is no folder for snapshots: set HOME, or save the image as a .png, which has the document inside",
             );
@@ -34,7 +34,7 @@ impl App {
         };
         let picture = self.worker.snapshot().picture.clone();
         if change == PinChange::Add && picture.is_none() {
-            self.say(Level::Warning, "there is no image to pin yet");
+            self.report(Level::Warning, "there is no image to pin yet");
             return;
         }
         let document = self.document.clone();
@@ -78,10 +78,10 @@ impl App {
         match listed {
             Ok(listed) => {
                 if !listed.words.is_empty() {
-                    self.say(Level::Info, listed.words);
+                    self.report(Level::Info, listed.words);
                 }
                 for error in listed.errors {
-                    self.say(Level::Warning, error);
+                    self.report(Level::Warning, error);
                 }
                 let snapshots = &mut self.shared.snapshots;
                 let is_there = |path: &PathBuf| listed.pinned.iter().any(|pinned| pinned.path == *path);
@@ -89,7 +89,7 @@ impl App {
                 snapshots.pinned = listed.pinned;
                 snapshots.removed = listed.removed;
             }
-            Err(error) => self.say(Level::Error, error.to_string()),
+            Err(error) => self.report(Level::Error, error.to_string()),
         }
     }
 

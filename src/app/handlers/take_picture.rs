@@ -18,7 +18,7 @@ impl App {
     /// Hands the image over as soon as it is whole.
     pub(in crate::app) fn want_picture(&mut self, to: Destination) {
         if self.worker.snapshot().picture.is_none() {
-            self.say(Level::Warning, "there is no image yet");
+            self.report(Level::Warning, "there is no image yet");
         } else {
             self.files.wanted_pictures.push(to);
         }
@@ -52,7 +52,7 @@ impl App {
             output::write(&path, picture.rendered(), &picture.document).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
-                "saved {} ({size}, {} samples a pixel)",
+                "saved {} ({size}, {} samples per pixel)",
                 path.display(),
                 picture.samples_per_pixel
             ))

@@ -87,7 +87,7 @@ impl App {
             Answer::Discard => self.go_on(ctx, then),
             Answer::Save => {
                 if self.dialogs.is_asking() {
-                    self.say(
+                    self.report(
                         Level::Warning,
                         "a file is being chosen already: choose or cancel it first",
                     );

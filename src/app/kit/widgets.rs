@@ -414,14 +414,14 @@ pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)
 
 /// The same, opened or closed by the program in this frame.
 pub(in crate::app) fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
-    let wished = requested(ui)
+    let request = requested(ui)
         .is_some_and(|requested| requested.group == title)
         .then_some(true);
     let header = RichText::new(title).strong();
     let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(opens.unwrap_or(true))
-        .open(wished.or(opens))
+        .open(request.or(opens))
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);

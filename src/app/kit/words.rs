@@ -12,13 +12,13 @@ pub(in crate::app) fn duration(seconds: f64) -> String {
 }
 
 /// A time from which what is left of a work is known, seconds.
-const TOLD_FROM_S: f64 = 0.5;
+const FORECAST_FROM_S: f64 = 0.5;
 /// A share from which what is left of a work is known.
-const TOLD_FROM_SHARE: f64 = 0.01;
+const FORECAST_FROM_SHARE: f64 = 0.01;
 
 /// What is left of a work of which a share is done after a time: "40 s left". `None` where that would be a guess.
 pub(in crate::app) fn time_left(share: f64, seconds: f64) -> Option<String> {
-    let is_told = seconds >= TOLD_FROM_S && (TOLD_FROM_SHARE..1.0).contains(&share);
+    let is_told = seconds >= FORECAST_FROM_S && (FORECAST_FROM_SHARE..1.0).contains(&share);
     is_told.then(|| format!("{} left", about(seconds * (1.0 / share - 1.0))))
 }
 

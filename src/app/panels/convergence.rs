@@ -48,12 +48,12 @@ fn unknown(render: &RenderSettings) -> String {
 fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
     let noise = &last.noise;
     ui.label(format!(
-        "Error {} after {} and {:.0} samples a pixel",
+        "Error {} after {} and {:.0} samples per pixel",
         with_band(noise),
         duration(last.engine_seconds),
         last.samples_per_pixel,
     ));
-    if let Some(text) = outlook(last, progress.noise_wanted) {
+    if let Some(text) = forecast(last, progress.noise_wanted) {
         ui.strong(text);
     }
     if noise.relative > 0.0 {
@@ -76,7 +76,7 @@ fn with_band(noise: &Noise) -> String {
 }
 
 /// What the next step takes: "1 % in 12 s more".
-fn outlook(last: &Measurement, wanted: Option<f64>) -> Option<String> {
+fn forecast(last: &Measurement, wanted: Option<f64>) -> Option<String> {
     let error = last.noise.relative;
     let next = || STEPS.into_iter().find(|step| *step < error);
     let goal = wanted.or_else(next)?;
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn what_more_accuracy_costs_is_told_in_words() {
-        let text = |relative, seconds, wanted| outlook(&seen(relative, seconds), wanted);
+        let text = |relative, seconds, wanted| forecast(&seen(relative, seconds), wanted);
         assert_eq!(text(0.02, 4.0, Some(0.01)).as_deref(), Some("1 % in 12 s more"));
         assert_eq!(text(0.012, 10.0, None).as_deref(), Some("1 % in 4.4 s more"));
         assert_eq!(text(0.009, 4.0, Some(0.01)).as_deref(), Some("1 % reached"));

@@ -16,7 +16,7 @@ pub(super) trait Panel {
     fn tick(&mut self, _desk: &mut Desk<'_>) {}
 
     /// Hears of a command that was chosen somewhere else and concerns a panel.
-    fn hear(&mut self, _command: Command) {}
+    fn on_command(&mut self, _command: Command) {}
 }
 
 macro_rules! panels {
@@ -50,7 +50,7 @@ impl Panels {
     }
 
     /// See [`Panel::hear`].
-    pub(super) fn hear(&mut self, command: Command) {
-        self.0.iter_mut().for_each(|(_, panel)| panel.hear(command));
+    pub(super) fn on_command(&mut self, command: Command) {
+        self.0.iter_mut().for_each(|(_, panel)| panel.on_command(command));
     }
 }

@@ -99,7 +99,7 @@ impl Panel for RacePanel {
         self.worker.tick(desk);
     }
 
-    fn hear(&mut self, command: Command) {
+    fn on_command(&mut self, command: Command) {
         if command == Command::Race {
             self.worker.request();
         }

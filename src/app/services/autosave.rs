@@ -37,7 +37,7 @@ enum Order {
     Discard(usize),
 }
 
-/// What the thread has to tell.
+/// A report of the thread.
 pub(in crate::app) enum Report {
     /// What crashes left.
     Found(Vec<Leftover>),

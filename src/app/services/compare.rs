@@ -89,7 +89,7 @@ pub(in crate::app) struct Compared {
     pub(in crate::app) scale: f32,
     /// Root mean square relative difference.
     pub(in crate::app) rms: f64,
-    /// Samples a pixel of A and B.
+    /// Samples per pixel of A and B.
     pub(in crate::app) samples: [u32; 2],
     /// Differs from one to the next.
     pub(in crate::app) serial: u64,

@@ -16,9 +16,9 @@ use crate::panics;
 use crate::store::recovery;
 
 /// Most actions that a report lists.
-const DEEDS: usize = 40;
+const ACTIONS: usize = 40;
 /// Longest line about one of them, characters.
-const DEED_LENGTH: usize = 160;
+const ACTION_LENGTH: usize = 160;
 
 /// The witnesses of all windows.
 static WITNESSES: Mutex<Vec<Weak<Mutex<Known>>>> = Mutex::new(Vec::new());
@@ -35,7 +35,7 @@ struct Known {
     /// What renders.
     engine: String,
     /// What was done last, with how often in a row; the latest last.
-    deeds: VecDeque<(String, u32)>,
+    actions: VecDeque<(String, u32)>,
     /// What is to be said in the window.
     reported: Vec<String>,
     /// Whose panic ends the window.
@@ -48,7 +48,7 @@ impl Default for Witness {
             unsaved: None,
             copy: None,
             engine: "none yet".to_owned(),
-            deeds: VecDeque::new(),
+            actions: VecDeque::new(),
             reported: Vec::new(),
             window: std::thread::current().id(),
         }));
@@ -89,20 +89,20 @@ impl Witness {
     }
 
     /// Records an action.
-    pub(in crate::app) fn note(&self, deed: impl Into<String>) {
-        let deed: String = deed.into().chars().take(DEED_LENGTH).collect();
-        let deeds = &mut self.known().deeds;
-        match deeds.back_mut() {
-            Some((last, count)) if *last == deed => *count += 1,
-            _ => deeds.push_back((deed, 1)),
+    pub(in crate::app) fn note(&self, action: impl Into<String>) {
+        let action: String = action.into().chars().take(ACTION_LENGTH).collect();
+        let actions = &mut self.known().actions;
+        match actions.back_mut() {
+            Some((last, count)) if *last == action => *count += 1,
+            _ => actions.push_back((action, 1)),
         }
-        if deeds.len() > DEEDS {
-            deeds.pop_front();
+        if actions.len() > ACTIONS {
+            actions.pop_front();
         }
     }
 
     /// What is to be said of panics in threads beside the window's.
-    pub(in crate::app) fn take_told(&self) -> Vec<String> {
+    pub(in crate::app) fn take_reported(&self) -> Vec<String> {
         std::mem::take(&mut self.known().reported)
     }
 }
@@ -131,7 +131,7 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
     let Some(copy) = known.copy.clone() else { return };
     let mut failures = Vec::new();
     if let Some((document, project)) = &known.unsaved
-        && let Err(error) = recovery::put_aside(&copy, document, project.as_deref())
+        && let Err(error) = recovery::save_for_recovery(&copy, document, project.as_deref())
     {
         failures.push(error.to_string());
     }
@@ -177,13 +177,13 @@ fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failures: &
         line("The document could not be saved for recovery", failure);
     }
     line("Done last", &"");
-    for (deed, count) in &known.deeds {
+    for (action, count) in &known.actions {
         let times = if *count > 1 {
             format!(" × {count}")
         } else {
             String::new()
         };
-        line("  ", &format_args!("{deed}{times}"));
+        line("  ", &format_args!("{action}{times}"));
     }
     line(
         "Backtrace",

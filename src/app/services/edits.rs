@@ -178,8 +178,8 @@ mod tests {
             let mut now = Instant::now();
             let mut is_dragging = false;
             for step in 0..250 {
-                let deed = below(14);
-                match deed {
+                let operation = below(14);
+                match operation {
                     0..5 => {
                         let key = ["", "roughness", "yaw"][below(3)];
                         let value = below(4) as u32;
@@ -234,7 +234,7 @@ mod tests {
                 assert_eq!(
                     edits.history.current().render.seed,
                     current,
-                    "step {step} of seed {seed}, deed {deed}: {model:?}"
+                    "step {step} of seed {seed}, operation {operation}: {model:?}"
                 );
                 assert_eq!(edits.undo_label().is_some(), model.at > 0, "step {step} of seed {seed}");
                 assert_eq!(edits.redo_label().is_some(), model.at + 1 < model.steps.len());

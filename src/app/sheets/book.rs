@@ -3,7 +3,7 @@
 use egui::{Align, Order, RichText, ScrollArea, Ui};
 use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 
-use crate::app::book::{self, CONTENTS, SCHEME, Section};
+use crate::app::book::{self, CONTENTS, Pages, SCHEME, Section};
 use crate::app::kit::theme;
 
 /// Size of the window at first, points.
@@ -42,6 +42,7 @@ pub(in crate::app) fn heading(ui: &mut Ui, title: &str, address: &'static str) {
 /// The window.
 #[derive(Default)]
 pub(in crate::app) struct Manual {
+    pages: Pages,
     /// Addresses that were opened, the shown one last; empty if it is closed.
     addresses: Vec<String>,
     sections: Vec<Section>,
@@ -51,9 +52,16 @@ pub(in crate::app) struct Manual {
 }
 
 impl Manual {
+    pub(in crate::app) fn new(pages: Pages) -> Self {
+        Self {
+            pages,
+            ..Self::default()
+        }
+    }
+
     fn open(&mut self, address: String) {
         let (page, _) = book::parts(&address);
-        self.sections = book::sections(page);
+        self.sections = book::sections(self.pages, page);
         self.cache = CommonMarkCache::default();
         for link in self
             .sections

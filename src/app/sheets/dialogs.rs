@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, Ui};
 
 use crate::app::kit::{theme, widgets};
-use crate::app::services::heard;
+use crate::app::services::log_failures;
 use crate::render::output::FORMATS;
 use crate::scene::texture::TextureTarget;
 use crate::store::exchange;
@@ -200,7 +200,7 @@ impl Dialogs {
             return;
         }
         // What an earlier one has said.
-        heard::dialog_failed();
+        log_failures::dialog_failed();
         match self.open_dialog(purpose, &suggestion, ctx) {
             Some(answer) => {
                 self.pending = Some(Pending {
@@ -269,7 +269,7 @@ impl Dialogs {
     /// where the system's dialog was left without a choice. `recent` are the folders of files opened and saved last.
     pub(in crate::app) fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
         let chosen = self
-            .poll(heard::dialog_failed)
+            .poll(log_failures::dialog_failed)
             .or_else(|| self.show_field(ui, recent).map(|(purpose, path)| (purpose, Some(path))))?;
         if let Some(folder) = chosen.1.as_ref().and_then(|path| path.parent()) {
             self.folder = Some(folder.to_owned());

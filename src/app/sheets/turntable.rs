@@ -136,7 +136,7 @@ impl TurntableSheet {
         number(
             "Turntable samples",
             "Samples",
-            "Samples a pixel of each.",
+            "Samples per pixel of each.",
             &mut self.samples,
             1.0..=65536.0,
         );

@@ -194,7 +194,7 @@ impl<'a> Maker<'a> {
         sheet::write_thumbnail(&self.file.folder, &picture.name, shown, &document.view)
     }
 
-    /// The record last: what has one is done.
+    /// Writes the record last: it marks the image complete.
     fn finish(&self, wanted: &Wanted<'_>, mut row: Row) -> anyhow::Result<Row> {
         row.files_hash = Some(hash_of(&row.files)?);
         let text = serde_json::to_string_pretty(&row)? + "\n";
@@ -208,7 +208,7 @@ impl<'a> Maker<'a> {
         let mut whole: Option<(PathBuf, KeptFilm)> = None;
         let mut seconds = 0.0;
         for (range, row) in self.parts(&wanted)? {
-            // What another division into parts has left is passed over.
+            // Ignores slices that another split has left.
             if range[0] != done || range[1] > samples {
                 continue;
             }

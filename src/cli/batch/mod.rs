@@ -18,8 +18,8 @@ use self::maker::Maker;
 use self::row::{Row, Status};
 use super::answer::{Destination, Lines};
 use super::{PartialFailure, parse};
+use crate::console::message;
 use crate::render::EngineChoice;
-use crate::say::say;
 use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith batch`.
@@ -136,7 +136,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
             path,
             template::text(path, &file, all.len(), arguments.slices).as_bytes(),
         )?;
-        say!(
+        message!(
             "wrote {}: {} images, {} tasks each",
             path.display(),
             all.len(),
@@ -220,8 +220,8 @@ fn report(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
         ..
     } = row;
     match &row.error {
-        Some(error) => say!("{number} of {count}, {picture}: {error}"),
-        None => say!("{number} of {count}, {picture}: {}", status.word()),
+        Some(error) => message!("{number} of {count}, {picture}: {error}"),
+        None => message!("{number} of {count}, {picture}: {}", status.word()),
     }
     Ok(())
 }

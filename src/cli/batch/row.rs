@@ -52,7 +52,7 @@ pub(super) struct Row {
     /// The numbers of the first sample and the one after the last, of a part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) samples: Option<[u32; 2]>,
-    /// Samples a pixel.
+    /// Samples per pixel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) samples_per_pixel: Option<u32>,
     /// The engine's own time.

@@ -9,11 +9,11 @@ use image::imageops::{FilterType, overlay, resize};
 
 use super::file::{BatchFile, Picture};
 use super::row::Row;
+use crate::console::message;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::display::display;
-use crate::say::say;
 use crate::store::picture::png_bytes;
 use crate::store::replace::{save_atomically, save_by};
 
@@ -74,7 +74,7 @@ pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()
     save_by(&path, |file| write_picture_sheet(file, &sheet))?;
     let page = folder.join(format!("{SHEET}.html"));
     save_atomically(&page, html(folder, &title, pictures).as_bytes())?;
-    say!("wrote {} and {}", path.display(), page.display());
+    message!("wrote {} and {}", path.display(), page.display());
     Ok(())
 }
 

@@ -36,7 +36,7 @@ parameterDefinitions:
     objectType: FILE
     dataFlow: IN
 {batch}  - name: Folder
-    description: Where the pictures go; all workers see it.
+    description: The folder of the images, which all workers share.
     type: PATH
     objectType: DIRECTORY
     dataFlow: OUT
@@ -45,7 +45,7 @@ parameterDefinitions:
     type: STRING
     default: glossmith
   - name: Engine
-    description: What renders. Pictures are the same to the last bit on the processor.
+    description: The engine. On the CPU images are bit-identical.
     type: STRING
     allowedValues: [auto, gpu, cpu]
     default: auto

@@ -7,6 +7,7 @@ use image::RgbImage;
 
 use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits};
+use crate::console::{message, output};
 use crate::document::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;
@@ -15,7 +16,6 @@ use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_pi
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 use crate::render::{EngineChoice, Session};
-use crate::say::{put, say};
 use crate::store::replace::save_by;
 
 /// Those that take part where none are named.
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
 }
 
 fn print(race: &Race) {
-    put!(
+    output!(
         "{} on {}, {} x {}, {} s each",
         race.machine.engine,
         race.machine.adapter,
@@ -93,7 +93,7 @@ fn print(race: &Race) {
         race.height,
         race.seconds
     );
-    put!(
+    output!(
         "  time to {} %   bias      error     technique (* none is both faster and less biased)",
         100.0 * race.noise
     );
@@ -108,7 +108,7 @@ fn print(race: &Race) {
         } else {
             format!("<{:.2} %", 100.0 * runner.bias.high)
         };
-        put!(
+        output!(
             "{mark} {:>11.3} s   {bias:8}  {:6.2} %  {}",
             runner.time_to_noise,
             100.0 * runner.error.value,
@@ -173,7 +173,7 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
         save_by(&path, |file| {
             write_picture_sheet(file, &PictureSheet { title, pictures })
         })?;
-        say!("wrote {}", path.display());
+        message!("wrote {}", path.display());
         anyhow::Ok(())
     };
     let title = format!("After {} s each", race.seconds);
@@ -227,15 +227,10 @@ fn pareto_plot(race: &Race) -> PointPlot {
             is_logarithmic: true,
         },
         y: Axis {
-            label: format!("Bias (%); values under {} are not significant", small_number(least)),
+            label: format!("Bias (%); values under {least:.2} are not significant"),
             range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),
             is_logarithmic: true,
         },
         points,
     }
-}
-
-/// A small number for a label.
-fn small_number(value: f64) -> String {
-    format!("{value:.2e}").replace("e0", "")
 }

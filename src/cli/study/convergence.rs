@@ -4,15 +4,15 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits};
+use crate::console::output;
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
-use crate::say::put;
 
 /// Longest time for the reference where none is given, seconds; the same quickly.
 const REFERENCE_SECONDS: f64 = 60.0;
 const QUICK_REFERENCE_SECONDS: f64 = 0.3;
-/// Samples a pixel of `--quick`.
+/// Samples per pixel of `--quick`.
 const QUICK_SAMPLES: u32 = 64;
 
 /// Arguments of `glossmith study convergence`.
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
     folder.csv(&head, report.points.iter().map(row))?;
     folder.plots(&plot(&report), line_plot_file)?;
     if let (true, Some(last), Some(slope)) = (common.answer.has_words(), report.points.last(), report.slope) {
-        put!(
+        output!(
             "error {:.3} % ({:.3} to {:.3}) after {:.2} s; against a reference {:.3} %; it falls with the time to the \
              power of {slope:.2}",
             100.0 * last.noise,

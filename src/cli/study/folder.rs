@@ -6,8 +6,8 @@ use anyhow::Context as _;
 use serde::Serialize;
 
 use crate::cli::answer::Answer;
+use crate::console::message;
 use crate::plot::PlotError;
-use crate::say::say;
 use crate::store::replace::save_atomically;
 
 /// The folder that a study writes into, and the name that its files begin with.
@@ -61,7 +61,7 @@ impl Folder<'_> {
     fn write(&self, ending: &str, contents: &[u8]) -> anyhow::Result<()> {
         let path = self.file(ending);
         save_atomically(&path, contents)?;
-        say!("wrote {}", path.display());
+        message!("wrote {}", path.display());
         Ok(())
     }
 }

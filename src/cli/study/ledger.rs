@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CommonArguments, digits};
+use crate::console::output;
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
-use crate::say::put;
 
 /// Arguments of `glossmith study ledger`.
 #[derive(Debug, Args)]
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
 }
 
 fn print(found: &Ledger) {
-    put!(
+    output!(
         "{} on {}, {} x {}: {:.2} ms for one sample of every pixel",
         found.machine.engine,
         found.machine.adapter,
@@ -82,9 +82,9 @@ fn print(found: &Ledger) {
         found.height,
         found.ms_per_sample
     );
-    put!("{:>9} {:>7}", "ms", "share");
+    output!("{:>9} {:>7}", "ms", "share");
     for entry in &found.entries {
-        put!(
+        output!(
             "{:>9.3} {:>5.1} %  {}",
             entry.ms,
             100.0 * entry.share_of_frame,

@@ -8,10 +8,10 @@ use clap::Args;
 use super::folder::{self, Folder};
 use super::{Bar, digits};
 use crate::cli::answer::Answer;
+use crate::console::output;
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::EngineChoice;
 use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
-use crate::say::put;
 
 /// The image of `--quick`.
 const QUICK_SIZE: [u32; 2] = [48, 32];
@@ -104,7 +104,7 @@ fn plot(report: &SamplingReport) -> BarPlot {
 }
 
 fn print(report: &SamplingReport) {
-    put!(
+    output!(
         "{} on {}, {} x {}",
         report.machine.engine,
         report.machine.adapter,
@@ -112,9 +112,9 @@ fn print(report: &SamplingReport) {
         report.height
     );
     for (index, samples) in SAMPLES.into_iter().enumerate() {
-        put!("\n{samples} a pixel, ms              alone  with rays  whole frame  against geometric/smooth");
+        output!("\n{samples} a pixel, ms              alone  with rays  whole frame  against geometric/smooth");
         for row in report.rows.iter().filter(|row| row.samples == samples) {
-            put!(
+            output!(
                 "{:24} {:9.3}  {:9.3}  {:11.2}  {:.2}",
                 row.name,
                 row.sampling_ms,
@@ -123,14 +123,14 @@ fn print(report: &SamplingReport) {
                 row.against_geometric
             );
         }
-        put!("{:24} {:9.3}", "random numbers", report.numbers_ms[index]);
+        output!("{:24} {:9.3}", "random numbers", report.numbers_ms[index]);
         if report.measured_share[index] < 1.0 {
-            put!(
+            output!(
                 "measured on {:.1} % of the rows, and scaled",
                 100.0 * report.measured_share[index]
             );
         }
     }
-    put!("");
-    report.verdict.iter().for_each(|line| put!("{line}"));
+    output!("");
+    report.verdict.iter().for_each(|line| output!("{line}"));
 }

@@ -6,10 +6,10 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CommonArguments, digits};
+use crate::console::output;
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::scaling::{Growing, ScalingOptions, ScalingPoint, ScalingReport, scaling};
-use crate::say::put;
 
 /// Arguments of `glossmith study scaling`.
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
 
 fn print(report: &ScalingReport) {
     for point in &report.points {
-        put!(
+        output!(
             "{:10} {:>9}  {:9.1} ns a sample  {:7.3} s to set up",
             point.growing.name(),
             point.size,

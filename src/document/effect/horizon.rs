@@ -9,7 +9,7 @@ use crate::scene::facing::least_view_cosine;
 /// How far below the view's cosine roughness must stay: the rounding of either.
 const MARGIN: f64 = 1e-3;
 
-/// Which rule all lobes share; off where it is proven that no sample is below the surface.
+/// The horizon policy that all lobes share; off if provably no sample is below the surface.
 pub(super) fn decide(facts: &Facts<'_>) -> Decision {
     let crosses = |lobe: u32| !Lobe::ALL[lobe as usize].is_hemispherical();
     let shared = facts.shared(|m| m.horizon, |number| Horizon::ALL[number as usize].name());

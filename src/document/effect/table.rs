@@ -150,7 +150,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::ShadowTerminator,
         label: "Shadow terminator",
-        help: "Light that shines on the round surface that smooth normals tell of, though not on its coarse triangles.",
+        help: "Light on the round surface that smooth normals describe, instead of on its coarse triangles.",
         decide: |facts| {
             if facts.settings.rounds_surfaces {
                 Decision::on("smooth normals lean away from coarse triangles")

@@ -82,7 +82,7 @@ pub enum Kind {
         kind: Box<Kind>,
         /// How "left to the program" is written.
         word: &'static str,
-        /// What it is once switched on; `None` where only the scene can tell.
+        /// What it is once switched on; `None` if only the scene knows it.
         at_first: Option<Value>,
     },
     /// Linear RGB, each in [0, 1].

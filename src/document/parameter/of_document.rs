@@ -140,7 +140,7 @@ fn sampling() -> Vec<Parameter<Document>> {
 fn stopping() -> Vec<Parameter<Document>> {
     use Stage::Goal;
     vec![
-        of("render.samples", Goal, "Samples", "Samples a pixel after which rendering stops: noise halves with four times as many. With adaptive sampling the most of a pixel.", count(range::SAMPLES), field!(Count render.samples))
+        of("render.samples", Goal, "Samples", "Samples per pixel at which rendering stops: noise halves with four times as many. With adaptive sampling, the most that a pixel gets.", count(range::SAMPLES), field!(Count render.samples))
             .named("Samples").group("Image").flag("samples"),
         of("render.time", Goal, "Time limit", "Stops rendering after this time.", off(real(range::TIME_S, "s"), Value::Real(60.0)), optional!(Real render.time_s))
             .named("Time limit").group("Image").flag("time"),

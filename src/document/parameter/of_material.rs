@@ -108,7 +108,7 @@ fn specular_shape() -> Vec<Parameter> {
         },
         Parameter {
             label: "Anisotropy",
-            symbol: "R_x, R_y",
+            symbol: "Rx, Ry",
             help: "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.",
             applies: |material| has_specular(material) && material.lobe.is_anisotropic(),
             row: bar(-1.0, 1.0),

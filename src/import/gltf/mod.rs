@@ -1,7 +1,7 @@
 //! glTF 2.0 files (.gltf and .glb): a scene in a pose, with its materials, cameras and lights.
 //!
 //! The gltf crate parses the JSON; buffers are read by [`accessor`], which checks every range before it reads, since a
-//! damaged file must give an error and never a panic. Whatever cannot be read is left out, and the report says so: only
+//! damaged file must give an error and never a panic. Unreadable parts are left out, and the report says so: only
 //! a file that leaves nothing to show is an error.
 
 mod accessor;

@@ -275,7 +275,7 @@ fn check_growth(name: &str, bytes: &[u8]) -> Result<(), String> {
     let [growth, floor] = GROWTH;
     match header(name, bytes) {
         Some(header) if header.texels() > growth * bytes.len() as u64 + floor => {
-            Err("it is far larger than its file can tell".to_owned())
+            Err("its file is far too small for it".to_owned())
         }
         _ => Ok(()),
     }

@@ -23,7 +23,7 @@ static TABLE: LazyLock<Vec<[f32; 3]>> = LazyLock::new(|| {
     numbers.as_chunks::<3>().0.to_vec()
 });
 
-/// ACES 2.0 (Academy of Motion Picture Arts and Sciences, 2024; 100 nit, Rec. 709), linear in the cells' six tetrahedra, so
+/// ACES 2.0 (A.M.P.A.S., 2024; 100 nit, Rec. 709), linear in the cells' six tetrahedra, so
 /// that greys stay grey. Within 0.006 of the transform, sRGB-encoded, for 99 of 100 colours, 0.0005 in the mean.
 #[inline(always)]
 pub fn tone_aces2<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {

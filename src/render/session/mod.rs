@@ -310,8 +310,8 @@ impl Session {
         self.change_over()?;
         let outcome = self.render(budget);
         self.is_stuck = outcome.is_err();
-        if let Some([software, processor]) = self.rates() {
-            calibration::compare_rates(software, processor);
+        if let Some([software, cpu]) = self.rates() {
+            calibration::compare_rates(software, cpu);
         }
         outcome
     }
@@ -368,7 +368,7 @@ impl Session {
             return Ok(());
         }
         let begun = Instant::now();
-        // Where rounds decide nothing about the picture, their length may go by the clock.
+        // Where rounds decide nothing about the image, their length may go by the clock.
         let is_watched = document.render.noise.is_none() && !document.render.is_adaptive();
         let by_clock = is_watched || matches!(self.engine, Engine::Gpu(_));
         let pacing = Pacing {

@@ -8,7 +8,7 @@ use super::references::{Effort, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::render::Attendant;
+use crate::render::StepDenoiser;
 use crate::render::{EngineChoice, Precision, Session, StopReason};
 
 /// Precision of the reference relative to the render, if time permits.
@@ -23,7 +23,7 @@ const STEP: Duration = Duration::from_millis(100);
 pub struct ConvergencePoint {
     /// The engine's own time, seconds.
     pub seconds: f64,
-    /// Samples a pixel until then, in the mean.
+    /// Samples per pixel until then, in the mean.
     pub samples_per_pixel: f64,
     /// Estimated relative error.
     pub noise: f64,
@@ -40,7 +40,7 @@ pub struct ConvergencePoint {
 pub struct DenoisedPoint {
     /// Engine time so far plus the time of denoising this image, in seconds.
     pub seconds: f64,
-    /// Samples a pixel until then, in the mean.
+    /// Samples per pixel until then, in the mean.
     pub samples_per_pixel: f64,
     /// Estimated relative error, bias included.
     pub error: f64,
@@ -87,14 +87,14 @@ pub fn convergence(
     let mut steps = Steps::new(watch, 2.0);
     let mut session = Session::open(engine)?;
     warmed(&mut session, document)?;
-    let mut attendant = Attendant::new(document);
+    let mut step_denoiser = StepDenoiser::new(document);
     let (mut denoised, mut next_samples) = (Vec::new(), 2.0);
     let progress = loop {
         session.step(STEP)?;
         let seen = session.progress();
         if seen.mean_samples >= next_samples || seen.is_done {
             next_samples = DENOISED_GROWTH * seen.mean_samples;
-            denoised.extend(denoised_point(&mut attendant, &mut session)?);
+            denoised.extend(denoised_point(&mut step_denoiser, &mut session)?);
         }
         let progress = session.progress();
         steps.report("Rendering", progress.share_done(document.render.time_s))?;
@@ -133,9 +133,12 @@ pub fn convergence(
     })
 }
 
-fn denoised_point(attendant: &mut Attendant, session: &mut Session) -> Result<Option<DenoisedPoint>, StudyError> {
+fn denoised_point(
+    step_denoiser: &mut StepDenoiser,
+    session: &mut Session,
+) -> Result<Option<DenoisedPoint>, StudyError> {
     let progress = session.progress();
-    let Some(denoised) = attendant.finish(session)? else {
+    let Some(denoised) = step_denoiser.finish(session)? else {
         return Ok(None);
     };
     Ok(denoised.error.map(|estimate| DenoisedPoint {

@@ -18,7 +18,7 @@ use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
-use crate::render::Attendant;
+use crate::render::StepDenoiser;
 use crate::render::{EngineChoice, Session};
 
 /// Minimum samples per pixel of each render by default: two in either half.
@@ -26,9 +26,9 @@ const SAMPLES_MIN: f64 = 4.0;
 /// Turns are added up to this many times as many until there are as many samples as asked for.
 const TURNS_FACTOR: usize = 50;
 /// Relative change of noise below which it is not reported in words: the estimate is no more precise.
-const NOISE_WORTH_TELLING: f64 = 0.05;
+const NOISE_RESOLVED: f64 = 0.05;
 /// Relative change of time below which no number is reported.
-const TIME_WORTH_TELLING: f64 = 0.005;
+const TIME_RESOLVED: f64 = 0.005;
 
 /// Name of the line that holds the scene's kernel against the general one.
 const KERNEL: &str = "kernel";
@@ -108,7 +108,7 @@ impl Entry {
     /// Cost in time, in words.
     pub fn time_words(&self) -> String {
         let share = self.ms / self.ms_without;
-        if share.abs() < TIME_WORTH_TELLING || !self.is_time_resolved() {
+        if share.abs() < TIME_RESOLVED || !self.is_time_resolved() {
             return "no measurable cost".to_owned();
         }
         let sign = if share > 0.0 { "+" } else { "−" };
@@ -362,7 +362,7 @@ fn denoising(
     session: &mut Session,
     options: &LedgerOptions,
 ) -> Result<Entry, StudyError> {
-    let mut attendant = Attendant::new(document);
+    let mut step_denoiser = StepDenoiser::new(document);
     warmed(session, document)?;
     let mut times = Vec::new();
     let (mut last, mut noise) = (None, 0.0);
@@ -370,7 +370,7 @@ fn denoising(
         while session.progress().mean_samples < options.samples_min {
             session.step(options.slice)?;
         }
-        last = attendant.finish(session)?;
+        last = step_denoiser.finish(session)?;
         times.extend(last.as_ref().map(|denoised| 1e3 * denoised.seconds));
         noise = crate::analysis::noise::noise(session.film()?).map_or(0.0, |noise| noise.relative);
     }
@@ -424,7 +424,7 @@ fn share_of_noise([with, without]: [f64; 2]) -> f64 {
 /// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
 fn words(entry: &Entry) -> String {
     let mut parts = vec![entry.time_words()];
-    if entry.noise_share.abs() >= NOISE_WORTH_TELLING {
+    if entry.noise_share.abs() >= NOISE_RESOLVED {
         let share = entry.noise_share;
         parts.push(if share > 1.0 {
             format!("{} × the noise", digits(share + 1.0))

@@ -15,7 +15,7 @@ use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
 use crate::job::film::Image;
-use crate::render::Attendant;
+use crate::render::StepDenoiser;
 use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
@@ -87,7 +87,7 @@ pub struct Runner {
     pub label: String,
     /// Engine time that it had in fact, seconds.
     pub seconds: f64,
-    /// Samples a pixel after it, in the mean.
+    /// Samples per pixel after it, in the mean.
     pub samples_per_pixel: f64,
     /// Estimated relative error, without a reference.
     #[serde(rename = "told_noise")]
@@ -155,13 +155,13 @@ struct Lane {
     technique: Technique,
     document: Document,
     session: Session,
-    attendant: Attendant,
+    step_denoiser: StepDenoiser,
 }
 
 impl Lane {
     /// Its displayed image, and the denoised one, if any.
     fn picture(&mut self) -> Result<(Arc<Image>, Option<Denoised>), StudyError> {
-        let denoised = self.attendant.finish(&mut self.session)?;
+        let denoised = self.step_denoiser.finish(&mut self.session)?;
         let image = match &denoised {
             Some(denoised) => denoised.image.clone(),
             None => Arc::new(self.session.image()?),
@@ -231,7 +231,7 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
         session.set_precision(precision(technique));
         lanes.push(Lane {
             technique: technique.clone(),
-            attendant: Attendant::new(&changed),
+            step_denoiser: StepDenoiser::new(&changed),
             document: changed,
             session,
         });

@@ -95,7 +95,7 @@ pub struct SamplingReport {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Random numbers alone, milliseconds, with 1 and with 100 samples a pixel.
+    /// Random numbers alone, milliseconds, with 1 and with 100 samples per pixel.
     pub numbers_ms: [f64; 2],
     /// Share of the rows that were measured, with 1 and with 100 samples.
     pub measured_share: [f64; 2],

@@ -12,7 +12,7 @@ use crate::scene::model::{AlphaMode, Filter, Slot, TextureRef, Wrap};
 pub struct TextureAssignment {
     /// The number of the slot.
     pub slot: usize,
-    /// What it is put on.
+    /// Parameter that the map multiplies.
     pub target: TextureTarget,
     /// The texture map.
     pub texture: UserTexture,

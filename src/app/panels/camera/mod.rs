@@ -82,7 +82,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
     });
 }
 
-/// The focus distance: until it is given, that of the target, which only the scene can tell.
+/// The focus distance: until it is given, that of the target, which only the scene knows.
 fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
     if desk.document.camera.aperture == 0.0 {
         desk.shared.picks.take_if(|pick| *pick == Pick::Focus);

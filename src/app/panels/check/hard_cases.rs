@@ -21,7 +21,7 @@ const PICTURE_SIDE: f32 = 40.0;
 
 /// How a run stands: the rows so far, and what is being run or went wrong.
 #[derive(Clone, Default)]
-struct Standing {
+struct Status {
     rows: Vec<HardRow>,
     running: Option<&'static str>,
     error: Option<String>,
@@ -29,7 +29,7 @@ struct Standing {
     begun: Option<Instant>,
 }
 
-impl Standing {
+impl Status {
     /// What is being run, which it is of how many, and what is left.
     fn doing(&self, name: &str) -> String {
         let (done, all) = (self.rows.len(), catalogue().count());
@@ -42,10 +42,10 @@ impl Standing {
 /// What the page remembers.
 #[derive(Default)]
 pub(super) struct HardState {
-    worker: Option<Background<HardOptions, Standing>>,
+    worker: Option<Background<HardOptions, Status>>,
     stop: Arc<AtomicBool>,
     /// What a run that was stopped had found.
-    stopped: Option<Standing>,
+    stopped: Option<Status>,
     /// Images by case, as textures of this run.
     textures: Vec<(&'static str, TextureHandle)>,
 }
@@ -119,9 +119,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
 }
 
 /// The thread that runs the cases, apart from those that render.
-fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Standing>> {
+fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Status>> {
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options: HardOptions, desk: &crate::render::background::Responder<'_, HardOptions, Standing>| {
+    let work = move |options: HardOptions, desk: &crate::render::background::Responder<'_, HardOptions, Status>| {
         work_apart();
         run(&options, &stop, &|standing| desk.publish(standing));
     };
@@ -129,10 +129,10 @@ fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Stan
 }
 
 /// Runs case after case, publishing after each, until it is stopped.
-fn run(options: &HardOptions, stop: &Arc<AtomicBool>, publish: &dyn Fn(Standing)) {
-    let mut standing = Standing {
+fn run(options: &HardOptions, stop: &Arc<AtomicBool>, publish: &dyn Fn(Status)) {
+    let mut standing = Status {
         begun: Some(Instant::now()),
-        ..Standing::default()
+        ..Status::default()
     };
     let mut stage = match Stage::open(options.engine, options.thorough) {
         Ok(stage) => stage.until(stop.clone()),

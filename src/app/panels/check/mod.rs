@@ -22,7 +22,7 @@ use crate::render::priority::work_apart;
 
 /// How a run stands.
 #[derive(Clone)]
-enum Standing {
+enum Status {
     Checking(String),
     Done(Vec<Check>),
     Stopped,
@@ -32,7 +32,7 @@ enum Standing {
 /// The checks, the hard cases and the benchmark.
 #[derive(Default)]
 pub(super) struct CheckPanel {
-    worker: Option<Background<CheckOptions, Standing>>,
+    worker: Option<Background<CheckOptions, Status>>,
     stop: Arc<AtomicBool>,
     thorough: bool,
     hard: HardState,
@@ -83,13 +83,13 @@ impl Panel for CheckPanel {
         widgets::comes_and_goes(ui, |ui| match worker.latest() {
             None => {}
             _ if is_stopped => widgets::note(ui, "Stopped."),
-            Some(Standing::Checking(_)) if !worker.is_busy() => {}
-            Some(Standing::Checking(group)) => widgets::note(ui, format!("Checking {group} …")),
-            Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
-            Some(Standing::Failed(why)) => {
+            Some(Status::Checking(_)) if !worker.is_busy() => {}
+            Some(Status::Checking(group)) => widgets::note(ui, format!("Checking {group} …")),
+            Some(Status::Stopped) => widgets::note(ui, "Stopped."),
+            Some(Status::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
             }
-            Some(Standing::Done(checks)) => table(ui, &checks),
+            Some(Status::Done(checks)) => table(ui, &checks),
         });
         ui.separator();
         widgets::comes_and_goes(ui, |ui| hard_cases::show(ui, &mut state.hard, engine));
@@ -103,15 +103,15 @@ impl Panel for CheckPanel {
 }
 
 /// The thread that checks, apart from those that render.
-fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Standing>> {
+fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Status>> {
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options, desk: &crate::render::background::Responder<'_, CheckOptions, Standing>| {
+    let work = move |options, desk: &crate::render::background::Responder<'_, CheckOptions, Status>| {
         work_apart();
-        let progress = |group: &str| desk.publish(Standing::Checking(group.to_owned()));
+        let progress = |group: &str| desk.publish(Status::Checking(group.to_owned()));
         desk.publish(match run(options, &stop, progress) {
-            Ok(Some(checks)) => Standing::Done(checks),
-            Ok(None) => Standing::Stopped,
-            Err(error) => Standing::Failed(error.to_string()),
+            Ok(Some(checks)) => Status::Done(checks),
+            Ok(None) => Status::Stopped,
+            Err(error) => Status::Failed(error.to_string()),
         });
     };
     Background::spawn("check", move || ctx.request_repaint(), work).ok()

@@ -71,7 +71,7 @@ impl Panel for EffectsPanel {
         self.ledger.tick(desk);
     }
 
-    fn hear(&mut self, command: Command) {
+    fn on_command(&mut self, command: Command) {
         if command == Command::Measure {
             self.ledger.request();
         }

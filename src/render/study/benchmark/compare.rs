@@ -61,7 +61,7 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
             continue;
         };
         let is_on_cpu = of_a.is_software && of_b.is_software;
-        let unrest = Unrest {
+        let variation = PaceVariation {
             drift: pace_ratio
                 .filter(|_| is_same_machine && is_on_cpu)
                 .map_or(0.0, |ratio| ratio.ln().abs()),
@@ -72,7 +72,7 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
         };
         for row in &of_a.rows {
             match of_b.row(&row.step, &row.case) {
-                Some(other) => rows.push(compared((of_a, row), (of_b, other), unrest)),
+                Some(other) => rows.push(compared((of_a, row), (of_b, other), variation)),
                 None => unmatched.push(format!("{}, {}, {}: only in A", of_a.name(), row.step, row.case)),
             }
         }
@@ -87,7 +87,7 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
 
 /// How uneven the machines' pace was: between the runs, and relative standard deviations within each.
 #[derive(Clone, Copy, Default)]
-struct Unrest {
+struct PaceVariation {
     drift: f64,
     pace: [f64; 2],
 }
@@ -102,14 +102,18 @@ fn counterpart<'a>(engine: &EngineReport, of: &Report, among: &'a Report) -> Opt
     exact.or(only)
 }
 
-fn compared((a, row): (&EngineReport, &Row), (b, other): (&EngineReport, &Row), unrest: Unrest) -> ComparedRow {
+fn compared(
+    (a, row): (&EngineReport, &Row),
+    (b, other): (&EngineReport, &Row),
+    variation: PaceVariation,
+) -> ComparedRow {
     let ratio = other.value.median / row.value.median;
     let turns = row.value.turns.min(other.value.turns) as f64;
     // Deviations of few turns are uncertain themselves, as Student's t says.
     let factor = 2.0 + 6.0 / (turns - 1.0).max(1.0);
-    let [of_a, of_b] = [(&row.value, unrest.pace[0]), (&other.value, unrest.pace[1])];
+    let [of_a, of_b] = [(&row.value, variation.pace[0]), (&other.value, variation.pace[1])];
     let [s_a, s_b] = [of_a, of_b].map(|(value, pace)| deviation(value).hypot(pace));
-    let tolerance = (factor * s_a.hypot(s_b) + unrest.drift).exp();
+    let tolerance = (factor * s_a.hypot(s_b) + variation.drift).exp();
     let is_noise = ratio.ln().abs() <= tolerance.ln();
     let verdict = match (is_noise, (ratio > 1.0) == row.more_is_better) {
         (true, _) => "noise",
@@ -212,13 +216,13 @@ mod tests {
         }
     }
 
-    fn verdict(a: Row, b: Row, unrest: Unrest) -> &'static str {
-        compared((&engine(a.clone()), &a), (&engine(b.clone()), &b), unrest).verdict
+    fn verdict(a: Row, b: Row, variation: PaceVariation) -> &'static str {
+        compared((&engine(a.clone()), &a), (&engine(b.clone()), &b), variation).verdict
     }
 
     #[test]
     fn what_lies_within_the_spread_is_noise() {
-        let calm = Unrest::default();
+        let calm = PaceVariation::default();
         assert_eq!(verdict(row(10.0, 0.01, 9), row(10.4, 0.01, 9), calm), "noise");
         assert_eq!(verdict(row(10.0, 0.01, 9), row(12.0, 0.01, 9), calm), "better");
         assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), calm), "worse");
@@ -229,9 +233,9 @@ mod tests {
             "a single turn"
         );
         // A machine that was slower as a whole, and one that was busy for a while.
-        let slower = Unrest { drift: 0.2, ..calm };
+        let slower = PaceVariation { drift: 0.2, ..calm };
         assert_eq!(verdict(row(12.0, 0.01, 9), row(10.0, 0.01, 9), slower), "noise");
-        let busy = Unrest {
+        let busy = PaceVariation {
             pace: [0.3, 0.2],
             ..calm
         };

@@ -324,7 +324,7 @@ fn described(place: &Place) -> EngineReport {
 }
 
 fn cpu_name() -> String {
-    crate::render::engine::processor_name()
+    crate::render::engine::cpu_name()
 }
 
 fn machine() -> Machine {

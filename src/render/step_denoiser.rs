@@ -10,31 +10,31 @@ use crate::document::{Denoise, Document};
 const GROWTH: f64 = 1.5;
 
 /// Denoises a session's render: at its end, and repeatedly if its error is the stop criterion.
-pub struct Attendant {
+pub struct StepDenoiser {
     /// `None` without denoising.
     denoiser: Option<Denoiser>,
     how: Denoise,
-    /// Samples a pixel at which the error is looked at next.
+    /// Samples per pixel at which the error is looked at next.
     next_samples: f64,
     seconds: f64,
 }
 
-impl Attendant {
+impl StepDenoiser {
     /// The denoiser that a document requests. If there is none, it warns once, and the samples are shown.
     pub fn new(document: &Document) -> Self {
-        let mut attendant = Self {
+        let mut step_denoiser = Self {
             denoiser: None,
             how: document.view.denoise,
             next_samples: 0.0,
             seconds: 0.0,
         };
-        if attendant.how != Denoise::Off {
+        if step_denoiser.how != Denoise::Off {
             match Denoiser::open() {
-                Ok(denoiser) => attendant.denoiser = Some(denoiser),
+                Ok(denoiser) => step_denoiser.denoiser = Some(denoiser),
                 Err(error) => log::warn!("{error}; the image is not denoised"),
             }
         }
-        attendant
+        step_denoiser
     }
 
     /// Call after each step. At the end of a round, it reports the denoised image's error to the session, if that is the

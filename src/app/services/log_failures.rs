@@ -1,25 +1,25 @@
-//! Failures that other libraries only write to the log and that the window has to tell: a file dialog that could not
+//! Failures that other libraries only write to the log and that the window reports: a file dialog that could not
 //! open, a clipboard that could not be reached. Neither rfd nor egui-winit returns them.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-/// What was heard and not reported yet.
-struct Heard {
+/// Failures that were logged and not reported yet.
+struct Failures {
     no_dialog: bool,
     no_clipboard: Option<String>,
     failed_copy: Option<String>,
 }
 
-static HEARD: Mutex<Heard> = Mutex::new(Heard {
+static FAILURES: Mutex<Failures> = Mutex::new(Failures {
     no_dialog: false,
     no_clipboard: None,
     failed_copy: None,
 });
 
-fn heard() -> MutexGuard<'static, Heard> {
-    HEARD.lock().unwrap_or_else(PoisonError::into_inner)
+fn failures() -> MutexGuard<'static, Failures> {
+    FAILURES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Installs a logger, whose most verbose level is `level`, and listens to what passes through it.
@@ -47,9 +47,9 @@ impl<L: Log> Log for Listening<L> {
     fn log(&self, record: &Record<'_>) {
         if is_of(record.metadata(), "rfd") {
             // Zenity is what rfd tries last: before that, another dialog may still open.
-            heard().no_dialog |= record.level() == Level::Error && record.args().to_string().contains("zenity");
+            failures().no_dialog |= record.level() == Level::Error && record.args().to_string().contains("zenity");
         } else if is_of(record.metadata(), "egui_winit::clipboard") {
-            hear_of_clipboard(record.level(), record.args().to_string());
+            record_clipboard(record.level(), record.args().to_string());
         }
         if self.0.enabled(record.metadata()) {
             self.0.log(record);
@@ -62,27 +62,27 @@ impl<L: Log> Log for Listening<L> {
 }
 
 /// A warning says at the start that there is no clipboard; an error, that something was not copied or pasted.
-fn hear_of_clipboard(level: Level, text: String) {
-    let mut heard = heard();
+fn record_clipboard(level: Level, text: String) {
+    let mut failures = failures();
     match level {
-        Level::Error => heard.failed_copy = Some(text),
-        _ => heard.no_clipboard = Some(text),
+        Level::Error => failures.failed_copy = Some(text),
+        _ => failures.no_clipboard = Some(text),
     }
 }
 
 /// Whether a file dialog failed to open since this was asked last.
 pub(in crate::app) fn dialog_failed() -> bool {
-    std::mem::take(&mut heard().no_dialog)
+    std::mem::take(&mut failures().no_dialog)
 }
 
 /// Why something could not be copied or pasted since this was asked last.
 pub(in crate::app) fn clipboard_failure() -> Option<String> {
-    heard().failed_copy.take()
+    failures().failed_copy.take()
 }
 
 /// Why this session has no system clipboard.
 pub(in crate::app) fn no_clipboard() -> Option<String> {
-    heard().no_clipboard.clone()
+    failures().no_clipboard.clone()
 }
 
 #[cfg(test)]
@@ -104,42 +104,42 @@ mod tests {
     }
 
     #[test]
-    fn failures_of_dialogs_and_clipboard_are_heard_and_logged() {
+    fn failures_of_dialogs_and_clipboard_are_kept_and_logged() {
         let counting: &'static Counting = Box::leak(Box::default());
         let listening = Listening(counting);
-        let say = |level, target: &str, text: &str| {
+        let log = |level, target: &str, text: &str| {
             let record = |args| Record::builder().level(level).target(target).args(args).build();
             listening.log(&record(format_args!("{text}")));
         };
         // Not the last that is tried.
-        say(
+        log(
             Level::Error,
             "rfd::backend::xdg_desktop_portal::portal",
             "OpenFile failed",
         );
         assert!(!dialog_failed());
-        say(
+        log(
             Level::Error,
             "rfd::backend::xdg_desktop_portal",
             "Failed to pick file with zenity: No such file or directory",
         );
         assert!(dialog_failed() && !dialog_failed());
-        say(
+        log(
             Level::Warn,
             "egui_winit::clipboard",
             "Failed to initialize arboard clipboard: none",
         );
-        say(
+        log(
             Level::Error,
             "egui_winit::clipboard",
             "arboard copy/cut error: occupied",
         );
-        say(Level::Error, "wgpu", "something else");
+        log(Level::Error, "wgpu", "something else");
         assert_eq!(clipboard_failure().as_deref(), Some("arboard copy/cut error: occupied"));
         assert_eq!(clipboard_failure(), None);
         assert!(no_clipboard().is_some_and(|why| why.contains("none")));
-        heard().no_clipboard = None;
-        // What the logger does not want itself is only heard.
+        failures().no_clipboard = None;
+        // What the logger does not want itself is only failures.
         assert_eq!(counting.0.load(std::sync::atomic::Ordering::Relaxed), 4);
     }
 }

@@ -1,7 +1,7 @@
-//! Words for people, and answers on standard output: the only place that prints.
+//! Messages on standard error and answers on standard output: the only place that prints.
 //!
-//! Words never decide what becomes of an image. Where nobody listens any more, or the disk that they go to is full, the
-//! work goes on; [`finish`] reports at the end.
+//! Printing never decides what becomes of an image. If a stream is closed, or its disk full, the work goes on; [`finish`]
+//! reports it at the end.
 
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
@@ -10,24 +10,24 @@ use std::sync::{Mutex, PoisonError};
 /// What became of standard output, where it failed.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Says a line on standard error; where that is closed or full it is lost.
-macro_rules! say {
+/// Prints a line on standard error; if that is closed or full, the line is lost.
+macro_rules! message {
     ($($words:tt)*) => {
-        $crate::say::line(format_args!($($words)*))
+        $crate::console::message_line(format_args!($($words)*))
     };
 }
 
 /// Prints a line on standard output.
-macro_rules! put {
+macro_rules! output {
     ($($words:tt)*) => {
-        $crate::say::print(format_args!("{}\n", format_args!($($words)*)))
+        $crate::console::print(format_args!("{}\n", format_args!($($words)*)))
     };
 }
 
-pub(crate) use {put, say};
+pub(crate) use {message, output};
 
-/// Says a line on standard error; where that is closed or full it is lost.
-pub fn line(words: fmt::Arguments<'_>) {
+/// Prints a line on standard error; if that is closed or full, the line is lost.
+pub fn message_line(words: fmt::Arguments<'_>) {
     // In one piece: several programs may write to the same place.
     let _ = io::stderr().write_all(format!("{words}\n").as_bytes());
 }
