@@ -80,6 +80,8 @@ mod environment_files;
 mod environment_sampling;
 #[path = "suite/environment_shapes.rs"]
 mod environment_shapes;
+#[path = "suite/evaluate.rs"]
+mod evaluate;
 #[path = "suite/exchange.rs"]
 mod exchange;
 #[path = "suite/exchange_details.rs"]

@@ -317,6 +317,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "CATCHER_SHADOW_ALPHA",
     "CATCHER_MIRRORED",
     // Rows of questions to single functions.
+    "DRAW_WORDS",
     "FRESNEL_WORDS",
     "LOBE_WORDS",
     "MATERIAL_WORDS",

@@ -10,11 +10,13 @@
 //!
 //! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below.
 
+mod density;
 mod evaluate;
 mod facet;
 mod sample;
 mod shares;
 
+pub use density::material_density;
 pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
 pub use facet::{decides_by_facet, passes_on};
 pub use sample::{MaterialNumbers, MaterialSample, material_sample};
