@@ -176,6 +176,8 @@ mod nobody_listens;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/open_pbr_oracle.rs"]
+mod open_pbr_oracle;
 #[path = "suite/own_textures.rs"]
 mod own_textures;
 #[path = "suite/parameters.rs"]
@@ -206,6 +208,8 @@ mod renders;
 mod same_bits;
 #[path = "suite/same_paths.rs"]
 mod same_paths;
+#[path = "suite/scattering.rs"]
+mod scattering;
 #[path = "suite/shadow_catcher.rs"]
 mod shadow_catcher;
 #[path = "suite/signals.rs"]

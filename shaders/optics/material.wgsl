@@ -18,7 +18,7 @@ struct Surface {
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
         planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
-        material.curve_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
+        material.lobe_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
         0.0,
     );
 }

@@ -7,10 +7,11 @@ use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0};
 use crate::optics::layer::coat::coat_shape;
-use crate::optics::lobe::Width;
+use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
+use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
 use crate::scene::texture::{SlotTextures, TextureTarget};
@@ -85,7 +86,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         curve: settings.curve as u32,
         horizon: settings.horizon as u32,
         fresnel: settings.fresnel as u32,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
@@ -140,7 +141,20 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         1.0
     };
     material.specular_color = material.specular_color.map(|x: f32| x.min(most));
+    if settings.multiple_scattering && loses_light(settings, &material) {
+        material.flags |= COMPENSATES;
+    }
     material
+}
+
+/// Whether the lobe loses light between its facets that no base below takes: a metal's, or a clear interface's.
+fn loses_light(settings: &MaterialSettings, material: &Material<f32>) -> bool {
+    let has_model_of_metal = [Fresnel::None, Fresnel::Conductor].contains(&settings.fresnel);
+    let is_metal = material.metalness > 0.0 && (has_model_of_metal || material.has_specular());
+    let transmits = material.least_metallic().transmits();
+    let refracts = || transmits && !is_mirror(&material.transmission_shape(&[], false));
+    let is_rough = material.textures[1] != NO_TEXTURE || !is_mirror(&material.shape(&[])) || refracts();
+    settings.lobe.traits().loses_light && is_rough && (is_metal || transmits)
 }
 
 /// What the vertices say where it is looked up, and whether metals keep their reflection.
@@ -171,7 +185,10 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let mut curve_table = Vec::new();
     if settings.lobe.has_curves() && settings.curve.has_table() {
         curve_table = settings.custom_curve.table();
-        material.curve_table = append_table(tables, &curve_table);
+        material.lobe_table = append_table(tables, &curve_table);
+    }
+    if material.has_flag(COMPENSATES) {
+        material.lobe_table = append_table(tables, &remembered(scattering_key(&material)));
     }
     if (anywhere.has_base() || anywhere.transmits()) && anywhere.has_specular() {
         material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
@@ -210,21 +227,35 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
     }
 }
 
-/// What an albedo table depends on.
+/// What a table of a lobe holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Holds {
+    /// Albedos for views from outside.
+    Albedo,
+    /// Albedos for views from within.
+    InnerAlbedo,
+    /// Energies that single scattering keeps.
+    Energies,
+}
+
+/// What a table of a lobe depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct AlbedoKey {
+struct TableKey {
     /// The material, what its specular reflection does not depend on being zero.
     material: Material<f32>,
     curve_table: Vec<f32>,
-    is_inside: bool,
+    holds: Holds,
 }
 
 /// The tables made last, the latest at the end: dragging a colour must not cost milliseconds a frame.
-static ALBEDOS: Mutex<Vec<(AlbedoKey, Arc<[f32]>)>> = Mutex::new(Vec::new());
+static TABLES: Mutex<Vec<(TableKey, Arc<[f32]>)>> = Mutex::new(Vec::new());
 
 fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> Arc<[f32]> {
-    let key = albedo_key(material, curve_table, is_inside);
-    let memory = || ALBEDOS.lock().unwrap_or_else(PoisonError::into_inner);
+    remembered(albedo_key(material, curve_table, is_inside))
+}
+
+fn remembered(key: TableKey) -> Arc<[f32]> {
+    let memory = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
     let known = memory()
         .iter()
         .find(|(of, _)| *of == key)
@@ -233,10 +264,13 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
         return table;
     }
     let of = key.material.cast::<f64>();
-    let table: Arc<[f32]> = if material.has_rough_tables == 1 {
-        rough_albedo_table(&of, &key.curve_table, ROUGH_ALBEDO_SAMPLES, is_inside).into()
-    } else {
-        albedo_table(&of, &key.curve_table, ALBEDO_SAMPLES, is_inside).into()
+    let is_rough = of.has_rough_tables == 1;
+    let samples = if is_rough { ROUGH_ALBEDO_SAMPLES } else { ALBEDO_SAMPLES };
+    let is_inside = key.holds == Holds::InnerAlbedo;
+    let table: Arc<[f32]> = match key.holds {
+        Holds::Energies => scattering_table(&of, samples).into(),
+        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
+        _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };
     let mut memory = memory();
     if memory.len() >= REMEMBERED {
@@ -246,7 +280,30 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
     table
 }
 
-fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> AlbedoKey {
+/// The key of the energies that a lobe keeps: the roughness of both lobes and, of a clear interface, its index.
+fn scattering_key(material: &Material<f32>) -> TableKey {
+    let key = albedo_key(material, &[], false);
+    let transmits = key.material.transmits();
+    let of_interface = |x: f32| if transmits { x } else { 0.0 };
+    TableKey {
+        material: Material {
+            specular_color: Vec3::zero(),
+            eta: Vec3::zero(),
+            k: Vec3::zero(),
+            ior: of_interface(material.ior),
+            // The samplings of GGX share one model.
+            lobe: Lobe::Ggx as u32,
+            // With a table over the roughness their difference counts.
+            roughness: material.roughness,
+            transmission_roughness: of_interface(material.transmission_roughness),
+            ..key.material
+        },
+        holds: Holds::Energies,
+        ..key
+    }
+}
+
+fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> TableKey {
     // A table over the roughness serves every roughness, metalness and colour; any other is a dielectric's.
     let is_rough = material.has_rough_tables == 1;
     let white = Vec3::splat(1.0);
@@ -276,7 +333,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         transmission_tint: Vec3::zero(),
@@ -285,9 +342,9 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         transmission_roughness: 0.0,
         ..*material
     };
-    AlbedoKey {
+    TableKey {
         material,
         curve_table: curve_table.to_vec(),
-        is_inside,
+        holds: if is_inside { Holds::InnerAlbedo } else { Holds::Albedo },
     }
 }

@@ -32,6 +32,8 @@ pub struct MaterialSettings {
     pub specular_on_metal: bool,
     /// The specular lobe.
     pub lobe: Lobe,
+    /// GGX gets back the light that single scattering between its facets loses.
+    pub multiple_scattering: bool,
     /// In [0, 1].
     pub roughness: f32,
     /// In [−1, 1].
@@ -103,6 +105,7 @@ impl Default for MaterialSettings {
             specular_weight: 1.0,
             specular_on_metal: true,
             lobe: Lobe::Geometric,
+            multiple_scattering: true,
             roughness: 0.3,
             anisotropy: 0.0,
             rotation_deg: 0.0,

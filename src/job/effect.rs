@@ -77,6 +77,7 @@ effects! {
     Horizon "horizon" choice "PLAN_HORIZON";
     Fresnel "fresnel" choice "PLAN_FRESNEL";
     EdgeTint "edge-tint" flag "PLAN_EDGE_TINT";
+    MultipleScattering "multiple-scattering" flag "PLAN_MULTIPLE_SCATTERING";
     Coat "coat" flag "PLAN_COAT";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";

@@ -56,13 +56,8 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
     match terms.model {
         Fresnel::None => terms.tint * terms.weight,
         Fresnel::Schlick | Fresnel::Dielectric => {
-            let dielectric = if terms.model == Fresnel::Schlick {
-                fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
-            } else {
-                terms.tint * fresnel_dielectric(cosine, terms.ior)
-            };
-            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-            (dielectric * terms.weight).mix(metal, terms.metalness)
+            let [dielectric, metal] = fresnel_parts(terms, cosine);
+            dielectric.mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
             let channels = vec3(
@@ -73,6 +68,18 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
             channels * terms.tint * terms.weight
         }
     }
+}
+
+/// The shares that the dielectric and the metal of a surface reflect, by Schlick's model or the exact equations.
+#[inline(always)]
+pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2] {
+    let dielectric = if terms.model == Fresnel::Schlick {
+        fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
+    } else {
+        terms.tint * fresnel_dielectric(cosine, terms.ior)
+    };
+    let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
+    [dielectric * terms.weight, metal]
 }
 
 /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for

@@ -26,6 +26,8 @@ pub const VERTEX_EMISSION: u32 = 2;
 pub const VERTEX_OPACITY: u32 = 4;
 /// Flag: weight and tint of the reflection are the dielectric's alone.
 pub const SPARES_METAL: u32 = 8;
+/// Flag: the lobe gets back what multiple scattering between its facets reflects ([`super::scattering`]).
+pub const COMPENSATES: u32 = 16;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -145,8 +147,8 @@ material! {
         horizon: u32,
         /// [`Fresnel`] as a number.
         fresnel: u32,
-        /// Start of the custom curve's table.
-        curve_table: u32,
+        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)).
+        lobe_table: u32,
         /// Start of the albedo table.
         albedo_table: u32,
         /// Start of the albedo table for views from within.
@@ -228,7 +230,7 @@ impl<T: Real> Material<T> {
             roughness: self.roughness,
             anisotropy: self.anisotropy,
             eta: T::zero(),
-            table: tables.get(self.curve_table as usize..).unwrap_or_default(),
+            table: tables.get(self.lobe_table as usize..).unwrap_or_default(),
         }
     }
 

@@ -261,6 +261,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
         ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),
         ("SPARES_METAL", f64::from(material::SPARES_METAL)),
+        ("COMPENSATES", f64::from(material::COMPENSATES)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
         ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),

@@ -7,7 +7,7 @@ use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{COMPENSATES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::vector::Vec3;
 
 /// Every effect, in the order of [`EffectId::ALL`].
@@ -246,6 +246,13 @@ pub static EFFECTS: &[Effect] = &[
             )
         },
         remove: Some(|document| each_material(document, |material| material.edge_tint = [1.0; 3])),
+    },
+    Effect {
+        id: EffectId::MultipleScattering,
+        label: "Multiple scattering",
+        help: "Light that meets more than one facet of rough GGX, in metals and clear dielectrics (Turquin 2019).",
+        decide: |facts| facts.needed_by(|m| m.has_flag(COMPENSATES), "would lose light between its facets"),
+        remove: Some(|document| each_material(document, |material| material.multiple_scattering = false)),
     },
     Effect {
         id: EffectId::Coat,

@@ -93,6 +93,16 @@ fn specular_shape() -> Vec<Parameter> {
             )
         },
         Parameter {
+            label: "Multiple scattering",
+            help: "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.",
+            applies: |material| has_specular(material) && material.lobe.traits().loses_light,
+            ..of(
+                "specular.multiple_scattering",
+                Kind::Toggle,
+                field!(Toggle multiple_scattering),
+            )
+        },
+        Parameter {
             label: "Curve",
             symbol: "D(ξ)",
             help: "The profile of the geometric lobe's highlight, from its middle to its edge.",

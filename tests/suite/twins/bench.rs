@@ -14,9 +14,10 @@ use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use glossmith::optics::material::{COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
+use glossmith::optics::scattering::scattering_table;
 use glossmith::optics::table::append_table;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
@@ -94,7 +95,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         for curve in Curve::ALL {
             for fresnel in Fresnel::ALL {
                 let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
-                material.curve_table = curves[rng.below(CUSTOM_CURVES)];
+                material.lobe_table = curves[rng.below(CUSTOM_CURVES)];
                 let mut texture = || {
                     let record = rng.below(2 * textures.records.len());
                     if record < textures.records.len() {
@@ -153,6 +154,11 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             append_table(&mut tables, &table)
         });
         [material.albedo_table, material.inner_albedo_table] = albedo;
+        if Lobe::ALL[material.lobe as usize].traits().loses_light && number % 3 > 0 {
+            let energies = scattering_table(&material.cast(), 16);
+            material.lobe_table = append_table(&mut tables, &energies);
+            material.flags |= COMPENSATES;
+        }
     }
     let geometry = Geometry::build(&model, true);
     Scene {
@@ -261,7 +267,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         curve: curve as u32,
         horizon: Horizon::ALL[rng.below(Horizon::ALL.len())] as u32,
         fresnel: fresnel as u32,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: if rng.chance(0.5) { tint } else { vec3(1.0, 1.0, 1.0) },
