@@ -204,6 +204,8 @@ mod ray_queries;
 mod refused;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/rough_diffuse.rs"]
+mod rough_diffuse;
 #[path = "suite/same_bits.rs"]
 mod same_bits;
 #[path = "suite/same_paths.rs"]

@@ -9,7 +9,7 @@ use crate::optics::fresnel::{Fresnel, fresnel_f0};
 use crate::optics::layer::coat::coat_shape;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
@@ -109,12 +109,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         has_rough_tables: 0,
         texture_roughness: settings.roughness,
         roughness_table: NO_TEXTURE,
-        flags: flags(settings, slot),
+        flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: looked_up(uses.roughness, slot.metalness),
         coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
-        has_box_projection: u32::from(is_on_box),
+        diffuse_roughness: settings.diffuse_roughness,
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
@@ -322,7 +322,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         textures: [NO_TEXTURE; 4],
         metalness_texture: NO_TEXTURE,
         coat_texture: NO_TEXTURE,
-        has_box_projection: 0,
+        diffuse_roughness: 0.0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

@@ -24,6 +24,8 @@ pub struct MaterialSettings {
     pub base_weight: f32,
     /// Linear RGB in [0, 1].
     pub base_color: [f32; 3],
+    /// Roughness of the diffuse base, in [0, 1].
+    pub diffuse_roughness: f32,
     /// In [0, 1].
     pub metalness: f32,
     /// In [0, 1].
@@ -101,6 +103,7 @@ impl Default for MaterialSettings {
             name: "Plain".to_owned(),
             base_weight: 1.0,
             base_color: [0.8; 3],
+            diffuse_roughness: 0.0,
             metalness: 1.0,
             specular_weight: 1.0,
             specular_on_metal: true,
@@ -161,6 +164,7 @@ impl MaterialSettings {
         let mut material = Self {
             name: slot.name.clone(),
             base_color: slot.base_color.map(unit),
+            diffuse_roughness: unit(slot.diffuse_roughness),
             metalness: unit(slot.metalness),
             roughness: unit(slot.roughness),
             ior: slot.ior.clamp(1.0, 4.0),

@@ -70,6 +70,7 @@ effects! {
     Interreflection "interreflection" flag "PLAN_INTERREFLECTION";
     ShadowTerminator "shadow-terminator" flag "PLAN_SHADOW_TERMINATOR";
     Base "base" flag "PLAN_BASE";
+    DiffuseRoughness "diffuse-roughness" flag "PLAN_DIFFUSE_ROUGHNESS";
     Specular "specular" flag "PLAN_SPECULAR";
     Lobe "lobe" choice "PLAN_LOBE";
     Curve "curve" choice "PLAN_CURVE";

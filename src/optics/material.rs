@@ -28,6 +28,8 @@ pub const VERTEX_OPACITY: u32 = 4;
 pub const SPARES_METAL: u32 = 8;
 /// Flag: the lobe gets back what multiple scattering between its facets reflects ([`super::scattering`]).
 pub const COMPENSATES: u32 = 16;
+/// Flag: a texture uses box projection.
+pub const HAS_BOX: u32 = 32;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -109,7 +111,7 @@ material! {
     /// A material with the positions of its tables. The GPU reads the f32 form, byte for byte. Each vector is followed by a
     /// number or an index, and the whole fills rows of 16 bytes.
     Material {
-        /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
+        /// Albedo of the diffuse base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
         base_color: Vec3<T>,
         /// 0: dielectric over a diffuse base; 1: metal.
         metalness: T,
@@ -195,8 +197,8 @@ material! {
         metalness_texture: u32,
         /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
         coat_texture: u32,
-        /// 1 if a texture uses box projection.
-        has_box_projection: u32,
+        /// Roughness of the diffuse base in [0, 1]; 0 is Lambert's.
+        diffuse_roughness: T,
     }
 }
 

@@ -12,7 +12,7 @@ use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
 use super::random::{Sequence, random_pair, random_state};
-use super::real::{Mask, Real};
+use super::real::Real;
 use super::refraction::refracting_cosines;
 use super::vector::{Vec3, vec3};
 

@@ -246,6 +246,10 @@ fn calls_for(effect: &str) -> Calls {
                 |d, c| d.materials[0].edge_tint = one(c, 0.0, 1.0),
             ],
         ),
+        "diffuse-roughness" => (
+            metal,
+            &[|d, _| (d.materials[0].metalness, d.materials[0].diffuse_roughness) = (0.0, LEAST)],
+        ),
         "multiple-scattering" => (
             metal,
             &[

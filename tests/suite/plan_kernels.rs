@@ -12,7 +12,7 @@ use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
-use glossmith::optics::material::{COMPENSATES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use glossmith::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
@@ -69,7 +69,8 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
         "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
-        "box-projection" => |material, _| material.has_box_projection = 0,
+        "box-projection" => |material, _| material.flags &= !HAS_BOX,
+        "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
@@ -224,7 +225,12 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         assign(metal, assignment).unwrap();
     }
     let mut rough = of_material(ModelSource::Shaderball, PRESETS[0].clone());
-    for assignment in ["base.metalness=0.5", "specular.lobe=ggx", "specular.roughness=0.5"] {
+    for assignment in [
+        "base.metalness=0.5",
+        "base.diffuse_roughness=0.5",
+        "specular.lobe=ggx",
+        "specular.roughness=0.5",
+    ] {
         assign(&mut rough.materials[0], assignment).unwrap();
     }
     let mut glass = of_material(ModelSource::Shaderball, PRESETS[0].clone());

@@ -7,7 +7,7 @@ use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{COMPENSATES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::vector::Vec3;
 
 /// Every effect, in the order of [`EffectId::ALL`].
@@ -169,6 +169,13 @@ pub static EFFECTS: &[Effect] = &[
             each_material(document, |material| material.base_weight = 0.0);
             document.lighting.ground_color = [0.0; 3];
         }),
+    },
+    Effect {
+        id: EffectId::DiffuseRoughness,
+        label: "Rough base",
+        help: "A diffuse base that scatters more light back to where it comes from, as clay and cloth do (EON).",
+        decide: |facts| facts.needed_by(|m| m.has_base() && m.diffuse_roughness > 0.0, "has a rough base"),
+        remove: Some(|document| each_material(document, |material| material.diffuse_roughness = 0.0)),
     },
     Effect {
         id: EffectId::Specular,
@@ -368,7 +375,7 @@ pub static EFFECTS: &[Effect] = &[
         help: "Images that lie on a surface as on a box, without texture coordinates.",
         decide: |facts| {
             facts.needed_by(
-                |m| m.has_box_projection == 1,
+                |m| m.has_flag(HAS_BOX),
                 "has a texture that lies on it as on a box",
             )
         },

@@ -50,6 +50,16 @@ fn base() -> Vec<Parameter> {
             ..of("base.color_texture", Kind::Toggle, field!(Toggle textures.color))
         },
         Parameter {
+            label: "Diffuse roughness",
+            help: "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.",
+            applies: |material| material.metalness < 1.0,
+            ..of(
+                "base.diffuse_roughness",
+                unit_number(),
+                field!(Number diffuse_roughness),
+            )
+        },
+        Parameter {
             label: "Metalness",
             help: "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.",
             ..of("base.metalness", unit_number(), field!(Number metalness))

@@ -38,6 +38,7 @@ impl Takes {
     pub(super) const OPEN_PBR: Self = Self {
         law: super::surface::Law::Exact,
         eta_and_k: false,
+        diffuse_roughness: true,
         edge_tint: true,
         specular: true,
         weighs_metal: true,
@@ -60,6 +61,7 @@ pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
     vec![
         ("base_weight", Number(1.0)),
         ("base_color", Color(surface.base_color)),
+        ("base_diffuse_roughness", Number(surface.diffuse_roughness)),
         ("base_metalness", Number(surface.metalness)),
         ("specular_weight", Number(surface.specular_weight)),
         ("specular_color", Color(surface.tint())),

@@ -18,6 +18,8 @@ pub struct Surface {
     pub name: String,
     /// Albedo of the diffuse base; of a metal, its reflectance at normal incidence.
     pub base_color: [f32; 3],
+    /// Roughness of the diffuse base, in [0, 1].
+    pub diffuse_roughness: f32,
     /// In [0, 1].
     pub metalness: f32,
     /// Factor of what a dielectric reflects, in [0, 1].
@@ -72,6 +74,8 @@ pub struct Takes {
     pub law: Law,
     /// η and k of metals.
     pub eta_and_k: bool,
+    /// The roughness of the diffuse base.
+    pub diffuse_roughness: bool,
     /// The tint of a metal's edge.
     pub edge_tint: bool,
     /// Weight and tint of a dielectric's reflection.
@@ -106,6 +110,7 @@ impl Default for Surface {
         Self {
             name: String::new(),
             base_color: [0.8; 3],
+            diffuse_roughness: 0.0,
             metalness: 0.0,
             specular_weight: 1.0,
             specular_color: [1.0; 3],
@@ -188,6 +193,7 @@ impl Surface {
         let mut surface = Self {
             name: material.name.clone(),
             base_color: material.base_color.map(|x| rounded(x * material.base_weight)),
+            diffuse_roughness: material.diffuse_roughness,
             metalness: material.metalness,
             specular_weight: material.specular_weight,
             specular_color: shown_tint(material),
@@ -252,6 +258,7 @@ impl Surface {
         let mut material = MaterialSettings {
             name: self.name.clone(),
             base_color: self.base_color.map(unit),
+            diffuse_roughness: unit(self.diffuse_roughness),
             metalness: unit(self.metalness),
             specular_weight: unit(self.specular_weight),
             specular_color: self.specular_color.map(specular_color),
@@ -289,6 +296,9 @@ impl Surface {
             taken.roughness = (longer * shorter).powf(0.25);
             let stretch = anisotropy_from_ratio(f64::from(shorter / longer)) as f32;
             taken.anisotropy = stretch.copysign(self.anisotropy);
+        }
+        if !takes.diffuse_roughness {
+            taken.diffuse_roughness = 0.0;
         }
         if !takes.edge_tint {
             taken.edge_tint = [1.0; 3];
@@ -459,6 +469,8 @@ impl Surface {
             "the coat's index and colour",
             "1.5 and white",
         );
+        let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
+        layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
         let is_textured = material.uses_of_model() != TextureUse::default();

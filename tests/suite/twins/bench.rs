@@ -290,7 +290,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         spot_offset: 1.0,
         metalness_texture: NO_TEXTURE,
         coat_texture: NO_TEXTURE,
-        has_box_projection: 0,
+        diffuse_roughness: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
     }
 }
 

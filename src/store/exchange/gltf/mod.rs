@@ -27,6 +27,7 @@ pub struct Gltf;
 const TAKES: Takes = Takes {
     law: Law::Schlick,
     eta_and_k: false,
+    diffuse_roughness: true,
     edge_tint: false,
     specular: true,
     weighs_metal: false,

@@ -160,6 +160,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
     node("standard_surface", name)
         .child(number("base", 1.0))
         .child(color("base_color", surface.base_color))
+        .child(number("diffuse_roughness", surface.diffuse_roughness))
         .child(number("metalness", surface.metalness))
         .child(number("specular", surface.specular_weight))
         .child(color(

@@ -116,6 +116,7 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
 fn is_near(a: &Surface, b: &Surface) -> bool {
     let numbers = |s: &Surface| {
         let mut all = vec![
+            s.diffuse_roughness,
             s.metalness,
             s.specular_weight,
             s.ior,

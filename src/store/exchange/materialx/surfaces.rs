@@ -72,6 +72,7 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
     let ratio = 1.0 - inputs.number("specular_roughness_anisotropy").clamp(0.0, 0.999);
     Surface {
         base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
+        diffuse_roughness: inputs.number("base_diffuse_roughness"),
         metalness,
         specular_weight: inputs.number("specular_weight"),
         specular_color: tint,
@@ -130,6 +131,7 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
     };
     Surface {
         base_color,
+        diffuse_roughness: inputs.number("diffuse_roughness"),
         metalness,
         specular_weight,
         specular_color,

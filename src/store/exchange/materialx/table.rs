@@ -6,7 +6,6 @@ use crate::import::Goes::{self, Nowhere, To};
 
 const DISPERSION: Goes = Nowhere("dispersion is not shown yet");
 const FILM: Goes = Nowhere("thin films are not shown yet");
-const MATTE: Goes = Nowhere("the diffuse base is Lambertian");
 const NORMALS: Goes = Nowhere("textures travel with models; here each parameter has one value");
 const OCCLUSION: Goes = Nowhere("path tracing needs no occlusion");
 const ROUND_COAT: Goes = Nowhere("the coat's highlight is round");
@@ -44,7 +43,7 @@ const BLACK: &str = "0, 0, 0";
 pub(super) const OPEN_PBR: &[FileParameter] = &[
     unit("base_weight", "1", "0.5", To("base.color")),
     unit("base_color", "0.8, 0.8, 0.8", COLOR, To("base.color")),
-    row("base_diffuse_roughness", "0", "0.25", MATTE),
+    unit("base_diffuse_roughness", "0", "0.25", To("base.diffuse_roughness")),
     unit("base_metalness", "0", "0.5", To("base.metalness")),
     unit("specular_weight", "1", "0.5", To("specular.weight")),
     unit(
@@ -99,7 +98,7 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
 pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
     unit("base", "1", "0.5", To("base.color")),
     unit("base_color", "0.8, 0.8, 0.8", COLOR, To("base.color")),
-    row("diffuse_roughness", "0", "0.25", MATTE),
+    unit("diffuse_roughness", "0", "0.25", To("base.diffuse_roughness")),
     unit("metalness", "0", "0.5", To("base.metalness")),
     unit(
         "specular",
