@@ -5,11 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
-use crate::optics::fresnel::{Fresnel, fresnel_f0};
+use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::coat_shape;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
+    VERTEX_OPACITY, WEIGHS_INDEX,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
@@ -132,6 +133,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         } else {
             material.transmission_tint = material.transmission_tint * color;
         }
+    }
+    if settings.has_weight_in_index() {
+        material.ior = weighted_ior(settings.ior.into(), settings.specular_weight.into()) as f32;
+        material.flags |= WEIGHS_INDEX;
     }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
@@ -329,7 +334,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
         // A dielectric without vertices.
-        flags: 0,
+        flags: material.flags & WEIGHS_INDEX,
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,

@@ -30,6 +30,8 @@ pub struct MaterialSettings {
     pub metalness: f32,
     /// In [0, 1].
     pub specular_weight: f32,
+    /// The weight scales a dielectric's reflectance head-on through its index, as in OpenPBR; else at every angle.
+    pub specular_in_index: bool,
     /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
     pub specular_on_metal: bool,
     /// The specular lobe.
@@ -106,6 +108,7 @@ impl Default for MaterialSettings {
             diffuse_roughness: 0.0,
             metalness: 1.0,
             specular_weight: 1.0,
+            specular_in_index: false,
             specular_on_metal: true,
             lobe: Lobe::Geometric,
             multiple_scattering: true,
@@ -212,6 +215,12 @@ impl MaterialSettings {
     pub fn reflects(&self) -> bool {
         let is_spared_metal = self.metalness > 0.0 && !self.specular_on_metal;
         self.specular_weight > 0.0 || is_spared_metal || self.transmits()
+    }
+
+    /// True if the specular weight is in a dielectric's index: one that is opaque and reflects by it.
+    pub fn has_weight_in_index(&self) -> bool {
+        let has_index = matches!(self.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
+        self.specular_in_index && has_index && !self.transmits()
     }
 
     /// True where light goes through the surface.

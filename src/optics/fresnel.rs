@@ -96,6 +96,12 @@ pub fn fresnel_f0<T: Real>(ior: T) -> T {
     ratio * ratio
 }
 
+/// Index of refraction of a dielectric that reflects `weight` times as much at normal incidence, and all at grazing angles.
+pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
+    let root = (fresnel_f0(ior) * weight).clamp(0.0, 0.99).sqrt();
+    (1.0 + root) / (1.0 - root)
+}
+
 /// Schlick's approximation (1994).
 #[inline(always)]
 pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {

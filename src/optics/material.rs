@@ -28,6 +28,8 @@ pub const VERTEX_OPACITY: u32 = 4;
 pub const SPARES_METAL: u32 = 8;
 /// Flag: the lobe gets back what multiple scattering between its facets reflects ([`super::scattering`]).
 pub const COMPENSATES: u32 = 16;
+/// Flag: the dielectric's index has the weight of the reflection in it, and only a metal's is multiplied by it.
+pub const WEIGHS_INDEX: u32 = 64;
 /// Flag: a texture uses box projection.
 pub const HAS_BOX: u32 = 32;
 
@@ -262,6 +264,7 @@ impl<T: Real> Material<T> {
         let tint = Vec3::select(is_bare, white, self.specular_color);
         let weight = T::select(is_bare, T::one(), self.specular_weight);
         let spares_metal = self.has_flag(SPARES_METAL);
+        let is_in_index = self.has_flag(WEIGHS_INDEX);
         FresnelTerms {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
@@ -269,7 +272,7 @@ impl<T: Real> Material<T> {
             edge_tint: self.edge_tint,
             tint,
             metal_tint: if spares_metal { white } else { tint * weight },
-            weight,
+            weight: if is_in_index { T::one() } else { weight },
             ior: self.ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,

@@ -267,6 +267,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("SPARES_METAL", f64::from(material::SPARES_METAL)),
         ("COMPENSATES", f64::from(material::COMPENSATES)),
         ("HAS_BOX", f64::from(material::HAS_BOX)),
+        ("WEIGHS_INDEX", f64::from(material::WEIGHS_INDEX)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
         ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),

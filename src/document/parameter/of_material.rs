@@ -76,6 +76,19 @@ fn specular_shape() -> Vec<Parameter> {
             ..of("specular.weight", unit_number(), field!(Number specular_weight))
         },
         Parameter {
+            label: "Weight by index",
+            help: "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF.",
+            applies: |material| {
+                let is_weighed = material.specular_weight < 1.0 && material.metalness < 1.0;
+                is_weighed && has_specular(material) && has_metalness(material) && !transmits(material)
+            },
+            ..of(
+                "specular.weight_in_index",
+                Kind::Toggle,
+                field!(Toggle specular_in_index),
+            )
+        },
+        Parameter {
             label: "Metals too",
             help: "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF.",
             applies: |material| material.metalness > 0.0 && has_metalness(material),

@@ -41,6 +41,7 @@ impl Takes {
         diffuse_roughness: true,
         edge_tint: true,
         specular: true,
+        weighs_index: true,
         weighs_metal: true,
         ior: true,
         widths,

@@ -6,7 +6,7 @@ use crate::document::match_look::{lobe_of_material, nearest_ggx};
 use crate::document::material::specular_color;
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::vector::Vec3;
@@ -24,6 +24,8 @@ pub struct Surface {
     pub metalness: f32,
     /// Factor of what a dielectric reflects, in [0, 1].
     pub specular_weight: f32,
+    /// The factor scales the reflectance head-on, through the index; else at every angle.
+    pub weight_in_index: bool,
     /// Tint of what a dielectric reflects; above 1 it raises Schlick's reflectance head-on.
     pub specular_color: [f32; 3],
     /// Weight and tint are a metal's too.
@@ -80,6 +82,8 @@ pub struct Takes {
     pub edge_tint: bool,
     /// Weight and tint of a dielectric's reflection.
     pub specular: bool,
+    /// The weight scales the reflectance head-on, through the index.
+    pub weighs_index: bool,
     /// The weight is a metal's too.
     pub weighs_metal: bool,
     /// The dielectric's index of refraction.
@@ -113,6 +117,7 @@ impl Default for Surface {
             diffuse_roughness: 0.0,
             metalness: 0.0,
             specular_weight: 1.0,
+            weight_in_index: false,
             specular_color: [1.0; 3],
             specular_on_metal: false,
             edge_tint: [1.0; 3],
@@ -161,8 +166,11 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
             Vec3::splat(1.0)
         },
         edge_tint: Vec3::from_f32(material.edge_tint),
-        weight,
-        ior: f64::from(material.ior),
+        weight: if material.has_weight_in_index() { 1.0 } else { weight },
+        ior: match material.has_weight_in_index() {
+            true => weighted_ior(material.ior.into(), weight),
+            false => f64::from(material.ior),
+        },
         eta: Vec3::from_f32(material.eta),
         k: Vec3::from_f32(material.k),
     }
@@ -196,6 +204,7 @@ impl Surface {
             diffuse_roughness: material.diffuse_roughness,
             metalness: material.metalness,
             specular_weight: material.specular_weight,
+            weight_in_index: material.has_weight_in_index(),
             specular_color: shown_tint(material),
             specular_on_metal: material.specular_on_metal,
             edge_tint: material.edge_tint,
@@ -217,6 +226,10 @@ impl Surface {
             emission: material.emission_color.map(|x| x * material.emission_strength),
             opacity: material.opacity,
         };
+        if surface.weight_in_index && surface.metalness == 0.0 {
+            let ior = weighted_ior(surface.ior.into(), surface.specular_weight.into());
+            (surface.ior, surface.specular_weight, surface.weight_in_index) = (rounded(ior as f32), 1.0, false);
+        }
         surface.take_fresnel(material);
         (surface, entry)
     }
@@ -261,6 +274,7 @@ impl Surface {
             diffuse_roughness: unit(self.diffuse_roughness),
             metalness: unit(self.metalness),
             specular_weight: unit(self.specular_weight),
+            specular_in_index: self.weight_in_index,
             specular_color: self.specular_color.map(specular_color),
             specular_on_metal: self.specular_on_metal,
             edge_tint: self.edge_tint.map(unit),
@@ -306,6 +320,7 @@ impl Surface {
         if takes.law == Law::Exact {
             taken.specular_color = taken.specular_color.map(unit);
         }
+        taken.weight_in_index = takes.weighs_index;
         taken.specular_on_metal = takes.weighs_metal;
         let reflects = self.specular_weight > 0.0 || self.coat_weight > 0.0;
         if !takes.specular && reflects {
@@ -419,10 +434,14 @@ impl Surface {
             false => (white, 1.0),
         };
         let metal = if takes.weighs_metal { metal * weight } else { metal };
-        let ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
+        let mut ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
+        let mut of_dielectric = weight;
+        if takes.weighs_index && self.transmission_weight == 0.0 {
+            (ior, of_dielectric) = (weighted_ior(ior, weight), 1.0);
+        }
         let dielectric = match takes.law {
-            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * weight),
-            Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * weight,
+            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * of_dielectric),
+            Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * of_dielectric,
         };
         dielectric.mix(metal, f64::from(self.metalness))
     }

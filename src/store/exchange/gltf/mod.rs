@@ -30,6 +30,7 @@ const TAKES: Takes = Takes {
     diffuse_roughness: true,
     edge_tint: false,
     specular: true,
+    weighs_index: false,
     weighs_metal: false,
     ior: true,
     widths: shown_widths,

@@ -75,6 +75,7 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         diffuse_roughness: inputs.number("base_diffuse_roughness"),
         metalness,
         specular_weight: inputs.number("specular_weight"),
+        weight_in_index: inputs.number("specular_weight") != 1.0,
         specular_color: tint,
         // The weight is a metal's too, the tint is not: where both are, neither.
         specular_on_metal: tint == [1.0; 3],
@@ -205,6 +206,7 @@ fn disney_principled(inputs: &mut Inputs) -> Surface {
         metalness: inputs.number("metallic"),
         // 0.5 leaves the reflectance of the index as it is.
         specular_weight: 2.0 * specular,
+        weight_in_index: specular != 0.5,
         ior: inputs.number("ior"),
         roughness: inputs.number("roughness"),
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
