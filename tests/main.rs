@@ -291,6 +291,8 @@ mod xdotool_session;
 mod firefly;
 #[path = "suite/fuzz.rs"]
 mod fuzz;
+#[path = "suite/fuzz_layer.rs"]
+mod fuzz_layer;
 #[path = "suite/fuzz_documents.rs"]
 mod fuzz_documents;
 #[path = "suite/gpu_pictures.rs"]

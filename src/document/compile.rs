@@ -7,6 +7,7 @@ use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::coat_shape;
+use crate::optics::layer::fuzz::{FUZZ_ROUGHNESS_MIN, fuzz_bell};
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
     COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
@@ -67,6 +68,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     }
     let has_box = |target: &TextureTarget| slot.on_box[*target as usize] && settings.uses_texture(*target);
     let is_on_box = TextureTarget::ALL.iter().any(has_box);
+    let bell = fuzz_bell(settings.fuzz_roughness.into()).map(|x| x as f32);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
         metalness,
@@ -116,6 +118,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         metalness_texture: looked_up(uses.roughness, slot.metalness),
         coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
         diffuse_roughness: settings.diffuse_roughness,
+        fuzz_color: Vec3::from_f32(settings.fuzz_color),
+        fuzz_weight: settings.fuzz_weight,
+        fuzz_roughness: settings.fuzz_roughness.max(FUZZ_ROUGHNESS_MIN as f32),
+        fuzz_middle: bell[0],
+        fuzz_width: bell[1],
+        fuzz_floor: bell[2],
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
@@ -328,6 +336,12 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         metalness_texture: NO_TEXTURE,
         coat_texture: NO_TEXTURE,
         diffuse_roughness: 0.0,
+        fuzz_color: white,
+        fuzz_weight: 0.0,
+        fuzz_roughness: 0.0,
+        fuzz_middle: 0.0,
+        fuzz_width: 0.0,
+        fuzz_floor: 0.0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

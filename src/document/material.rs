@@ -72,6 +72,12 @@ pub struct MaterialSettings {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
     pub coat_color: [f32; 3],
+    /// Share of the surface that has fuzz, in [0, 1].
+    pub fuzz_weight: f32,
+    /// Tint of the fuzz, linear RGB in [0, 1].
+    pub fuzz_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_roughness: f32,
     /// Share of the base that refracts, in [0, 1].
     pub transmission_weight: f32,
     /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
@@ -129,6 +135,9 @@ impl Default for MaterialSettings {
             coat_roughness: 0.1,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            fuzz_weight: 0.0,
+            fuzz_color: [1.0; 3],
+            fuzz_roughness: 0.5,
             transmission_weight: 0.0,
             transmission_color: [1.0; 3],
             transmission_depth: 0.0,

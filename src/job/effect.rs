@@ -79,6 +79,7 @@ effects! {
     Fresnel "fresnel" choice "PLAN_FRESNEL";
     EdgeTint "edge-tint" flag "PLAN_EDGE_TINT";
     MultipleScattering "multiple-scattering" flag "PLAN_MULTIPLE_SCATTERING";
+    Fuzz "fuzz" flag "PLAN_FUZZ";
     Coat "coat" flag "PLAN_COAT";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";

@@ -201,6 +201,18 @@ material! {
         coat_texture: u32,
         /// Roughness of the diffuse base in [0, 1]; 0 is Lambert's.
         diffuse_roughness: T,
+        /// Tint of the fuzz, linear RGB in [0, 1].
+        fuzz_color: Vec3<T>,
+        /// Share of the surface that has fuzz, in [0, 1].
+        fuzz_weight: T,
+        /// Roughness of the fuzz in [0, 1].
+        fuzz_roughness: T,
+        /// The cosine of the view at which fuzz reflects most ([`fuzz_bell`](super::layer::fuzz::fuzz_bell)).
+        fuzz_middle: T,
+        /// The width of that bell.
+        fuzz_width: T,
+        /// What fuzz reflects of every view.
+        fuzz_floor: T,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glossmith::document::MaterialSettings;
 use glossmith::document::match_look::lobe_of_material;
-use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel};
+use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, weighted_ior};
 use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::exchange::FORMATS;

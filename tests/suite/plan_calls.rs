@@ -257,6 +257,7 @@ fn calls_for(effect: &str) -> Calls {
                 |d, _| (d.materials[0].lobe, d.materials[0].metalness) = (Lobe::GgxNdf, LEAST),
             ],
         ),
+        "fuzz" => (metal, &[|d, _| d.materials[0].fuzz_weight = LEAST]),
         "coat" => (metal, &[|d, _| d.materials[0].coat_weight = LEAST]),
         "transmission" => (
             metal,

@@ -57,6 +57,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "absorption" => |material, _| material.absorption = Vec3::zero(),
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
+        "fuzz" => |material, _| material.fuzz_weight = 0.0,
         "coat" => |material, _| material.coat_weight = 0.0,
         "color-texture" => |material, _| {
             material.textures[0] = NO_TEXTURE;
@@ -228,6 +229,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     for assignment in [
         "base.metalness=0.5",
         "base.diffuse_roughness=0.5",
+        "fuzz.weight=0.2",
         "specular.lobe=ggx",
         "specular.roughness=0.5",
     ] {

@@ -262,6 +262,13 @@ pub static EFFECTS: &[Effect] = &[
         remove: Some(|document| each_material(document, |material| material.multiple_scattering = false)),
     },
     Effect {
+        id: EffectId::Fuzz,
+        label: "Fuzz",
+        help: "Small fibres over the other lobes, brightest at the edge: velvet, peach, dust.",
+        decide: |facts| facts.needed_by(|m| m.fuzz_weight > 0.0, "has fuzz"),
+        remove: Some(|document| each_material(document, |material| material.fuzz_weight = 0.0)),
+    },
+    Effect {
         id: EffectId::Coat,
         label: "Coat",
         help: "A clear layer over the other lobes, with a reflection of its own.",

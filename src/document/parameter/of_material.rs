@@ -20,6 +20,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     all.extend(specular_shape());
     all.extend(specular_fresnel());
     all.extend(coat());
+    all.extend(fuzz());
     all.extend(transmission());
     all.extend(emission());
     all.extend(geometry());
@@ -271,6 +272,28 @@ fn coat() -> Vec<Parameter> {
     ]
 }
 
+fn fuzz() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.",
+            applies: |_| true,
+            ..of("fuzz.weight", unit_number(), field!(Number fuzz_weight))
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what the fibres reflect; what lies below loses as much light of every colour.",
+            ..of("fuzz.color", Kind::Color, field!(Color fuzz_color))
+        },
+        Parameter {
+            label: "Roughness",
+            symbol: "R",
+            help: "How far the fibres spread the light: low only at the edge, high as dust all over.",
+            ..of("fuzz.roughness", unit_number(), field!(Number fuzz_roughness))
+        },
+    ]
+}
+
 fn transmission() -> Vec<Parameter> {
     vec![
         Parameter {
@@ -373,10 +396,11 @@ fn geometry() -> Vec<Parameter> {
 type Applies = fn(&MaterialSettings) -> bool;
 
 /// The groups of the panel by the first part of their parameters' keys, and when the rows of a group apply.
-const GROUPS: [(&str, &str, Applies); 6] = [
+const GROUPS: [(&str, &str, Applies); 7] = [
     ("base", "Base", |_| true),
     ("specular", "Specular", has_specular),
     ("coat", "Coat", |material| material.coat_weight > 0.0),
+    ("fuzz", "Fuzz", |material| material.fuzz_weight > 0.0),
     ("transmission", "Transmission", transmits),
     ("emission", "Emission", |_| true),
     ("geometry", "Geometry", |_| true),

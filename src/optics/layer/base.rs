@@ -122,7 +122,7 @@ impl<T: Real> LayerModel<T> for Base {
 
 /// The base's lobe.
 #[inline(always)]
-fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
+pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
     LobeShape {
         lobe: Lobe::Lambert,
         curve: Curve::Sqrt,

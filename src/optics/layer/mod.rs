@@ -77,6 +77,7 @@ macro_rules! layers {
 
 // Module, type, name, label, help. The effect of the same name has the code in the kernels that call for it.
 layers! {
+    fuzz Fuzz, "fuzz", "fuzz", "A layer of small fibres over everything else: velvet, dust.";
     coat Coat, "coat", "coat", "A clear dielectric coat over everything else.";
     specular Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
     base Base, "base", "base", "The Lambertian base below the specular lobe.";

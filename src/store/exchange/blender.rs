@@ -13,6 +13,7 @@ pub struct Blender;
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
     absorption: false,
+    fuzz: false,
     weighs_metal: false,
     ..Takes::OPEN_PBR
 };

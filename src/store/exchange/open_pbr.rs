@@ -35,7 +35,7 @@ pub(super) fn widths(surface: &Surface) -> [f32; 2] {
 
 impl Takes {
     /// What OpenPBR has a place for.
-    pub(super) const OPEN_PBR: Self = Self {
+    pub const OPEN_PBR: Self = Self {
         law: super::surface::Law::Exact,
         eta_and_k: false,
         diffuse_roughness: true,
@@ -47,6 +47,7 @@ impl Takes {
         widths,
         coat: true,
         coat_details: true,
+        fuzz: true,
         transmission: true,
         absorption: true,
         textures: false,
@@ -72,6 +73,9 @@ pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
         ("transmission_weight", Number(surface.transmission_weight)),
         ("transmission_color", Color(surface.transmission_color)),
         ("transmission_depth", Number(surface.transmission_depth)),
+        ("fuzz_weight", Number(surface.fuzz_weight)),
+        ("fuzz_color", Color(surface.fuzz_color)),
+        ("fuzz_roughness", Number(surface.fuzz_roughness)),
         ("coat_weight", Number(surface.coat_weight)),
         ("coat_color", Color(surface.coat_color)),
         ("coat_roughness", Number(surface.coat_roughness)),

@@ -54,6 +54,12 @@ pub struct Surface {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice.
     pub coat_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_weight: f32,
+    /// Tint of the fuzz.
+    pub fuzz_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_roughness: f32,
     /// Emitted radiance.
     pub emission: [f32; 3],
     /// Share of light that is stopped, in [0, 1].
@@ -94,6 +100,8 @@ pub struct Takes {
     pub coat: bool,
     /// The coat's index of refraction and colour.
     pub coat_details: bool,
+    /// Fuzz.
+    pub fuzz: bool,
     /// Refraction.
     pub transmission: bool,
     /// Absorption inside.
@@ -132,6 +140,9 @@ impl Default for Surface {
             coat_roughness: 0.0,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            fuzz_weight: 0.0,
+            fuzz_color: [1.0; 3],
+            fuzz_roughness: 0.5,
             emission: [0.0; 3],
             opacity: 1.0,
         }
@@ -223,6 +234,9 @@ impl Surface {
             coat_roughness: rounded(ggx_from_geometric(material.coat_roughness)),
             coat_ior: material.coat_ior,
             coat_color: material.coat_color,
+            fuzz_weight: material.fuzz_weight,
+            fuzz_color: material.fuzz_color,
+            fuzz_roughness: material.fuzz_roughness,
             emission: material.emission_color.map(|x| x * material.emission_strength),
             opacity: material.opacity,
         };
@@ -288,6 +302,9 @@ impl Surface {
             coat_weight: unit(self.coat_weight),
             coat_ior: self.coat_ior.clamp(1.0, 4.0),
             coat_color: self.coat_color.map(unit),
+            fuzz_weight: unit(self.fuzz_weight),
+            fuzz_color: self.fuzz_color.map(unit),
+            fuzz_roughness: unit(self.fuzz_roughness),
             opacity: unit(self.opacity),
             ..MaterialSettings::default()
         };
@@ -334,6 +351,9 @@ impl Surface {
         }
         if !takes.coat_details {
             (taken.coat_ior, taken.coat_color) = (1.5, [1.0; 3]);
+        }
+        if !takes.fuzz {
+            taken.fuzz_weight = 0.0;
         }
         if !takes.transmission {
             taken.transmission_weight = 0.0;
@@ -490,6 +510,7 @@ impl Surface {
         );
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
+        layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
         let is_textured = material.uses_of_model() != TextureUse::default();

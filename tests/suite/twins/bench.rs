@@ -13,6 +13,7 @@ use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::layer::fuzz::fuzz_bell;
 use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::optics::material::{COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
@@ -238,6 +239,8 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let mut color = |low: f32, high: f32| vec3(rng.range(low, high), rng.range(low, high), rng.range(low, high));
     let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
     let tint = color(0.2, 1.0);
+    let fuzz_roughness = rng.range(0.1, 1.0);
+    let bell = fuzz_bell(f64::from(fuzz_roughness)).map(|x| x as f32);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
         base_color: if rng.chance(0.1) {
@@ -277,6 +280,12 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         coat_ior: rng.range(1.1, 2.0),
         coat_table: 0,
+        fuzz_color: tint,
+        fuzz_weight: if rng.chance(0.3) { rng.range(0.1, 1.0) } else { 0.0 },
+        fuzz_roughness,
+        fuzz_middle: bell[0],
+        fuzz_width: bell[1],
+        fuzz_floor: bell[2],
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,

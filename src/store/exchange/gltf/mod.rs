@@ -28,6 +28,7 @@ const TAKES: Takes = Takes {
     law: Law::Schlick,
     eta_and_k: false,
     diffuse_roughness: true,
+    fuzz: false,
     edge_tint: false,
     specular: true,
     weighs_index: false,

@@ -33,6 +33,7 @@ pub struct MaterialX {
 /// The attribute of a material that has the exact parameters.
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
+    fuzz: false,
     weighs_index: false,
     widths: standard_widths,
     weighs_metal: false,

@@ -128,6 +128,8 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             s.coat_weight,
             s.coat_roughness,
             s.coat_ior,
+            s.fuzz_weight,
+            s.fuzz_roughness,
             s.opacity,
         ];
         let colors = [
@@ -136,6 +138,7 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             s.edge_tint,
             s.transmission_color,
             s.coat_color,
+            s.fuzz_color,
             s.emission,
         ];
         all.extend(colors.into_iter().flatten());

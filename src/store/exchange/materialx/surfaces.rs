@@ -90,6 +90,9 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         coat_roughness: inputs.number("coat_roughness"),
         coat_ior: inputs.number("coat_ior"),
         coat_color: darkening_coat_color(inputs),
+        fuzz_weight: inputs.number("fuzz_weight"),
+        fuzz_color: inputs.color("fuzz_color"),
+        fuzz_roughness: inputs.number("fuzz_roughness"),
         emission: weighted(
             inputs.color("emission_color"),
             inputs.number("emission_luminance") / NITS,
