@@ -167,6 +167,9 @@ pub trait LayerModel<T: Real> {
     fn choose(_: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
         let share = &mut layers[Self::LAYER];
         let reflected = share.albedo.max_component();
+        if !T::zero().less(reflected).any() {
+            return below;
+        }
         let rest = (T::one() - reflected) * below;
         share.probability = cover_probability(reflected, rest);
         reflected + rest
