@@ -80,6 +80,8 @@ mod environment_files;
 mod environment_sampling;
 #[path = "suite/environment_shapes.rs"]
 mod environment_shapes;
+#[path = "suite/evaluate.rs"]
+mod evaluate;
 #[path = "suite/exchange.rs"]
 mod exchange;
 #[path = "suite/exchange_details.rs"]
@@ -174,6 +176,8 @@ mod nobody_listens;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/open_pbr_oracle.rs"]
+mod open_pbr_oracle;
 #[path = "suite/own_textures.rs"]
 mod own_textures;
 #[path = "suite/parameters.rs"]
@@ -200,10 +204,14 @@ mod ray_queries;
 mod refused;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/rough_diffuse.rs"]
+mod rough_diffuse;
 #[path = "suite/same_bits.rs"]
 mod same_bits;
 #[path = "suite/same_paths.rs"]
 mod same_paths;
+#[path = "suite/scattering.rs"]
+mod scattering;
 #[path = "suite/shadow_catcher.rs"]
 mod shadow_catcher;
 #[path = "suite/signals.rs"]
@@ -283,6 +291,8 @@ mod xdotool_session;
 mod firefly;
 #[path = "suite/fuzz.rs"]
 mod fuzz;
+#[path = "suite/fuzz_layer.rs"]
+mod fuzz_layer;
 #[path = "suite/fuzz_documents.rs"]
 mod fuzz_documents;
 #[path = "suite/gpu_pictures.rs"]

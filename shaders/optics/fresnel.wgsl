@@ -46,6 +46,22 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
     }
 }
 
+struct FresnelParts {
+    dielectric: vec3f,
+    metal: vec3f,
+}
+
+fn fresnel_parts(terms: FresnelTerms, cosine: f32) -> FresnelParts {
+    var dielectric = vec3f(0.0);
+    if terms.model == FRESNEL_SCHLICK {
+        dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
+    } else {
+        dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
+    }
+    let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
+    return FresnelParts(terms.weight * dielectric, metal);
+}
+
 fn half_vector_cosine(wo: vec3f, wi: vec3f) -> f32 {
     return min(0.5 * length(wo + wi), 1.0);
 }

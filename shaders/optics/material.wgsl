@@ -18,7 +18,7 @@ struct Surface {
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
         planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
-        material.curve_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
+        material.lobe_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
         0.0,
     );
 }
@@ -38,9 +38,10 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
     let tint = select(material.specular_color, vec3f(1.0), is_bare);
     let weight = select(material.specular_weight, 1.0, is_bare);
+    let of_dielectric = select(weight, 1.0, has_flag(material, WEIGHS_INDEX));
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
-        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), weight, material_ior_ahead(material, is_inside), material.eta, material.k,
+        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, material_ior_ahead(material, is_inside), material.eta, material.k,
     );
 }
 

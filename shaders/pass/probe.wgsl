@@ -1,5 +1,6 @@
 // Single functions of the optics and the traversal on given inputs: tests of hard cases run the renderer's own code. Twin of
 // src/cpu/probe.rs; src/job/probe.rs describes inputs and outputs.
+#import "optics/layer/density"
 #import "optics/layer/scatter"
 #import "optics/random"
 #import "scene/traversal"
@@ -8,7 +9,8 @@
 const LOBE_WORDS: u32 = 22u;
 const FRESNEL_WORDS: u32 = 4u;
 const RANDOM_WORDS: u32 = 6u;
-const MATERIAL_WORDS: u32 = 15u;
+const MATERIAL_WORDS: u32 = 19u;
+const DRAW_WORDS: u32 = 21u;
 const RAY_WORDS: u32 = 7u;
 
 @group(1) @binding(0) var<storage, read> questions: array<u32>;
@@ -84,6 +86,16 @@ fn probe_random(@builtin(global_invocation_id) id: vec3u) {
     answers[id.x * 2u + 1u] = bits.y;
 }
 
+// The surface point of a view, whose words begin at q.
+fn seen(q: u32) -> Surface {
+    let shading = asked_vector(q + 2u);
+    let tangent = asked_vector(q + 5u);
+    return Surface(
+        Frame(tangent, cross(shading, tangent), shading),
+        asked_vector(q + 8u), asked_vector(q + 11u), shading, questions[q + 1u] == 1u,
+    );
+}
+
 // A material's evaluate for light from a direction that was drawn with some density.
 @compute @workgroup_size(64)
 fn probe_material(@builtin(global_invocation_id) id: vec3u) {
@@ -91,14 +103,38 @@ fn probe_material(@builtin(global_invocation_id) id: vec3u) {
     if q >= arrayLength(&questions) {
         return;
     }
-    let shading = asked_vector(q + 2u);
-    let surface = Surface(
-        frame_from_normal(shading), asked_vector(q + 5u), asked_vector(q + 8u), shading, questions[q + 1u] == 1u,
-    );
+    let surface = seen(q);
     let material = material_at(questions[q]);
     let layers = material_layers(material, surface);
-    let value = material_evaluate(material, surface, layers, asked_vector(q + 11u), asked(q + 14u), 1.0);
+    let value = material_evaluate(material, surface, layers, asked_vector(q + 14u), asked(q + 17u), asked(q + 18u));
     answer_vector(id.x * 3u, value);
+}
+
+// The density with which a material draws a direction.
+@compute @workgroup_size(64)
+fn probe_density(@builtin(global_invocation_id) id: vec3u) {
+    let q = id.x * MATERIAL_WORDS;
+    if q >= arrayLength(&questions) {
+        return;
+    }
+    let surface = seen(q);
+    let material = material_at(questions[q]);
+    answer(id.x, material_density(material, surface, material_layers(material, surface), asked_vector(q + 14u)));
+}
+
+// A direction drawn from a material, and value over density.
+@compute @workgroup_size(64)
+fn probe_draw(@builtin(global_invocation_id) id: vec3u) {
+    let q = id.x * DRAW_WORDS;
+    if q >= arrayLength(&questions) {
+        return;
+    }
+    let surface = seen(q);
+    let material = material_at(questions[q]);
+    let numbers = MaterialNumbers(asked_vector(q + 14u), asked(q + 17u), asked_vector(q + 18u));
+    let drawn = material_sample(material, surface, material_layers(material, surface), numbers, false);
+    answer_vector(id.x * 6u, drawn.wi);
+    answer_vector(id.x * 6u + 3u, drawn.throughput);
 }
 
 // The nearest triangle on a ray and its distance.

@@ -60,11 +60,16 @@ struct Globals {
     roulette_floor: f32,
 }
 
-// Bits of a material's flags: vertex attributes, and whether the reflection's weight and tint spare metals.
+// Bits of a material's flags: vertex attributes, whether the reflection's weight and tint spare metals,
+// whether multiple scattering between facets is compensated, whether a texture uses box projection,
+// and whether the dielectric's index has the weight in it.
 const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
 const SPARES_METAL: u32 = 8u;
+const COMPENSATES: u32 = 16u;
+const HAS_BOX: u32 = 32u;
+const WEIGHS_INDEX: u32 = 64u;
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {

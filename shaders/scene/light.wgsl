@@ -50,7 +50,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let material = material_at(slot_at(index));
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u || PLAN_VERTEX_COLORS == 1u {
-        let uvs = uvs_at(triangle, weights, material.has_box_projection == 1u);
+        let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
         radiance = emission_at(material, uvs, vertex_factors(material, triangle, weights));
     }
     if PLAN_SPOT == 1u {

@@ -153,7 +153,7 @@ fn looks_up_textures() -> bool {
 
 fn hit_uvs(hit: Hit, material: Material) -> Uvs {
     let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
-    return uvs_at(triangle_at(hit.triangle), weights, material.has_box_projection == 1u);
+    return uvs_at(triangle_at(hit.triangle), weights, (material.flags & HAS_BOX) != 0u);
 }
 
 // Opacity at a hit, in [0, 1].

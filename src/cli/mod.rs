@@ -9,6 +9,7 @@ mod batch;
 mod benchmark;
 mod check;
 mod convert;
+mod evaluate;
 mod explain;
 mod fit;
 mod lights;
@@ -114,6 +115,8 @@ subcommands! {
     Benchmark(benchmark::BenchmarkArguments) => benchmark::run;
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments) => scatter::run;
+    /// Evaluate a material: values and densities for pairs of directions, or albedos.
+    Evaluate(Box<evaluate::EvaluateArguments>) => evaluate::run;
     /// Match the look of another lobe or of a measured material.
     Fit(fit::FitArguments) => fit::run;
     /// Convert materials to other programs and back, with a loss report.

@@ -4,13 +4,13 @@
 use rayon::prelude::*;
 
 use crate::job::probe::{
-    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene, RandomQuestion, RayAnswer,
-    RayQuestion,
+    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, MaterialView, NO_HIT,
+    ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
 };
 use crate::optics::curve::Curve;
-use crate::optics::frame::frame_from_normal;
+use crate::optics::frame::{Frame, frame_from_normal};
 use crate::optics::fresnel::{fresnel_conductor, fresnel_dielectric};
-use crate::optics::layer::{material_evaluate, material_layers};
+use crate::optics::layer::{MaterialNumbers, material_density, material_evaluate, material_layers, material_sample};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
 use crate::optics::material::{Material, Surface};
 use crate::optics::random::{Sequence, random_pair_bits, random_state};
@@ -76,28 +76,73 @@ pub fn moved_direction<T: Real>(wi: Vec3<T>, moved: [f64; 2]) -> Vec3<T> {
     wi + around.tangent * along + around.bitangent * across
 }
 
+/// A vector in the precision `T`.
+fn vector<T: Scalar>(v: Vec3<f32>) -> Vec3<T> {
+    Vec3::from_f64(v.to_f64())
+}
+
+/// The surface point of a view.
+fn seen<T: Scalar>(view: &MaterialView) -> Surface<T> {
+    let (normal, tangent) = (vector(view.shading), vector(view.tangent));
+    Surface {
+        frame: Frame {
+            tangent,
+            bitangent: normal.cross(tangent),
+            normal,
+        },
+        normal: vector(view.normal),
+        coat_normal: normal,
+        wo: vector(view.wo),
+        is_inside: view.is_inside == 1,
+    }
+}
+
 /// A material's evaluate for light from a direction that was drawn with some density, in the precision `T`; the direction
 /// is moved as by [`moved_direction`].
 pub fn probe_material<T: Scalar>(scene: &ProbeScene<'_>, question: &MaterialQuestion, moved: [f64; 2]) -> Vec3<T> {
-    let q = question;
-    let vector = |v: Vec3<f32>| Vec3::<T>::from_f64(v.to_f64());
-    let material: Material<T> = scene.materials[q.material as usize].cast();
-    let surface = Surface {
-        frame: frame_from_normal(vector(q.shading)),
-        normal: vector(q.normal),
-        coat_normal: vector(q.shading),
-        wo: vector(q.wo),
-        is_inside: q.is_inside == 1,
-    };
-    let wi = moved_direction(vector(q.wi), moved);
-    let density = T::from_f64(f64::from(q.light_density));
+    let material: Material<T> = scene.materials[question.view.material as usize].cast();
+    let surface = seen(&question.view);
+    let wi = moved_direction(vector(question.wi), moved);
+    let [density, competing] = [question.light_density, question.competing].map(|x| T::from_f64(f64::from(x)));
     let layers = material_layers(&material, scene.tables, &surface);
-    material_evaluate(&material, scene.tables, &surface, &layers, wi, density, T::one())
+    material_evaluate(&material, scene.tables, &surface, &layers, wi, density, competing)
 }
 
-/// Materials' values in f32.
-pub fn probe_materials(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<Vec3<f32>> {
+/// Materials' values in the precision `T`.
+pub fn probe_materials<T: Scalar>(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<Vec3<T>> {
     let answer = |q: &MaterialQuestion| probe_material(scene, q, [0.0; 2]);
+    questions.par_iter().map(answer).collect()
+}
+
+/// Densities with which materials draw directions, in the precision `T`.
+pub fn probe_density<T: Scalar>(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<T> {
+    let answer = |q: &MaterialQuestion| {
+        let material: Material<T> = scene.materials[q.view.material as usize].cast();
+        let surface = seen(&q.view);
+        let layers = material_layers(&material, scene.tables, &surface);
+        material_density(&material, scene.tables, &surface, &layers, vector(q.wi))
+    };
+    questions.par_iter().map(answer).collect()
+}
+
+/// Directions drawn from materials, computed in the precision `T`.
+pub fn probe_draw<T: Scalar>(scene: &ProbeScene<'_>, questions: &[DrawQuestion]) -> Vec<DrawAnswer> {
+    let answer = |q: &DrawQuestion| {
+        let material: Material<T> = scene.materials[q.view.material as usize].cast();
+        let surface = seen(&q.view);
+        let number = |x: f32| T::from_f64(f64::from(x));
+        let numbers = MaterialNumbers {
+            lobe: q.lobe.map(number),
+            facet: number(q.facet),
+            below: q.below.map(number),
+        };
+        let layers = material_layers(&material, scene.tables, &surface);
+        let drawn = material_sample(&material, scene.tables, &surface, &layers, numbers, false);
+        DrawAnswer {
+            wi: Vec3::from_f64(drawn.wi.to_f64()),
+            throughput: Vec3::from_f64(drawn.throughput.to_f64()),
+        }
+    };
     questions.par_iter().map(answer).collect()
 }
 

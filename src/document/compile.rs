@@ -5,12 +5,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
-use crate::optics::fresnel::{Fresnel, fresnel_f0};
+use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::coat_shape;
-use crate::optics::lobe::Width;
+use crate::optics::layer::fuzz::{FUZZ_ROUGHNESS_MIN, fuzz_bell};
+use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
+    VERTEX_OPACITY, WEIGHS_INDEX,
 };
+use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
 use crate::scene::texture::{SlotTextures, TextureTarget};
@@ -65,6 +68,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     }
     let has_box = |target: &TextureTarget| slot.on_box[*target as usize] && settings.uses_texture(*target);
     let is_on_box = TextureTarget::ALL.iter().any(has_box);
+    let bell = fuzz_bell(settings.fuzz_roughness.into()).map(|x| x as f32);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
         metalness,
@@ -85,7 +89,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         curve: settings.curve as u32,
         horizon: settings.horizon as u32,
         fresnel: settings.fresnel as u32,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
@@ -108,12 +112,18 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         has_rough_tables: 0,
         texture_roughness: settings.roughness,
         roughness_table: NO_TEXTURE,
-        flags: flags(settings, slot),
+        flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: looked_up(uses.roughness, slot.metalness),
         coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
-        has_box_projection: u32::from(is_on_box),
+        diffuse_roughness: settings.diffuse_roughness,
+        fuzz_color: Vec3::from_f32(settings.fuzz_color),
+        fuzz_weight: settings.fuzz_weight,
+        fuzz_roughness: settings.fuzz_roughness.max(FUZZ_ROUGHNESS_MIN as f32),
+        fuzz_middle: bell[0],
+        fuzz_width: bell[1],
+        fuzz_floor: bell[2],
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
@@ -132,6 +142,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
             material.transmission_tint = material.transmission_tint * color;
         }
     }
+    if settings.has_weight_in_index() {
+        material.ior = weighted_ior(settings.ior.into(), settings.specular_weight.into()) as f32;
+        material.flags |= WEIGHS_INDEX;
+    }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
     let most = if is_schlick {
@@ -140,7 +154,20 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         1.0
     };
     material.specular_color = material.specular_color.map(|x: f32| x.min(most));
+    if settings.multiple_scattering && loses_light(settings, &material) {
+        material.flags |= COMPENSATES;
+    }
     material
+}
+
+/// Whether the lobe loses light between its facets that no base below takes: a metal's, or a clear interface's.
+fn loses_light(settings: &MaterialSettings, material: &Material<f32>) -> bool {
+    let has_model_of_metal = [Fresnel::None, Fresnel::Conductor].contains(&settings.fresnel);
+    let is_metal = material.metalness > 0.0 && (has_model_of_metal || material.has_specular());
+    let transmits = material.least_metallic().transmits();
+    let refracts = || transmits && !is_mirror(&material.transmission_shape(&[], false));
+    let is_rough = material.textures[1] != NO_TEXTURE || !is_mirror(&material.shape(&[])) || refracts();
+    settings.lobe.traits().loses_light && is_rough && (is_metal || transmits)
 }
 
 /// What the vertices say where it is looked up, and whether metals keep their reflection.
@@ -171,7 +198,10 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let mut curve_table = Vec::new();
     if settings.lobe.has_curves() && settings.curve.has_table() {
         curve_table = settings.custom_curve.table();
-        material.curve_table = append_table(tables, &curve_table);
+        material.lobe_table = append_table(tables, &curve_table);
+    }
+    if material.has_flag(COMPENSATES) {
+        material.lobe_table = append_table(tables, &remembered(scattering_key(&material)));
     }
     if (anywhere.has_base() || anywhere.transmits()) && anywhere.has_specular() {
         material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
@@ -210,21 +240,35 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
     }
 }
 
-/// What an albedo table depends on.
+/// What a table of a lobe holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Holds {
+    /// Albedos for views from outside.
+    Albedo,
+    /// Albedos for views from within.
+    InnerAlbedo,
+    /// Energies that single scattering keeps.
+    Energies,
+}
+
+/// What a table of a lobe depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct AlbedoKey {
+struct TableKey {
     /// The material, what its specular reflection does not depend on being zero.
     material: Material<f32>,
     curve_table: Vec<f32>,
-    is_inside: bool,
+    holds: Holds,
 }
 
 /// The tables made last, the latest at the end: dragging a colour must not cost milliseconds a frame.
-static ALBEDOS: Mutex<Vec<(AlbedoKey, Arc<[f32]>)>> = Mutex::new(Vec::new());
+static TABLES: Mutex<Vec<(TableKey, Arc<[f32]>)>> = Mutex::new(Vec::new());
 
 fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> Arc<[f32]> {
-    let key = albedo_key(material, curve_table, is_inside);
-    let memory = || ALBEDOS.lock().unwrap_or_else(PoisonError::into_inner);
+    remembered(albedo_key(material, curve_table, is_inside))
+}
+
+fn remembered(key: TableKey) -> Arc<[f32]> {
+    let memory = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
     let known = memory()
         .iter()
         .find(|(of, _)| *of == key)
@@ -233,10 +277,13 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
         return table;
     }
     let of = key.material.cast::<f64>();
-    let table: Arc<[f32]> = if material.has_rough_tables == 1 {
-        rough_albedo_table(&of, &key.curve_table, ROUGH_ALBEDO_SAMPLES, is_inside).into()
-    } else {
-        albedo_table(&of, &key.curve_table, ALBEDO_SAMPLES, is_inside).into()
+    let is_rough = of.has_rough_tables == 1;
+    let samples = if is_rough { ROUGH_ALBEDO_SAMPLES } else { ALBEDO_SAMPLES };
+    let is_inside = key.holds == Holds::InnerAlbedo;
+    let table: Arc<[f32]> = match key.holds {
+        Holds::Energies => scattering_table(&of, samples).into(),
+        _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
+        _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };
     let mut memory = memory();
     if memory.len() >= REMEMBERED {
@@ -246,7 +293,30 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
     table
 }
 
-fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> AlbedoKey {
+/// The key of the energies that a lobe keeps: the roughness of both lobes and, of a clear interface, its index.
+fn scattering_key(material: &Material<f32>) -> TableKey {
+    let key = albedo_key(material, &[], false);
+    let transmits = key.material.transmits();
+    let of_interface = |x: f32| if transmits { x } else { 0.0 };
+    TableKey {
+        material: Material {
+            specular_color: Vec3::zero(),
+            eta: Vec3::zero(),
+            k: Vec3::zero(),
+            ior: of_interface(material.ior),
+            // The samplings of GGX share one model.
+            lobe: Lobe::Ggx as u32,
+            // With a table over the roughness their difference counts.
+            roughness: material.roughness,
+            transmission_roughness: of_interface(material.transmission_roughness),
+            ..key.material
+        },
+        holds: Holds::Energies,
+        ..key
+    }
+}
+
+fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> TableKey {
     // A table over the roughness serves every roughness, metalness and colour; any other is a dielectric's.
     let is_rough = material.has_rough_tables == 1;
     let white = Vec3::splat(1.0);
@@ -265,18 +335,24 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         textures: [NO_TEXTURE; 4],
         metalness_texture: NO_TEXTURE,
         coat_texture: NO_TEXTURE,
-        has_box_projection: 0,
+        diffuse_roughness: 0.0,
+        fuzz_color: white,
+        fuzz_weight: 0.0,
+        fuzz_roughness: 0.0,
+        fuzz_middle: 0.0,
+        fuzz_width: 0.0,
+        fuzz_floor: 0.0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
         // A dielectric without vertices.
-        flags: 0,
+        flags: material.flags & WEIGHS_INDEX,
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         transmission_tint: Vec3::zero(),
@@ -285,9 +361,9 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         transmission_roughness: 0.0,
         ..*material
     };
-    AlbedoKey {
+    TableKey {
         material,
         curve_table: curve_table.to_vec(),
-        is_inside,
+        holds: if is_inside { Holds::InnerAlbedo } else { Holds::Albedo },
     }
 }

@@ -24,14 +24,20 @@ pub struct MaterialSettings {
     pub base_weight: f32,
     /// Linear RGB in [0, 1].
     pub base_color: [f32; 3],
+    /// Roughness of the diffuse base, in [0, 1].
+    pub diffuse_roughness: f32,
     /// In [0, 1].
     pub metalness: f32,
     /// In [0, 1].
     pub specular_weight: f32,
+    /// The weight scales a dielectric's reflectance head-on through its index, as in OpenPBR; else at every angle.
+    pub specular_in_index: bool,
     /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
     pub specular_on_metal: bool,
     /// The specular lobe.
     pub lobe: Lobe,
+    /// GGX gets back the light that single scattering between its facets loses.
+    pub multiple_scattering: bool,
     /// In [0, 1].
     pub roughness: f32,
     /// In [−1, 1].
@@ -66,6 +72,12 @@ pub struct MaterialSettings {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
     pub coat_color: [f32; 3],
+    /// Share of the surface that has fuzz, in [0, 1].
+    pub fuzz_weight: f32,
+    /// Tint of the fuzz, linear RGB in [0, 1].
+    pub fuzz_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_roughness: f32,
     /// Share of the base that refracts, in [0, 1].
     pub transmission_weight: f32,
     /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
@@ -99,10 +111,13 @@ impl Default for MaterialSettings {
             name: "Plain".to_owned(),
             base_weight: 1.0,
             base_color: [0.8; 3],
+            diffuse_roughness: 0.0,
             metalness: 1.0,
             specular_weight: 1.0,
+            specular_in_index: false,
             specular_on_metal: true,
             lobe: Lobe::Geometric,
+            multiple_scattering: true,
             roughness: 0.3,
             anisotropy: 0.0,
             rotation_deg: 0.0,
@@ -120,6 +135,9 @@ impl Default for MaterialSettings {
             coat_roughness: 0.1,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            fuzz_weight: 0.0,
+            fuzz_color: [1.0; 3],
+            fuzz_roughness: 0.5,
             transmission_weight: 0.0,
             transmission_color: [1.0; 3],
             transmission_depth: 0.0,
@@ -158,6 +176,7 @@ impl MaterialSettings {
         let mut material = Self {
             name: slot.name.clone(),
             base_color: slot.base_color.map(unit),
+            diffuse_roughness: unit(slot.diffuse_roughness),
             metalness: unit(slot.metalness),
             roughness: unit(slot.roughness),
             ior: slot.ior.clamp(1.0, 4.0),
@@ -205,6 +224,12 @@ impl MaterialSettings {
     pub fn reflects(&self) -> bool {
         let is_spared_metal = self.metalness > 0.0 && !self.specular_on_metal;
         self.specular_weight > 0.0 || is_spared_metal || self.transmits()
+    }
+
+    /// True if the specular weight is in a dielectric's index: one that is opaque and reflects by it.
+    pub fn has_weight_in_index(&self) -> bool {
+        let has_index = matches!(self.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
+        self.specular_in_index && has_index && !self.transmits()
     }
 
     /// True where light goes through the surface.

@@ -70,6 +70,7 @@ effects! {
     Interreflection "interreflection" flag "PLAN_INTERREFLECTION";
     ShadowTerminator "shadow-terminator" flag "PLAN_SHADOW_TERMINATOR";
     Base "base" flag "PLAN_BASE";
+    DiffuseRoughness "diffuse-roughness" flag "PLAN_DIFFUSE_ROUGHNESS";
     Specular "specular" flag "PLAN_SPECULAR";
     Lobe "lobe" choice "PLAN_LOBE";
     Curve "curve" choice "PLAN_CURVE";
@@ -77,6 +78,8 @@ effects! {
     Horizon "horizon" choice "PLAN_HORIZON";
     Fresnel "fresnel" choice "PLAN_FRESNEL";
     EdgeTint "edge-tint" flag "PLAN_EDGE_TINT";
+    MultipleScattering "multiple-scattering" flag "PLAN_MULTIPLE_SCATTERING";
+    Fuzz "fuzz" flag "PLAN_FUZZ";
     Coat "coat" flag "PLAN_COAT";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";

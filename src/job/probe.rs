@@ -120,24 +120,60 @@ pub struct RandomQuestion {
     pub dimension: u32,
 }
 
-/// A material seen from somewhere and lit from somewhere.
+/// A material seen from somewhere.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct MaterialQuestion {
+pub struct MaterialView {
     /// Index into [`ProbeScene::materials`].
     pub material: u32,
     /// 1 if the viewer is inside the solid.
     pub is_inside: u32,
-    /// Unit shading normal.
+    /// Unit shading normal, on the side of the viewer.
     pub shading: Vec3<f32>,
-    /// Unit geometric normal.
+    /// Unit tangent of the shading frame, rotation applied; perpendicular to `shading`.
+    pub tangent: Vec3<f32>,
+    /// Unit geometric normal, on the side of the viewer.
     pub normal: Vec3<f32>,
     /// Unit direction to the viewer.
     pub wo: Vec3<f32>,
+}
+
+/// A material lit from somewhere.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct MaterialQuestion {
+    /// The material and the viewer.
+    pub view: MaterialView,
     /// Unit direction to the light.
     pub wi: Vec3<f32>,
     /// Density with which the light was drawn.
     pub light_density: f32,
+    /// 1 if the material's own density enters the MIS weight, or 0.
+    pub competing: f32,
+}
+
+/// The random numbers that draw a direction from a material.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct DrawQuestion {
+    /// The material and the viewer.
+    pub view: MaterialView,
+    /// See [`MaterialNumbers::lobe`](crate::optics::layer::MaterialNumbers::lobe).
+    pub lobe: [f32; 3],
+    /// See [`MaterialNumbers::facet`](crate::optics::layer::MaterialNumbers::facet).
+    pub facet: f32,
+    /// See [`MaterialNumbers::below`](crate::optics::layer::MaterialNumbers::below).
+    pub below: [f32; 3],
+}
+
+/// A direction drawn from a material.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct DrawAnswer {
+    /// Unit direction to the light.
+    pub wi: Vec3<f32>,
+    /// Value over density, linear RGB; 0 if absorbed.
+    pub throughput: Vec3<f32>,
 }
 
 /// A ray in the geometry's units.

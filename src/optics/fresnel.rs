@@ -56,13 +56,8 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
     match terms.model {
         Fresnel::None => terms.tint * terms.weight,
         Fresnel::Schlick | Fresnel::Dielectric => {
-            let dielectric = if terms.model == Fresnel::Schlick {
-                fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
-            } else {
-                terms.tint * fresnel_dielectric(cosine, terms.ior)
-            };
-            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-            (dielectric * terms.weight).mix(metal, terms.metalness)
+            let [dielectric, metal] = fresnel_parts(terms, cosine);
+            dielectric.mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
             let channels = vec3(
@@ -73,6 +68,18 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
             channels * terms.tint * terms.weight
         }
     }
+}
+
+/// The shares that the dielectric and the metal of a surface reflect, by Schlick's model or the exact equations.
+#[inline(always)]
+pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2] {
+    let dielectric = if terms.model == Fresnel::Schlick {
+        fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
+    } else {
+        terms.tint * fresnel_dielectric(cosine, terms.ior)
+    };
+    let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
+    [dielectric * terms.weight, metal]
 }
 
 /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
@@ -87,6 +94,12 @@ pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
 pub fn fresnel_f0<T: Real>(ior: T) -> T {
     let ratio = (ior - T::one()) / (ior + T::one());
     ratio * ratio
+}
+
+/// Index of refraction of a dielectric that reflects `weight` times as much at normal incidence, and all at grazing angles.
+pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
+    let root = (fresnel_f0(ior) * weight).clamp(0.0, 0.99).sqrt();
+    (1.0 + root) / (1.0 - root)
 }
 
 /// Schlick's approximation (1994).

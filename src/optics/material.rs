@@ -26,6 +26,12 @@ pub const VERTEX_EMISSION: u32 = 2;
 pub const VERTEX_OPACITY: u32 = 4;
 /// Flag: weight and tint of the reflection are the dielectric's alone.
 pub const SPARES_METAL: u32 = 8;
+/// Flag: the lobe gets back what multiple scattering between its facets reflects ([`super::scattering`]).
+pub const COMPENSATES: u32 = 16;
+/// Flag: the dielectric's index has the weight of the reflection in it, and only a metal's is multiplied by it.
+pub const WEIGHS_INDEX: u32 = 64;
+/// Flag: a texture uses box projection.
+pub const HAS_BOX: u32 = 32;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -107,7 +113,7 @@ material! {
     /// A material with the positions of its tables. The GPU reads the f32 form, byte for byte. Each vector is followed by a
     /// number or an index, and the whole fills rows of 16 bytes.
     Material {
-        /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
+        /// Albedo of the diffuse base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
         base_color: Vec3<T>,
         /// 0: dielectric over a diffuse base; 1: metal.
         metalness: T,
@@ -145,8 +151,8 @@ material! {
         horizon: u32,
         /// [`Fresnel`] as a number.
         fresnel: u32,
-        /// Start of the custom curve's table.
-        curve_table: u32,
+        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)).
+        lobe_table: u32,
         /// Start of the albedo table.
         albedo_table: u32,
         /// Start of the albedo table for views from within.
@@ -193,8 +199,20 @@ material! {
         metalness_texture: u32,
         /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
         coat_texture: u32,
-        /// 1 if a texture uses box projection.
-        has_box_projection: u32,
+        /// Roughness of the diffuse base in [0, 1]; 0 is Lambert's.
+        diffuse_roughness: T,
+        /// Tint of the fuzz, linear RGB in [0, 1].
+        fuzz_color: Vec3<T>,
+        /// Share of the surface that has fuzz, in [0, 1].
+        fuzz_weight: T,
+        /// Roughness of the fuzz in [0, 1].
+        fuzz_roughness: T,
+        /// The cosine of the view at which fuzz reflects most ([`fuzz_bell`](super::layer::fuzz::fuzz_bell)).
+        fuzz_middle: T,
+        /// The width of that bell.
+        fuzz_width: T,
+        /// What fuzz reflects of every view.
+        fuzz_floor: T,
     }
 }
 
@@ -228,7 +246,7 @@ impl<T: Real> Material<T> {
             roughness: self.roughness,
             anisotropy: self.anisotropy,
             eta: T::zero(),
-            table: tables.get(self.curve_table as usize..).unwrap_or_default(),
+            table: tables.get(self.lobe_table as usize..).unwrap_or_default(),
         }
     }
 
@@ -258,6 +276,7 @@ impl<T: Real> Material<T> {
         let tint = Vec3::select(is_bare, white, self.specular_color);
         let weight = T::select(is_bare, T::one(), self.specular_weight);
         let spares_metal = self.has_flag(SPARES_METAL);
+        let is_in_index = self.has_flag(WEIGHS_INDEX);
         FresnelTerms {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
@@ -265,7 +284,7 @@ impl<T: Real> Material<T> {
             edge_tint: self.edge_tint,
             tint,
             metal_tint: if spares_metal { white } else { tint * weight },
-            weight,
+            weight: if is_in_index { T::one() } else { weight },
             ior: self.ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,

@@ -22,6 +22,8 @@ pub mod primaries;
 pub mod random;
 pub mod real;
 pub mod refraction;
+pub mod rough_diffuse;
+pub mod scattering;
 pub mod table;
 pub mod tone;
 pub mod vector;

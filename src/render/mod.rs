@@ -14,6 +14,7 @@ pub mod display;
 mod engine;
 pub mod environment_thumbnails;
 mod error;
+pub mod evaluate;
 pub mod explain;
 pub mod hard;
 mod lens;

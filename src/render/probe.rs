@@ -5,8 +5,8 @@ use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;
 use crate::job::probe::{
-    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene, RandomQuestion, RayAnswer,
-    RayQuestion,
+    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene,
+    RandomQuestion, RayAnswer, RayQuestion,
 };
 use crate::optics::vector::Vec3;
 
@@ -77,6 +77,28 @@ impl Prober {
         match self {
             Self::Cpu => Ok(cpu::probe_materials(scene, questions)),
             Self::Gpu(probe) => probe.ask("probe_material", scene, questions),
+        }
+    }
+
+    /// Densities with which materials draw directions, per steradian.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn densities(&self, scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Result<Vec<f32>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_density(scene, questions)),
+            Self::Gpu(probe) => probe.ask("probe_density", scene, questions),
+        }
+    }
+
+    /// Directions drawn from materials.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn draws(&self, scene: &ProbeScene<'_>, questions: &[DrawQuestion]) -> Result<Vec<DrawAnswer>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_draw::<f32>(scene, questions)),
+            Self::Gpu(probe) => probe.ask("probe_draw", scene, questions),
         }
     }
 

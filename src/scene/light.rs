@@ -17,7 +17,7 @@ use super::geometry::Geometry;
 use super::intersect::triangle_normal;
 use super::surface::{POSITION_ERROR, position_error};
 use super::texture::{Textures, emission_at, uvs_at, vertex_factors};
-use crate::optics::material::Material;
+use crate::optics::material::{HAS_BOX, Material};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
@@ -214,7 +214,7 @@ pub fn light_sample<T: Scalar>(
     let material = &emitters.materials[geometry.slot(triangle) as usize];
     let mut radiance = material.emission;
     if material.is_varied() || material.has_holes() {
-        let uvs = uvs_at(geometry, triangle, weights, material.has_box_projection == 1);
+        let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
     }

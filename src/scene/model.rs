@@ -254,6 +254,8 @@ pub struct Slot {
     pub alpha_cutoff: f32,
     /// Whether the back of a triangle is seen.
     pub double_sided: bool,
+    /// Roughness of the diffuse base in [0, 1] (the draft KHR_materials_diffuse_roughness).
+    pub diffuse_roughness: f32,
     /// Index of refraction, at least 1 (KHR_materials_ior).
     pub ior: f32,
     /// Fraction of light that is refracted instead of scattered, in [0, 1] (KHR_materials_transmission).
@@ -314,6 +316,7 @@ impl Default for Slot {
             alpha_mode: AlphaMode::Opaque,
             alpha_cutoff: 0.5,
             double_sided: false,
+            diffuse_roughness: 0.0,
             ior: 1.5,
             transmission: 0.0,
             coat: 0.0,

@@ -1,7 +1,7 @@
 //! A ray's hit made into a surface to shade.
 
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::material::{Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
+use crate::optics::material::{HAS_BOX, Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
@@ -236,7 +236,7 @@ pub fn surfaces_at<T: Real>(
     if of_lane.is_textured() {
         uvs = T::each(|lane| {
             let weights = [0, 1, 2].map(|i| weights_of_lanes[i].as_ref()[lane]);
-            uvs_at(geometry, triangle(lane), weights, of_lane.has_box_projection == 1)
+            uvs_at(geometry, triangle(lane), weights, of_lane.has_flag(HAS_BOX))
         });
     }
     let mut vertex_color = Vec3::splat(T::one());
@@ -306,7 +306,7 @@ pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], te
     if !material.has_holes() {
         return T::one();
     }
-    let has_box = material.has_box_projection == 1;
+    let has_box = material.has_flag(HAS_BOX);
     let (triangle, weights) = (hit.triangle as usize, hit_weights::<T>(&T::each(|_| *hit)));
     let uvs = uvs_at(geometry, triangle, weights, has_box);
     let (_, alpha) = vertex_factors(geometry, material, triangle, weights);

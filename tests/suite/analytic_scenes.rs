@@ -509,6 +509,7 @@ pub fn lobe_case(name: &str, lobe: Lobe, roughness: f64, expected: impl Fn(&dyn 
         "specular.fresnel=none",
         "specular.horizon=absorb",
         "specular.curve=smooth",
+        "specular.multiple_scattering=off",
     ];
     Case::new(
         format!("{name} {}", lobe.name()),
@@ -525,7 +526,25 @@ fn lobes() -> Vec<Case> {
             .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
             .by(MIS, 1024)
     };
-    Lobe::ALL.iter().map(case).collect()
+    let single = Lobe::ALL.iter().map(case);
+    single.chain(white_metals(sin, cos)).collect()
+}
+
+/// White metals of GGX, whose facets scatter until all light is reflected.
+fn white_metals(sin: f64, cos: f64) -> impl Iterator<Item = Case> {
+    let pairs = [(Lobe::Ggx, 0.3), (Lobe::Ggx, 1.0), (Lobe::Ggx2018, 0.8), (Lobe::GgxNdf, 0.5)];
+    pairs.into_iter().map(move |(lobe, roughness)| {
+        let assignments = [
+            &format!("specular.lobe={}", lobe.name()),
+            &format!("specular.roughness={roughness}"),
+            "specular.fresnel=schlick",
+            "base.color=1,1,1",
+            "base.metalness=1",
+        ];
+        Case::new(format!("white metal of {} {roughness}", lobe.name()), &[&assignments], [1.0; 3])
+            .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
+            .by(MIS, 1024)
+    })
 }
 
 /// A square that shines in the middle of its circle of confusion, in models of two scales: the share of the lens that sees

@@ -104,6 +104,7 @@ fn keys_that_the_pages_name_exist() {
         "base.",
         "specular.",
         "coat.",
+        "fuzz.",
         "transmission.",
         "emission.",
         "geometry.",

@@ -2,7 +2,7 @@
 
 use glossmith::document::MaterialSettings;
 use glossmith::document::match_look::lobe_of_material;
-use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel};
+use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, weighted_ior};
 use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::exchange::FORMATS;
@@ -174,8 +174,14 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
             false => Vec3::splat(1.0),
         },
         edge_tint: Vec3::from_f32(m.edge_tint),
-        weight: f64::from(m.specular_weight),
-        ior: f64::from(m.ior),
+        weight: match m.has_weight_in_index() {
+            true => 1.0,
+            false => f64::from(m.specular_weight),
+        },
+        ior: match m.has_weight_in_index() {
+            true => weighted_ior(m.ior.into(), m.specular_weight.into()),
+            false => f64::from(m.ior),
+        },
         eta: Vec3::from_f32(m.eta),
         k: Vec3::from_f32(m.k),
     };

@@ -189,18 +189,8 @@ fn what_a_format_shows_of_a_stretch_is_what_its_widths_are() {
     let (surface, _) = Surface::of(&material);
     let takes = Takes {
         law: Law::Schlick,
-        eta_and_k: false,
-        edge_tint: false,
-        specular: true,
-        weighs_metal: false,
-        ior: true,
         widths: |_| [0.4, 0.1],
-        coat: true,
-        coat_details: false,
-        transmission: true,
-        absorption: false,
-        textures: false,
-        own_textures: false,
+        ..Takes::OPEN_PBR
     };
     let taken = surface.as_taken(&material, &takes);
     let stretch = stretch_from_anisotropy(f64::from(taken.anisotropy));

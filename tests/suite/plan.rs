@@ -143,7 +143,10 @@ fn needing(effect: &str) -> Document {
     let assignments: &[&str] = match effect {
         "base" => &["specular.fresnel=schlick", "base.metalness=0"],
         "coat" => &["coat.weight=1"],
+        "fuzz" => &["fuzz.weight=1", "fuzz.roughness=1"],
         "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
+        "diffuse-roughness" => &["base.metalness=0", "base.diffuse_roughness=1"],
+        "multiple-scattering" => &["specular.lobe=ggx", "specular.roughness=0.9"],
         "alpha" => &["geometry.opacity=0.4"],
         "lobe" | "curve" | "horizon" => &["specular.roughness=0.8"],
         "anisotropy" => &["specular.anisotropy=0.8", "specular.roughness=0.5"],

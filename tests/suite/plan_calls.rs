@@ -246,6 +246,18 @@ fn calls_for(effect: &str) -> Calls {
                 |d, c| d.materials[0].edge_tint = one(c, 0.0, 1.0),
             ],
         ),
+        "diffuse-roughness" => (
+            metal,
+            &[|d, _| (d.materials[0].metalness, d.materials[0].diffuse_roughness) = (0.0, LEAST)],
+        ),
+        "multiple-scattering" => (
+            metal,
+            &[
+                |d, _| d.materials[0].lobe = Lobe::Ggx,
+                |d, _| (d.materials[0].lobe, d.materials[0].metalness) = (Lobe::GgxNdf, LEAST),
+            ],
+        ),
+        "fuzz" => (metal, &[|d, _| d.materials[0].fuzz_weight = LEAST]),
         "coat" => (metal, &[|d, _| d.materials[0].coat_weight = LEAST]),
         "transmission" => (
             metal,

@@ -12,7 +12,7 @@ use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
-use glossmith::optics::material::{Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use glossmith::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
@@ -56,6 +56,8 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "transmission" => |material, _| material.transmission_weight = 0.0,
         "absorption" => |material, _| material.absorption = Vec3::zero(),
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
+        "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
+        "fuzz" => |material, _| material.fuzz_weight = 0.0,
         "coat" => |material, _| material.coat_weight = 0.0,
         "color-texture" => |material, _| {
             material.textures[0] = NO_TEXTURE;
@@ -68,7 +70,8 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
         "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
-        "box-projection" => |material, _| material.has_box_projection = 0,
+        "box-projection" => |material, _| material.flags &= !HAS_BOX,
+        "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
@@ -222,6 +225,16 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     ] {
         assign(metal, assignment).unwrap();
     }
+    let mut rough = of_material(ModelSource::Shaderball, PRESETS[0].clone());
+    for assignment in [
+        "base.metalness=0.5",
+        "base.diffuse_roughness=0.5",
+        "fuzz.weight=0.2",
+        "specular.lobe=ggx",
+        "specular.roughness=0.5",
+    ] {
+        assign(&mut rough.materials[0], assignment).unwrap();
+    }
     let mut glass = of_material(ModelSource::Shaderball, PRESETS[0].clone());
     for assignment in [
         "base.metalness=0.04",
@@ -239,6 +252,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     glass.lighting.ground.kind = GroundKind::ShadowCatcher;
     vec![
         metals,
+        rough,
         glass,
         small(all_at_once(folder)),
         coated_on_a_box(folder),

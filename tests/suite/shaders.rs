@@ -15,6 +15,7 @@ use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
 use glossmith::optics::layer::base::BASE_EDGE;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
+use glossmith::optics::rough_diffuse;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{self, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
 use glossmith::scene::inversion::DRAW_BITS;
@@ -257,10 +258,16 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("NO_TEXTURE", f64::from(NO_TEXTURE)),
         ("NO_MEDIUM", f64::from(NO_MEDIUM)),
         ("BASE_EDGE", BASE_EDGE),
+        ("HEAD_ON", rough_diffuse::HEAD_ON),
+        ("MEAN", rough_diffuse::MEAN),
+        ("COSINE_MIN", rough_diffuse::COSINE_MIN),
         ("VERTEX_BASE", f64::from(material::VERTEX_BASE)),
         ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
         ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),
         ("SPARES_METAL", f64::from(material::SPARES_METAL)),
+        ("COMPENSATES", f64::from(material::COMPENSATES)),
+        ("HAS_BOX", f64::from(material::HAS_BOX)),
+        ("WEIGHS_INDEX", f64::from(material::WEIGHS_INDEX)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
         ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),
@@ -317,6 +324,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "CATCHER_SHADOW_ALPHA",
     "CATCHER_MIRRORED",
     // Rows of questions to single functions.
+    "DRAW_WORDS",
     "FRESNEL_WORDS",
     "LOBE_WORDS",
     "MATERIAL_WORDS",

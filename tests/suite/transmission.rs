@@ -171,19 +171,20 @@ fn spread(film: &Film) -> f64 {
     film.variance_of_mean().iter().sum()
 }
 
-/// Single scattering loses what facets shadow, and makes nothing.
+/// Single scattering loses what facets shadow, and makes nothing. Multiple scattering keeps it.
 #[test]
-fn rough_ggx_glass_makes_no_light() {
+fn rough_ggx_glass_keeps_its_light() {
     for choice in ENGINES {
         for (roughness, least) in [("0.02", 0.999), ("0.3", 0.93), ("0.6", 0.64), ("0.9", 0.35)] {
             let roughness = format!("specular.roughness={roughness}");
-            let film = render(
-                choice,
-                &glass(EnvironmentSource::Furnace, &["specular.lobe=ggx", &roughness]),
-            );
-            let [value, ..] = mean(&film);
-            println!("{choice:?} {roughness} {value}");
-            assert!((least..1.001).contains(&value), "{choice:?}, {roughness}: {value}");
+            let of = |scattering: &str| {
+                let assignments = ["specular.lobe=ggx", &roughness, scattering];
+                mean(&render(choice, &glass(EnvironmentSource::Furnace, &assignments)))[0]
+            };
+            let [single, all] = ["off", "on"].map(|which| of(&format!("specular.multiple_scattering={which}")));
+            println!("{choice:?} {roughness} {single} {all}");
+            assert!((least..1.001).contains(&single), "{choice:?}, {roughness}: {single}");
+            assert!((all - 1.0).abs() < 0.005, "{choice:?}, {roughness}: {all}");
         }
     }
 }

@@ -1,6 +1,7 @@
-// The Lambertian base. Twin of src/optics/layer/base.rs.
+// The diffuse base. Twin of src/optics/layer/base.rs.
 #import "optics/layer/registry"
 #import "optics/material"
+#import "optics/rough_diffuse"
 #import "optics/warp"
 
 // Rounding of a squared sine at the edge of the cone.
@@ -27,7 +28,13 @@ fn base_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo
 }
 
 fn base_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
-    return LayerToward(layers.base.albedo, layers.base.probability);
+    var color = layers.base.albedo;
+    if PLAN_DIFFUSE_ROUGHNESS == 1u && material.diffuse_roughness > 0.0
+        && !(surface.is_inside && material_transmits(material)) {
+        let cosines = vec2f(dot(surface.frame.normal, surface.wo), dot(surface.frame.normal, wi));
+        color *= rough_diffuse(material.base_color, material.diffuse_roughness, cosines, dot(surface.wo, wi));
+    }
+    return LayerToward(color, layers.base.probability);
 }
 
 fn base_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {

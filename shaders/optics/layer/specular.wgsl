@@ -3,6 +3,7 @@
 #import "optics/layer/facet"
 #import "optics/layer/registry"
 #import "optics/material"
+#import "optics/scattering"
 
 struct SpecularAlbedos {
     taken: vec3f,
@@ -28,8 +29,10 @@ fn specular_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAl
 
 fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
     let terms = material_fresnel_terms(material, surface.is_inside);
-    let color = fresnel(terms, half_vector_cosine(surface.wo, wi));
-    return LayerToward(color, specular_probability(material, layers, surface, wi, color));
+    let cosine = half_vector_cosine(surface.wo, wi);
+    let once = fresnel(terms, cosine);
+    let color = scattered_again(material, surface, shape, terms, cosine, once);
+    return LayerToward(color, specular_probability(material, layers, surface, wi, once));
 }
 
 fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {

@@ -2,6 +2,7 @@
 #import "optics/layer/facet"
 #import "optics/layer/registry"
 #import "optics/material"
+#import "optics/scattering"
 
 fn transmission_is_there(material: Material, surface: Surface) -> bool {
     return material_transmits(material);
@@ -30,6 +31,7 @@ fn transmission_toward(
         let share = 1.0 - mirrored_share(reflected, luminance(toward.color));
         toward.probability = (1.0 - layers.base.probability) * share;
     }
+    toward.color *= interface_gain(material, surface, shape);
     return toward;
 }
 

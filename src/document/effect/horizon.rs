@@ -47,6 +47,7 @@ fn stays_above(facts: &Facts<'_>) -> bool {
             && material.anisotropy == 0.0
             && !material.is_textured()
             && material.coat_weight == 0.0
+            && material.fuzz_weight == 0.0
             && !material.has_holes()
             && !material.transmits()
     };

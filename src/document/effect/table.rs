@@ -7,7 +7,7 @@ use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::vector::Vec3;
 
 /// Every effect, in the order of [`EffectId::ALL`].
@@ -171,6 +171,13 @@ pub static EFFECTS: &[Effect] = &[
         }),
     },
     Effect {
+        id: EffectId::DiffuseRoughness,
+        label: "Rough base",
+        help: "A diffuse base that scatters more light back to where it comes from, as clay and cloth do (EON).",
+        decide: |facts| facts.needed_by(|m| m.has_base() && m.diffuse_roughness > 0.0, "has a rough base"),
+        remove: Some(|document| each_material(document, |material| material.diffuse_roughness = 0.0)),
+    },
+    Effect {
         id: EffectId::Specular,
         label: "Specular lobe",
         help: "Light that the surface reflects around the mirror direction.",
@@ -246,6 +253,20 @@ pub static EFFECTS: &[Effect] = &[
             )
         },
         remove: Some(|document| each_material(document, |material| material.edge_tint = [1.0; 3])),
+    },
+    Effect {
+        id: EffectId::MultipleScattering,
+        label: "Multiple scattering",
+        help: "Light that meets more than one facet of rough GGX, in metals and clear dielectrics (Turquin 2019).",
+        decide: |facts| facts.needed_by(|m| m.has_flag(COMPENSATES), "would lose light between its facets"),
+        remove: Some(|document| each_material(document, |material| material.multiple_scattering = false)),
+    },
+    Effect {
+        id: EffectId::Fuzz,
+        label: "Fuzz",
+        help: "Small fibres over the other lobes, brightest at the edge: velvet, peach, dust.",
+        decide: |facts| facts.needed_by(|m| m.fuzz_weight > 0.0, "has fuzz"),
+        remove: Some(|document| each_material(document, |material| material.fuzz_weight = 0.0)),
     },
     Effect {
         id: EffectId::Coat,
@@ -361,7 +382,7 @@ pub static EFFECTS: &[Effect] = &[
         help: "Images that lie on a surface as on a box, without texture coordinates.",
         decide: |facts| {
             facts.needed_by(
-                |m| m.has_box_projection == 1,
+                |m| m.has_flag(HAS_BOX),
                 "has a texture that lies on it as on a box",
             )
         },

@@ -20,6 +20,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     all.extend(specular_shape());
     all.extend(specular_fresnel());
     all.extend(coat());
+    all.extend(fuzz());
     all.extend(transmission());
     all.extend(emission());
     all.extend(geometry());
@@ -50,6 +51,16 @@ fn base() -> Vec<Parameter> {
             ..of("base.color_texture", Kind::Toggle, field!(Toggle textures.color))
         },
         Parameter {
+            label: "Diffuse roughness",
+            help: "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.",
+            applies: |material| material.metalness < 1.0,
+            ..of(
+                "base.diffuse_roughness",
+                unit_number(),
+                field!(Number diffuse_roughness),
+            )
+        },
+        Parameter {
             label: "Metalness",
             help: "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.",
             ..of("base.metalness", unit_number(), field!(Number metalness))
@@ -64,6 +75,19 @@ fn specular_shape() -> Vec<Parameter> {
             help: "How much of the reflection is kept; at 0 only the base is left.",
             applies: |_| true,
             ..of("specular.weight", unit_number(), field!(Number specular_weight))
+        },
+        Parameter {
+            label: "Weight by index",
+            help: "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF.",
+            applies: |material| {
+                let is_weighed = material.specular_weight < 1.0 && material.metalness < 1.0;
+                is_weighed && has_specular(material) && has_metalness(material) && !transmits(material)
+            },
+            ..of(
+                "specular.weight_in_index",
+                Kind::Toggle,
+                field!(Toggle specular_in_index),
+            )
         },
         Parameter {
             label: "Metals too",
@@ -90,6 +114,16 @@ fn specular_shape() -> Vec<Parameter> {
                 "specular.roughness_texture",
                 Kind::Toggle,
                 field!(Toggle textures.roughness),
+            )
+        },
+        Parameter {
+            label: "Multiple scattering",
+            help: "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.",
+            applies: |material| has_specular(material) && material.lobe.traits().loses_light,
+            ..of(
+                "specular.multiple_scattering",
+                Kind::Toggle,
+                field!(Toggle multiple_scattering),
             )
         },
         Parameter {
@@ -238,6 +272,28 @@ fn coat() -> Vec<Parameter> {
     ]
 }
 
+fn fuzz() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.",
+            applies: |_| true,
+            ..of("fuzz.weight", unit_number(), field!(Number fuzz_weight))
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what the fibres reflect; what lies below loses as much light of every colour.",
+            ..of("fuzz.color", Kind::Color, field!(Color fuzz_color))
+        },
+        Parameter {
+            label: "Roughness",
+            symbol: "R",
+            help: "How far the fibres spread the light: low only at the edge, high as dust all over.",
+            ..of("fuzz.roughness", unit_number(), field!(Number fuzz_roughness))
+        },
+    ]
+}
+
 fn transmission() -> Vec<Parameter> {
     vec![
         Parameter {
@@ -340,10 +396,11 @@ fn geometry() -> Vec<Parameter> {
 type Applies = fn(&MaterialSettings) -> bool;
 
 /// The groups of the panel by the first part of their parameters' keys, and when the rows of a group apply.
-const GROUPS: [(&str, &str, Applies); 6] = [
+const GROUPS: [(&str, &str, Applies); 7] = [
     ("base", "Base", |_| true),
     ("specular", "Specular", has_specular),
     ("coat", "Coat", |material| material.coat_weight > 0.0),
+    ("fuzz", "Fuzz", |material| material.fuzz_weight > 0.0),
     ("transmission", "Transmission", transmits),
     ("emission", "Emission", |_| true),
     ("geometry", "Geometry", |_| true),

@@ -69,6 +69,13 @@ pub(super) struct Anisotropy {
     pub anisotropy_texture: Option<TextureInfo>,
 }
 
+/// The draft KHR_materials_diffuse_roughness.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct DiffuseRoughness {
+    pub diffuse_roughness_factor: f32,
+}
+
 /// KHR_materials_transmission.
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -118,10 +125,11 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
         is_there && extension::<T>(material, name).is_none()
     }
     type Check = fn(&Json, &str) -> bool;
-    let checks: [(&'static str, Check); 6] = [
+    let checks: [(&'static str, Check); 7] = [
         ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
         ("KHR_materials_specular", is_unreadable::<Specular>),
         ("KHR_materials_anisotropy", is_unreadable::<Anisotropy>),
+        ("KHR_materials_diffuse_roughness", is_unreadable::<DiffuseRoughness>),
         ("KHR_materials_transmission", is_unreadable::<Transmission>),
         ("KHR_materials_volume", is_unreadable::<Volume>),
         (

@@ -1,4 +1,4 @@
-//! The Lambertian base. Seen from within it is behind the interface, and its scattered light is refracted into the solid: a
+//! The diffuse base: Lambertian, or rough by a factor of both directions. Seen from within it is behind the interface, and its scattered light is refracted into the solid: a
 //! Lambertian lobe with sines divided by the index of refraction. So it fills the cone from which light gets out again, and
 //! none is trapped by total reflection.
 
@@ -7,6 +7,7 @@ use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape, raw_sample};
 use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
+use crate::optics::rough_diffuse::rough_diffuse;
 use crate::optics::vector::Vec3;
 
 /// Rounding of a squared sine at the edge of the cone.
@@ -48,10 +49,25 @@ impl<T: Real> LayerModel<T> for Base {
     }
 
     #[inline(always)]
-    fn toward(_: &Material<T>, layers: &Layers<T>, _: &Surface<T>, _: &LobeShape<'_, T>, _: Vec3<T>) -> LayerToward<T> {
+    fn toward(
+        material: &Material<T>,
+        layers: &Layers<T>,
+        surface: &Surface<T>,
+        _: &LobeShape<'_, T>,
+        wi: Vec3<T>,
+    ) -> LayerToward<T> {
         let share = &layers[Layer::Base];
+        let mut color = share.albedo;
+        // From within light fills a cone, for which there is no such model.
+        let is_rough = T::zero().less(material.diffuse_roughness) & !(surface.is_inside & material.transmits());
+        if is_rough.any() {
+            let cosines = [surface.wo, wi].map(|direction| surface.frame.normal.dot(direction));
+            let between = surface.wo.dot(wi);
+            let factor = rough_diffuse(material.base_color, material.diffuse_roughness, cosines, between);
+            color = Vec3::select(is_rough, color * factor, color);
+        }
         LayerToward {
-            color: share.albedo,
+            color,
             probability: share.probability,
         }
     }
@@ -106,7 +122,7 @@ impl<T: Real> LayerModel<T> for Base {
 
 /// The base's lobe.
 #[inline(always)]
-fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
+pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
     LobeShape {
         lobe: Lobe::Lambert,
         curve: Curve::Sqrt,

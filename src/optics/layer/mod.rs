@@ -10,11 +10,13 @@
 //!
 //! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below.
 
+mod density;
 mod evaluate;
 mod facet;
 mod sample;
 mod shares;
 
+pub use density::material_density;
 pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
 pub use facet::{decides_by_facet, passes_on};
 pub use sample::{MaterialNumbers, MaterialSample, material_sample};
@@ -75,6 +77,7 @@ macro_rules! layers {
 
 // Module, type, name, label, help. The effect of the same name has the code in the kernels that call for it.
 layers! {
+    fuzz Fuzz, "fuzz", "fuzz", "A layer of small fibres over everything else: velvet, dust.";
     coat Coat, "coat", "coat", "A clear dielectric coat over everything else.";
     specular Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
     base Base, "base", "base", "The Lambertian base below the specular lobe.";
@@ -164,6 +167,9 @@ pub trait LayerModel<T: Real> {
     fn choose(_: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
         let share = &mut layers[Self::LAYER];
         let reflected = share.albedo.max_component();
+        if !T::zero().less(reflected).any() {
+            return below;
+        }
         let rest = (T::one() - reflected) * below;
         share.probability = cover_probability(reflected, rest);
         reflected + rest

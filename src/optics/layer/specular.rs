@@ -9,6 +9,7 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::numeric::sampled_share;
 use crate::optics::real::{Mask, Real};
 use crate::optics::refraction::refracted_square;
+use crate::optics::scattering::scattered_again;
 use crate::optics::vector::Vec3;
 
 /// The specular lobe.
@@ -55,13 +56,14 @@ impl<T: Real> LayerModel<T> for Specular {
         material: &Material<T>,
         layers: &Layers<T>,
         surface: &Surface<T>,
-        _: &LobeShape<'_, T>,
+        shape: &LobeShape<'_, T>,
         wi: Vec3<T>,
     ) -> LayerToward<T> {
         let terms = material.fresnel_terms(surface.is_inside);
-        let color = fresnel(&terms, half_vector_cosine(surface.wo, wi));
+        let cosine = half_vector_cosine(surface.wo, wi);
+        let color = fresnel(&terms, cosine);
         LayerToward {
-            color,
+            color: scattered_again(material, surface, shape, &terms, cosine, color),
             probability: specular_probability(material, layers, surface, wi, color),
         }
     }

@@ -8,6 +8,7 @@ use crate::optics::lobe::{LobeShape, refracts_at_facets};
 use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
 use crate::optics::refraction::refracting_cosines;
+use crate::optics::scattering::interface_gain;
 use crate::optics::vector::Vec3;
 
 /// The refracting lobe.
@@ -66,6 +67,7 @@ impl<T: Real> LayerModel<T> for Transmission {
             let share = T::one() - mirrored_share(reflected, refracted);
             toward.probability = T::select(is_shared, of_facets * share, toward.probability);
         }
+        toward.color = toward.color * interface_gain(material, surface, shape);
         toward
     }
 

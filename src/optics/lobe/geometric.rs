@@ -23,6 +23,7 @@ pub const TRAITS: LobeTraits = LobeTraits {
     width: Width::Roughness,
     has_curves: true,
     weighs_one: true,
+    loses_light: false,
     // The density is infinite in the mirror direction.
     peak: 0.03,
 };

@@ -15,6 +15,7 @@ pub const TRAITS: LobeTraits = LobeTraits {
     width: Width::Fixed,
     has_curves: false,
     weighs_one: true,
+    loses_light: false,
     peak: 0.0,
 };
 

@@ -148,6 +148,8 @@ pub struct LobeTraits {
     /// True if evaluate over density is always 1. Then the light that a mirror does not reflect is passed on to the layers
     /// below, and the mirror policy loses no light.
     pub weighs_one: bool,
+    /// True if it loses the light that meets a second facet, which [`scattering`](super::scattering) gives back.
+    pub loses_light: bool,
     /// Radius about the mirror direction, in radians per roughness, that plots omit: the density has an integrable
     /// singularity there.
     pub peak: f64,

@@ -17,6 +17,7 @@ pub const TRAITS: LobeTraits = LobeTraits {
     width: Width::Alpha,
     has_curves: false,
     weighs_one: false,
+    loses_light: false,
     peak: 0.0,
 };
 

@@ -8,7 +8,7 @@ use super::{HardCase, HardError, Stage};
 use crate::cpu::probe::probe_material;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
 use crate::job::precision::{ERROR_BOUND, relative_error};
-use crate::job::probe::{MaterialQuestion, ProbeScene};
+use crate::job::probe::{MaterialQuestion, MaterialView, ProbeScene};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
 use crate::optics::random::hash_bits;
@@ -104,13 +104,17 @@ fn random_question(numbers: &mut Numbers, material: u32, shape: &LobeShape<'_, f
         }
     };
     MaterialQuestion {
-        material,
-        is_inside: numbers.below(2) as u32,
-        shading,
-        normal,
-        wo,
+        view: MaterialView {
+            material,
+            is_inside: numbers.below(2) as u32,
+            shading,
+            tangent: frame_from_normal(shading).tangent,
+            normal,
+            wo,
+        },
         wi,
         light_density: LIGHT_DENSITIES[numbers.below(3)],
+        competing: 1.0,
     }
 }
 
@@ -161,7 +165,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
     };
     let question = &questions[worst];
     let right = probe_material::<f64>(&scene, question, [0.0; 2]);
-    let (material, answer) = (&materials[question.material as usize], answers[worst]);
+    let (material, answer) = (&materials[question.view.material as usize], answers[worst]);
     log::debug!("{error:.1e} at {question:?} of {material:?}: {answer:?}, right is {right:?}");
     Ok(error)
 }

@@ -13,6 +13,7 @@ pub struct Blender;
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
     absorption: false,
+    fuzz: false,
     weighs_metal: false,
     ..Takes::OPEN_PBR
 };
@@ -92,8 +93,12 @@ fn call(surface: &Surface, exact: &str) -> String {
         ("Emission Color", rgba(emitted)),
         ("Emission Strength", strongest.to_string()),
     ];
+    // Blender has it since 4.3.
+    let of_base = (surface.diffuse_roughness > 0.0)
+        .then(|| ("Diffuse Roughness", surface.diffuse_roughness.to_string()));
     let lines: Vec<String> = inputs
         .into_iter()
+        .chain(of_base)
         .map(|(key, value)| format!("        \"{key}\": {value},\n"))
         .collect();
     let turn = if surface.anisotropy == 0.0 { 0.0 } else { rotation_deg };

@@ -48,6 +48,9 @@ impl Kind {
         Takes {
             law: if is_principled { Law::Schlick } else { Law::Exact },
             eta_and_k: self == Self::Conductor,
+            diffuse_roughness: false,
+            fuzz: false,
+            weighs_index: false,
             edge_tint: false,
             specular: self == Self::Glass,
             weighs_metal: false,

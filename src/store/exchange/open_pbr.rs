@@ -35,16 +35,19 @@ pub(super) fn widths(surface: &Surface) -> [f32; 2] {
 
 impl Takes {
     /// What OpenPBR has a place for.
-    pub(super) const OPEN_PBR: Self = Self {
+    pub const OPEN_PBR: Self = Self {
         law: super::surface::Law::Exact,
         eta_and_k: false,
+        diffuse_roughness: true,
         edge_tint: true,
         specular: true,
+        weighs_index: true,
         weighs_metal: true,
         ior: true,
         widths,
         coat: true,
         coat_details: true,
+        fuzz: true,
         transmission: true,
         absorption: true,
         textures: false,
@@ -60,6 +63,7 @@ pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
     vec![
         ("base_weight", Number(1.0)),
         ("base_color", Color(surface.base_color)),
+        ("base_diffuse_roughness", Number(surface.diffuse_roughness)),
         ("base_metalness", Number(surface.metalness)),
         ("specular_weight", Number(surface.specular_weight)),
         ("specular_color", Color(surface.tint())),
@@ -69,6 +73,9 @@ pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
         ("transmission_weight", Number(surface.transmission_weight)),
         ("transmission_color", Color(surface.transmission_color)),
         ("transmission_depth", Number(surface.transmission_depth)),
+        ("fuzz_weight", Number(surface.fuzz_weight)),
+        ("fuzz_color", Color(surface.fuzz_color)),
+        ("fuzz_roughness", Number(surface.fuzz_roughness)),
         ("coat_weight", Number(surface.coat_weight)),
         ("coat_color", Color(surface.coat_color)),
         ("coat_roughness", Number(surface.coat_roughness)),

@@ -6,7 +6,7 @@ use crate::document::match_look::{lobe_of_material, nearest_ggx};
 use crate::document::material::specular_color;
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::vector::Vec3;
@@ -18,10 +18,14 @@ pub struct Surface {
     pub name: String,
     /// Albedo of the diffuse base; of a metal, its reflectance at normal incidence.
     pub base_color: [f32; 3],
+    /// Roughness of the diffuse base, in [0, 1].
+    pub diffuse_roughness: f32,
     /// In [0, 1].
     pub metalness: f32,
     /// Factor of what a dielectric reflects, in [0, 1].
     pub specular_weight: f32,
+    /// The factor scales the reflectance head-on, through the index; else at every angle.
+    pub weight_in_index: bool,
     /// Tint of what a dielectric reflects; above 1 it raises Schlick's reflectance head-on.
     pub specular_color: [f32; 3],
     /// Weight and tint are a metal's too.
@@ -50,6 +54,12 @@ pub struct Surface {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice.
     pub coat_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_weight: f32,
+    /// Tint of the fuzz.
+    pub fuzz_color: [f32; 3],
+    /// In [0, 1].
+    pub fuzz_roughness: f32,
     /// Emitted radiance.
     pub emission: [f32; 3],
     /// Share of light that is stopped, in [0, 1].
@@ -72,10 +82,14 @@ pub struct Takes {
     pub law: Law,
     /// η and k of metals.
     pub eta_and_k: bool,
+    /// The roughness of the diffuse base.
+    pub diffuse_roughness: bool,
     /// The tint of a metal's edge.
     pub edge_tint: bool,
     /// Weight and tint of a dielectric's reflection.
     pub specular: bool,
+    /// The weight scales the reflectance head-on, through the index.
+    pub weighs_index: bool,
     /// The weight is a metal's too.
     pub weighs_metal: bool,
     /// The dielectric's index of refraction.
@@ -86,6 +100,8 @@ pub struct Takes {
     pub coat: bool,
     /// The coat's index of refraction and colour.
     pub coat_details: bool,
+    /// Fuzz.
+    pub fuzz: bool,
     /// Refraction.
     pub transmission: bool,
     /// Absorption inside.
@@ -106,8 +122,10 @@ impl Default for Surface {
         Self {
             name: String::new(),
             base_color: [0.8; 3],
+            diffuse_roughness: 0.0,
             metalness: 0.0,
             specular_weight: 1.0,
+            weight_in_index: false,
             specular_color: [1.0; 3],
             specular_on_metal: false,
             edge_tint: [1.0; 3],
@@ -122,6 +140,9 @@ impl Default for Surface {
             coat_roughness: 0.0,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            fuzz_weight: 0.0,
+            fuzz_color: [1.0; 3],
+            fuzz_roughness: 0.5,
             emission: [0.0; 3],
             opacity: 1.0,
         }
@@ -156,8 +177,11 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
             Vec3::splat(1.0)
         },
         edge_tint: Vec3::from_f32(material.edge_tint),
-        weight,
-        ior: f64::from(material.ior),
+        weight: if material.has_weight_in_index() { 1.0 } else { weight },
+        ior: match material.has_weight_in_index() {
+            true => weighted_ior(material.ior.into(), weight),
+            false => f64::from(material.ior),
+        },
         eta: Vec3::from_f32(material.eta),
         k: Vec3::from_f32(material.k),
     }
@@ -188,8 +212,10 @@ impl Surface {
         let mut surface = Self {
             name: material.name.clone(),
             base_color: material.base_color.map(|x| rounded(x * material.base_weight)),
+            diffuse_roughness: material.diffuse_roughness,
             metalness: material.metalness,
             specular_weight: material.specular_weight,
+            weight_in_index: material.has_weight_in_index(),
             specular_color: shown_tint(material),
             specular_on_metal: material.specular_on_metal,
             edge_tint: material.edge_tint,
@@ -208,9 +234,16 @@ impl Surface {
             coat_roughness: rounded(ggx_from_geometric(material.coat_roughness)),
             coat_ior: material.coat_ior,
             coat_color: material.coat_color,
+            fuzz_weight: material.fuzz_weight,
+            fuzz_color: material.fuzz_color,
+            fuzz_roughness: material.fuzz_roughness,
             emission: material.emission_color.map(|x| x * material.emission_strength),
             opacity: material.opacity,
         };
+        if surface.weight_in_index && surface.metalness == 0.0 {
+            let ior = weighted_ior(surface.ior.into(), surface.specular_weight.into());
+            (surface.ior, surface.specular_weight, surface.weight_in_index) = (rounded(ior as f32), 1.0, false);
+        }
         surface.take_fresnel(material);
         (surface, entry)
     }
@@ -252,8 +285,10 @@ impl Surface {
         let mut material = MaterialSettings {
             name: self.name.clone(),
             base_color: self.base_color.map(unit),
+            diffuse_roughness: unit(self.diffuse_roughness),
             metalness: unit(self.metalness),
             specular_weight: unit(self.specular_weight),
+            specular_in_index: self.weight_in_index,
             specular_color: self.specular_color.map(specular_color),
             specular_on_metal: self.specular_on_metal,
             edge_tint: self.edge_tint.map(unit),
@@ -267,6 +302,9 @@ impl Surface {
             coat_weight: unit(self.coat_weight),
             coat_ior: self.coat_ior.clamp(1.0, 4.0),
             coat_color: self.coat_color.map(unit),
+            fuzz_weight: unit(self.fuzz_weight),
+            fuzz_color: self.fuzz_color.map(unit),
+            fuzz_roughness: unit(self.fuzz_roughness),
             opacity: unit(self.opacity),
             ..MaterialSettings::default()
         };
@@ -290,12 +328,16 @@ impl Surface {
             let stretch = anisotropy_from_ratio(f64::from(shorter / longer)) as f32;
             taken.anisotropy = stretch.copysign(self.anisotropy);
         }
+        if !takes.diffuse_roughness {
+            taken.diffuse_roughness = 0.0;
+        }
         if !takes.edge_tint {
             taken.edge_tint = [1.0; 3];
         }
         if takes.law == Law::Exact {
             taken.specular_color = taken.specular_color.map(unit);
         }
+        taken.weight_in_index = takes.weighs_index;
         taken.specular_on_metal = takes.weighs_metal;
         let reflects = self.specular_weight > 0.0 || self.coat_weight > 0.0;
         if !takes.specular && reflects {
@@ -309,6 +351,9 @@ impl Surface {
         }
         if !takes.coat_details {
             (taken.coat_ior, taken.coat_color) = (1.5, [1.0; 3]);
+        }
+        if !takes.fuzz {
+            taken.fuzz_weight = 0.0;
         }
         if !takes.transmission {
             taken.transmission_weight = 0.0;
@@ -409,10 +454,14 @@ impl Surface {
             false => (white, 1.0),
         };
         let metal = if takes.weighs_metal { metal * weight } else { metal };
-        let ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
+        let mut ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
+        let mut of_dielectric = weight;
+        if takes.weighs_index && self.transmission_weight == 0.0 {
+            (ior, of_dielectric) = (weighted_ior(ior, weight), 1.0);
+        }
         let dielectric = match takes.law {
-            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * weight),
-            Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * weight,
+            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * of_dielectric),
+            Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * of_dielectric,
         };
         dielectric.mix(metal, f64::from(self.metalness))
     }
@@ -459,6 +508,9 @@ impl Surface {
             "the coat's index and colour",
             "1.5 and white",
         );
+        let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
+        layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
+        layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
         let is_textured = material.uses_of_model() != TextureUse::default();

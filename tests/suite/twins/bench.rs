@@ -13,10 +13,12 @@ use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::layer::fuzz::fuzz_bell;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use glossmith::optics::material::{COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
+use glossmith::optics::scattering::scattering_table;
 use glossmith::optics::table::append_table;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
@@ -94,7 +96,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         for curve in Curve::ALL {
             for fresnel in Fresnel::ALL {
                 let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
-                material.curve_table = curves[rng.below(CUSTOM_CURVES)];
+                material.lobe_table = curves[rng.below(CUSTOM_CURVES)];
                 let mut texture = || {
                     let record = rng.below(2 * textures.records.len());
                     if record < textures.records.len() {
@@ -153,6 +155,11 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             append_table(&mut tables, &table)
         });
         [material.albedo_table, material.inner_albedo_table] = albedo;
+        if Lobe::ALL[material.lobe as usize].traits().loses_light && number % 3 > 0 {
+            let energies = scattering_table(&material.cast(), 16);
+            material.lobe_table = append_table(&mut tables, &energies);
+            material.flags |= COMPENSATES;
+        }
     }
     let geometry = Geometry::build(&model, true);
     Scene {
@@ -232,6 +239,8 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let mut color = |low: f32, high: f32| vec3(rng.range(low, high), rng.range(low, high), rng.range(low, high));
     let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
     let tint = color(0.2, 1.0);
+    let fuzz_roughness = rng.range(0.1, 1.0);
+    let bell = fuzz_bell(f64::from(fuzz_roughness)).map(|x| x as f32);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
         base_color: if rng.chance(0.1) {
@@ -261,7 +270,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         curve: curve as u32,
         horizon: Horizon::ALL[rng.below(Horizon::ALL.len())] as u32,
         fresnel: fresnel as u32,
-        curve_table: 0,
+        lobe_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: if rng.chance(0.5) { tint } else { vec3(1.0, 1.0, 1.0) },
@@ -271,6 +280,12 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         coat_ior: rng.range(1.1, 2.0),
         coat_table: 0,
+        fuzz_color: tint,
+        fuzz_weight: if rng.chance(0.3) { rng.range(0.1, 1.0) } else { 0.0 },
+        fuzz_roughness,
+        fuzz_middle: bell[0],
+        fuzz_width: bell[1],
+        fuzz_floor: bell[2],
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,
@@ -284,7 +299,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         spot_offset: 1.0,
         metalness_texture: NO_TEXTURE,
         coat_texture: NO_TEXTURE,
-        has_box_projection: 0,
+        diffuse_roughness: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
     }
 }
 

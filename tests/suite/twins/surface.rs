@@ -79,7 +79,7 @@ fn surfaces_agree() {
             Case::new(
                 "hit_uvs",
                 "triangle u v",
-                "var boxed = material_at(0u); boxed.has_box_projection = 1u; let uvs = hit_uvs(Hit(1.0, triangle, u, v), boxed);",
+                "var boxed = material_at(0u); boxed.flags |= HAS_BOX; let uvs = hit_uvs(Hit(1.0, triangle, u, v), boxed);",
                 twin!(|row| {
                     let triangle = SCENE.geometry.triangle_at(row.bits());
                     let [u, v]: [T; 2] = row.numbers();

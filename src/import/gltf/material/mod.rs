@@ -18,7 +18,8 @@ pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept, unreadable,
+    Anisotropy, Clearcoat, DiffuseRoughness, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension,
+    kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
@@ -279,6 +280,9 @@ impl<'a> Materials<'a> {
         read.emissive_texture = self.texture(info(&material.emissive_texture), &mut sets, &read.name);
         self.read_layers(raw, slot, &mut read, &mut sets);
         self.read_interior(material, raw, slot, &mut read);
+        if let Some(base) = extension::<DiffuseRoughness>(raw, "KHR_materials_diffuse_roughness") {
+            read.diffuse_roughness = unit(base.diffuse_roughness_factor);
+        }
         if raw["extensions"].get("KHR_materials_unlit").is_some() {
             make_unlit(&mut read);
             self.report

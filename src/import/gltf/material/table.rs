@@ -52,6 +52,10 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "clearcoatRoughnessTexture" TEXTURE => To "coat.roughness" "by its mean";
         "clearcoatNormalTexture" TEXTURE => Nowhere "a coat normal texture: coats lie smooth" "";
     }
+    "/extensions/KHR_materials_diffuse_roughness/" {
+        "diffuseRoughnessFactor" "0.25" => To "base.diffuse_roughness" "a draft";
+        "diffuseRoughnessTexture" TEXTURE => Nowhere "a texture of the diffuse roughness" "";
+    }
     "/extensions/KHR_materials_transmission/" {
         "transmissionFactor" "0.25" => To "transmission.weight" "";
         "transmissionTexture" TEXTURE => To "transmission.weight" "by its mean";

@@ -130,6 +130,12 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
         });
         all.insert("KHR_materials_specular".to_owned(), specular);
     }
+    if surface.diffuse_roughness > 0.0 {
+        all.insert(
+            "KHR_materials_diffuse_roughness".to_owned(),
+            json!({ "diffuseRoughnessFactor": surface.diffuse_roughness }),
+        );
+    }
     if surface.coat_weight > 0.0 {
         let coat = json!({
             "clearcoatFactor": surface.coat_weight,

@@ -27,8 +27,11 @@ pub struct Gltf;
 const TAKES: Takes = Takes {
     law: Law::Schlick,
     eta_and_k: false,
+    diffuse_roughness: true,
+    fuzz: false,
     edge_tint: false,
     specular: true,
+    weighs_index: false,
     weighs_metal: false,
     ior: true,
     widths: shown_widths,

@@ -33,6 +33,8 @@ pub struct MaterialX {
 /// The attribute of a material that has the exact parameters.
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
+    fuzz: false,
+    weighs_index: false,
     widths: standard_widths,
     weighs_metal: false,
     ..Takes::OPEN_PBR
@@ -160,6 +162,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
     node("standard_surface", name)
         .child(number("base", 1.0))
         .child(color("base_color", surface.base_color))
+        .child(number("diffuse_roughness", surface.diffuse_roughness))
         .child(number("metalness", surface.metalness))
         .child(number("specular", surface.specular_weight))
         .child(color(

@@ -116,6 +116,7 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
 fn is_near(a: &Surface, b: &Surface) -> bool {
     let numbers = |s: &Surface| {
         let mut all = vec![
+            s.diffuse_roughness,
             s.metalness,
             s.specular_weight,
             s.ior,
@@ -127,6 +128,8 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             s.coat_weight,
             s.coat_roughness,
             s.coat_ior,
+            s.fuzz_weight,
+            s.fuzz_roughness,
             s.opacity,
         ];
         let colors = [
@@ -135,6 +138,7 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             s.edge_tint,
             s.transmission_color,
             s.coat_color,
+            s.fuzz_color,
             s.emission,
         ];
         all.extend(colors.into_iter().flatten());

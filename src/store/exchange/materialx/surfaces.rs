@@ -72,8 +72,10 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
     let ratio = 1.0 - inputs.number("specular_roughness_anisotropy").clamp(0.0, 0.999);
     Surface {
         base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
+        diffuse_roughness: inputs.number("base_diffuse_roughness"),
         metalness,
         specular_weight: inputs.number("specular_weight"),
+        weight_in_index: inputs.number("specular_weight") != 1.0,
         specular_color: tint,
         // The weight is a metal's too, the tint is not: where both are, neither.
         specular_on_metal: tint == [1.0; 3],
@@ -88,6 +90,9 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         coat_roughness: inputs.number("coat_roughness"),
         coat_ior: inputs.number("coat_ior"),
         coat_color: darkening_coat_color(inputs),
+        fuzz_weight: inputs.number("fuzz_weight"),
+        fuzz_color: inputs.color("fuzz_color"),
+        fuzz_roughness: inputs.number("fuzz_roughness"),
         emission: weighted(
             inputs.color("emission_color"),
             inputs.number("emission_luminance") / NITS,
@@ -130,6 +135,7 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
     };
     Surface {
         base_color,
+        diffuse_roughness: inputs.number("diffuse_roughness"),
         metalness,
         specular_weight,
         specular_color,
@@ -203,6 +209,7 @@ fn disney_principled(inputs: &mut Inputs) -> Surface {
         metalness: inputs.number("metallic"),
         // 0.5 leaves the reflectance of the index as it is.
         specular_weight: 2.0 * specular,
+        weight_in_index: specular != 0.5,
         ior: inputs.number("ior"),
         roughness: inputs.number("roughness"),
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,

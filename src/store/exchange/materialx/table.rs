@@ -6,12 +6,11 @@ use crate::import::Goes::{self, Nowhere, To};
 
 const DISPERSION: Goes = Nowhere("dispersion is not shown yet");
 const FILM: Goes = Nowhere("thin films are not shown yet");
-const MATTE: Goes = Nowhere("the diffuse base is Lambertian");
 const NORMALS: Goes = Nowhere("textures travel with models; here each parameter has one value");
 const OCCLUSION: Goes = Nowhere("path tracing needs no occlusion");
 const ROUND_COAT: Goes = Nowhere("the coat's highlight is round");
 const SCATTERING: Goes = Nowhere("nothing is scattered inside");
-const SHEEN: Goes = Nowhere("fuzz and sheen are not shown yet");
+const SHEEN: Goes = Nowhere("sheen is not shown yet");
 const SUBSURFACE: Goes = Nowhere("subsurface scattering is not shown yet");
 const THIN: Goes = Nowhere("what transmits is a solid");
 const TURN: Goes = To("specular.rotation");
@@ -44,7 +43,7 @@ const BLACK: &str = "0, 0, 0";
 pub(super) const OPEN_PBR: &[FileParameter] = &[
     unit("base_weight", "1", "0.5", To("base.color")),
     unit("base_color", "0.8, 0.8, 0.8", COLOR, To("base.color")),
-    row("base_diffuse_roughness", "0", "0.25", MATTE),
+    unit("base_diffuse_roughness", "0", "0.25", To("base.diffuse_roughness")),
     unit("base_metalness", "0", "0.5", To("base.metalness")),
     unit("specular_weight", "1", "0.5", To("specular.weight")),
     unit(
@@ -70,9 +69,9 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     row("subsurface_radius", "1", "0.5", SUBSURFACE).of("subsurface_weight"),
     row("subsurface_radius_scale", "1, 0.5, 0.25", COLOR, SUBSURFACE).of("subsurface_weight"),
     row("subsurface_scatter_anisotropy", "0", "0.5", SUBSURFACE).of("subsurface_weight"),
-    row("fuzz_weight", "0", "0.5", SHEEN),
-    row("fuzz_color", WHITE, COLOR, SHEEN).of("fuzz_weight"),
-    row("fuzz_roughness", "0.5", "0.25", SHEEN).of("fuzz_weight"),
+    unit("fuzz_weight", "0", "0.5", To("fuzz.weight")),
+    unit("fuzz_color", WHITE, COLOR, To("fuzz.color")).of("fuzz_weight"),
+    unit("fuzz_roughness", "0.5", "0.25", To("fuzz.roughness")).of("fuzz_weight"),
     unit("coat_weight", "0", "0.5", To("coat.weight")),
     unit("coat_color", WHITE, COLOR, To("coat.color")).of("coat_weight"),
     unit("coat_roughness", "0", "0.5", To("coat.roughness")).of("coat_weight"),
@@ -99,7 +98,7 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
 pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
     unit("base", "1", "0.5", To("base.color")),
     unit("base_color", "0.8, 0.8, 0.8", COLOR, To("base.color")),
-    row("diffuse_roughness", "0", "0.25", MATTE),
+    unit("diffuse_roughness", "0", "0.25", To("base.diffuse_roughness")),
     unit("metalness", "0", "0.5", To("base.metalness")),
     unit(
         "specular",

@@ -1,0 +1,65 @@
+// A layer of small fibres over everything else. Twin of src/optics/layer/fuzz.rs.
+#import "optics/layer/registry"
+#import "optics/material"
+#import "optics/warp"
+
+fn fuzz_is_there(material: Material, surface: Surface) -> bool {
+    return PLAN_FUZZ == 1u && material.fuzz_weight > 0.0 && !(surface.is_inside && material_transmits(material));
+}
+
+fn fuzz_lobe(material: Material, surface: Surface) -> LayerLobe {
+    return LayerLobe(base_shape(), surface.frame);
+}
+
+fn fuzz_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+    let share = material.fuzz_weight * fuzz_reflectance(material, dot(surface.frame.normal, surface.wo));
+    return LayerAlbedo(material.fuzz_color * share, vec3f(1.0 - share));
+}
+
+fn fuzz_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
+    return LayerToward(layers.fuzz.albedo, layers.fuzz.probability);
+}
+
+fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
+    let frame = fuzz_frame(surface);
+    let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
+    let cosine = local_from_world(frame, normalize_or(frame.normal + uniform_sphere(xi.xy), frame.normal));
+    let bent = vec3f((cosine.x - bent_by.y * cosine.z) / bent_by.x, cosine.y / bent_by.x, cosine.z);
+    let raw = world_from_local(frame, normalize_or(bent, vec3f(0.0, 0.0, 1.0)));
+    let depth = dot(surface.normal, raw);
+    return LobeSample(select(raw, raw - surface.normal * (2.0 * depth), depth < 0.0), 1.0);
+}
+
+fn fuzz_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2f) -> vec2f {
+    let frame = fuzz_frame(surface);
+    let bent_by = fuzz_matrix(material, dot(frame.normal, surface.wo));
+    let folded = reflected_at_plane(wi, surface.normal);
+    let both = fuzz_density(bent_by, local_from_world(frame, wi)) + fuzz_density(bent_by, local_from_world(frame, folded));
+    return vec2f(select(0.0, both, dot(surface.normal, wi) > 0.0));
+}
+
+// The frame with the view in the half plane of the tangent.
+fn fuzz_frame(surface: Surface) -> Frame {
+    return frame_from_tangent(surface.frame.normal, surface.wo, 0.0);
+}
+
+// What the matrix stretches the tangent plane by, and what it adds of the height along the view.
+fn fuzz_matrix(material: Material, cosine: f32) -> vec2f {
+    let x = clamp(cosine, 0.0, 1.0);
+    let y = material.fuzz_roughness;
+    let stretch = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x * x + 2.60994 * x * y);
+    let divisor = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y;
+    return vec2f(stretch, safe_sqrt(1.0 - x) * (y - 1.0) * y * y * y / divisor);
+}
+
+fn fuzz_density(bent_by: vec2f, wi: vec3f) -> f32 {
+    let straight = vec3f(bent_by.x * wi.x + bent_by.y * wi.z, bent_by.x * wi.y, wi.z);
+    let ratio = bent_by.x / dot(straight, straight);
+    return max(wi.z, 0.0) * INV_PI * ratio * ratio;
+}
+
+fn fuzz_reflectance(material: Material, cosine: f32) -> f32 {
+    let off = (clamp(cosine, 0.0, 1.0) - material.fuzz_middle) / material.fuzz_width;
+    let bell = exp(-0.5 * off * off) / (material.fuzz_width * sqrt(2.0 * PI));
+    return clamp(bell + material.fuzz_floor, 0.0, 1.0);
+}

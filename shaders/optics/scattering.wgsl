@@ -1,0 +1,51 @@
+// Multiple scattering between facets. Twin of src/optics/scattering.rs.
+#import "optics/albedo"
+#import "optics/fresnel"
+#import "optics/lobe/registry"
+#import "optics/material"
+
+fn compensates(material: Material) -> bool {
+    return PLAN_MULTIPLE_SCATTERING == 1u && has_flag(material, COMPENSATES);
+}
+
+fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> f32 {
+    if !compensates(material) {
+        return 1.0;
+    }
+    let kept = kept_energies(material, surface, shape);
+    return 1.0 / select(kept.y, kept.z, surface.is_inside && material_transmits(material));
+}
+
+fn scattered_again(
+    material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32, once: vec3f,
+) -> vec3f {
+    if compensates(material) {
+        return compensated(material, surface, shape, terms, cosine);
+    }
+    return once;
+}
+
+fn compensated(
+    material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32,
+) -> vec3f {
+    let kept = kept_energies(material, surface, shape).x;
+    let again = (1.0 - kept) / kept;
+    if terms.model == FRESNEL_NONE || terms.model == FRESNEL_CONDUCTOR {
+        let head_on = fresnel(terms, 1.0);
+        return fresnel(terms, cosine) * (vec3f(1.0) + head_on * (again * terms.metalness));
+    }
+    let parts = fresnel_parts(terms, cosine);
+    let metal = parts.metal * (vec3f(1.0) + terms.metal_f0 * terms.metal_tint * again);
+    // The refracting share of a dielectric is clear; the rest lies over a base.
+    let share = select(0.0, material.transmission_weight, material_transmits(material));
+    let gain = 1.0 + (interface_gain(material, surface, shape) - 1.0) * share;
+    return mix(parts.dielectric * gain, metal, terms.metalness);
+}
+
+fn kept_energies(material: Material, surface: Surface, shape: LobeShape) -> vec3f {
+    let place = safe_sqrt(dot(surface.frame.normal, surface.wo));
+    if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
+        return rough_albedo_lookup(shape.table, place, material.roughness).xyz;
+    }
+    return albedo_lookup(shape.table, place);
+}

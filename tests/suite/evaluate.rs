@@ -1,0 +1,202 @@
+//! `glossmith evaluate`: values, densities and albedos of a material as tables.
+
+use std::f64::consts::FRAC_1_PI;
+
+use crate::cli_support::Workplace;
+
+/// A white surface without reflection.
+const MATT: &str = "--set base.color=#ffffff --set base.metalness=0 --set specular.weight=0";
+/// Every way to compute.
+const ENGINES: [&str; 3] = ["--engine cpu", "--engine gpu", "--engine cpu --precision f64"];
+
+/// The columns of a table by name, and its rows.
+pub struct Table {
+    head: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        let place = self.head.iter().position(|column| column == name).unwrap();
+        self.rows.iter().map(|row| row[place]).collect()
+    }
+}
+
+/// What the command writes with these arguments.
+pub fn evaluate(place: &Workplace, arguments: &str) -> Table {
+    place.done(&format!("evaluate --output out.csv {arguments}"));
+    let text = place.read("out.csv");
+    let mut lines = text.lines();
+    let head = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+    Table {
+        head,
+        rows: lines.map(row).collect(),
+    }
+}
+
+#[track_caller]
+fn assert_near(values: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    assert_eq!(values.len(), expected.len(), "{what}");
+    for (row, (value, expected)) in values.iter().zip(expected).enumerate() {
+        assert!(
+            (value - expected).abs() <= tolerance * expected.abs().max(1e-3),
+            "{what}, row {row}: {value} for {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_matt_surface_has_the_values_of_lambert() {
+    let place = Workplace::new();
+    let table = "# any comment\nname,phi_i,theta_i,theta_o,phi_o\na,0,0,0,0\nb,90,60,30,10\nc,180,80,89,0\nd,0,120,30,0\n";
+    place.write("pairs.csv", table.as_bytes());
+    let expected: Vec<f64> = [0.0_f64, 60.0, 80.0]
+        .map(|theta| theta.to_radians().cos() * FRAC_1_PI)
+        .into_iter()
+        .chain([0.0])
+        .collect();
+    for engine in ENGINES {
+        let values = evaluate(&place, &format!("--material Porcelain {MATT} --directions pairs.csv {engine}"));
+        assert_eq!(
+            values.head,
+            ["name", "phi_i", "theta_i", "theta_o", "phi_o", "r", "g", "b", "density"]
+        );
+        for column in ["r", "g", "b", "density"] {
+            assert_near(&values.column(column), &expected, 1e-5, &format!("{column}, {engine}"));
+        }
+    }
+    assert!(place.read("out.csv").lines().nth(2).unwrap().starts_with("b,90,60,30,10,"));
+}
+
+/// Sums over a grid, whose light directions stand for equal steps of both angles: densities give 1, values the albedo.
+#[test]
+fn densities_add_up_to_one_and_values_to_the_albedo() {
+    let place = Workplace::new();
+    let steps = 24;
+    let view_deg = |view: usize| 90.0 / steps as f64 * (view as f64 + 0.5);
+    let step = (90.0 / steps as f64).to_radians();
+    for (material, side) in [
+        ("--material Porcelain --set coat.weight=0.7 --set coat.roughness=0.5 --set specular.roughness=0.6", "above"),
+        ("--material Glass --set specular.roughness=0.5 --set transmission.roughness=0.3", "above"),
+        ("--material Glass --set specular.lobe=ggx --set specular.roughness=0.8", "below"),
+    ] {
+        let values = evaluate(&place, &format!("{material} --grid {steps} --side {side} --engine cpu"));
+        let cosines: Vec<f64> = [2, 12, 18].map(|view| view_deg(view).to_radians().cos()).to_vec();
+        let list: Vec<_> = cosines.iter().map(f64::to_string).collect();
+        let albedos = evaluate(
+            &place,
+            &format!("{material} --albedo {} --side {side} --engine cpu --count 65536", list.join(",")),
+        );
+        let [theta_o, theta_i] = ["theta_o", "theta_i"].map(|column| values.column(column));
+        for (index, view) in [2, 12, 18].into_iter().enumerate() {
+            let sum = |column: &[f64], is_below: bool| -> f64 {
+                let rows = (0..theta_o.len()).filter(|row| (theta_o[*row] - view_deg(view)).abs() < 1e-9);
+                let rows = rows.filter(|row| (theta_i[*row] > 90.0) == is_below);
+                rows.map(|row| column[row] * theta_i[row].to_radians().sin() * step * 2.0 * step).sum()
+            };
+            let density = values.column("density");
+            let total = sum(&density, false) + sum(&density, true);
+            let green = values.column("g");
+            let [reflected, transmitted] = ["R_g", "T_g"].map(|column| albedos.column(column)[index]);
+            let what = format!("{material}, {side}, view {view}");
+            // Facets that send light into the surface draw directions that are lost: their density is not in the sum.
+            assert!((0.7..1.01).contains(&total), "{what}: density {total}");
+            if !material.contains("ggx") {
+                assert!((total - 1.0).abs() < 0.01, "{what}: density {total}");
+            }
+            assert!((sum(&green, false) - reflected).abs() < 0.01, "{what}: {} for {reflected}", sum(&green, false));
+            assert!((sum(&green, true) - transmitted).abs() < 0.01, "{what}: {} for {transmitted}", sum(&green, true));
+        }
+    }
+}
+
+#[test]
+fn the_engines_agree_with_f64() {
+    let place = Workplace::new();
+    for material in [
+        "Porcelain",
+        "Glass --set specular.roughness=0.4",
+        "Glass --set specular.lobe=ggx --set specular.roughness=0.4",
+        "Gold --set specular.roughness=0.3 --set specular.anisotropy=0.6 --set specular.rotation=30 --set specular.lobe=ggx",
+    ] {
+        for side in ["above", "below"] {
+            let table = |engine: &str| {
+                let arguments = format!("--material {material} --grid 5 --side {side} {engine}");
+                let table = evaluate(&place, &arguments);
+                ["r", "b", "density"].map(|column| table.column(column))
+            };
+            let [cpu, gpu, exact] = ENGINES.map(table);
+            for (column, exact) in exact.iter().enumerate() {
+                assert_near(&cpu[column], exact, 1e-3, &format!("{material}, {side}, CPU"));
+                assert_near(&gpu[column], exact, 1e-3, &format!("{material}, {side}, GPU"));
+            }
+        }
+    }
+}
+
+#[test]
+fn clear_glass_reflects_or_transmits_all_light() {
+    let place = Workplace::new();
+    for engine in ENGINES {
+        for side in ["above", "below"] {
+            let arguments = format!("--material Glass --albedo 1,0.6,0.1 --count 65536 --side {side} {engine}");
+            let albedos = evaluate(&place, &arguments);
+            let sums: Vec<f64> = std::iter::zip(albedos.column("R_r"), albedos.column("T_r")).map(|(r, t)| r + t).collect();
+            assert_near(&sums, &[1.0; 3], 2e-3, &format!("{side}, {engine}"));
+            assert_near(&albedos.column("cos_theta_o"), &[1.0, 0.6, 0.1], 0.0, "cosines");
+            assert!(albedos.column("se_R").iter().all(|error| (0.0..1e-2).contains(error)));
+        }
+    }
+}
+
+/// A file's angles count from the normal on the side that is named; above 90 degrees they are on the other one.
+#[test]
+fn the_side_turns_the_angles_over() {
+    let place = Workplace::new();
+    place.write("in.csv", b"theta_o,phi_o,theta_i,phi_i\n150,0,30,180\n150,20,140,200\n");
+    place.write("turned.csv", b"theta_o,phi_o,theta_i,phi_i\n30,0,150,180\n30,20,40,200\n");
+    let material = "--material Glass --set specular.roughness=0.3 --engine cpu";
+    let of = |arguments: &str| evaluate(&place, &format!("{material} {arguments}")).column("r");
+    let above = of("--directions in.csv");
+    assert_near(&of("--directions turned.csv --side below"), &above, 1e-5, "turned");
+    assert!(above.iter().all(|value| *value > 0.0), "{above:?}");
+    assert_ne!(of("--directions turned.csv"), above, "glass has two sides");
+}
+
+#[test]
+fn what_is_wrong_is_named() {
+    let place = Workplace::new();
+    place.write("short.csv", b"theta_o,phi_o,theta_i\n1,2,3\n");
+    place.write("cells.csv", b"theta_o,phi_o,theta_i,phi_i\n1,2,3,4\n1,2,3\n");
+    place.write("word.csv", b"theta_o,phi_o,theta_i,phi_i\n\n1,2,steep,4\n");
+    place.write("taken.csv", b"theta_o,phi_o,theta_i,phi_i,r\n1,2,3,4,5\n");
+    place.write("empty.csv", b"# nothing\n");
+    let gold = "evaluate --material Gold --engine cpu --output out.csv";
+    for (file, words) in [
+        ("short.csv", ["no column phi_i", "theta_o,phi_o"]),
+        ("cells.csv", ["line 3", "3 cells"]),
+        ("word.csv", ["line 3", "steep"]),
+        ("taken.csv", ["column r", "rename"]),
+        ("empty.csv", ["empty.csv", "empty"]),
+        ("missing.csv", ["missing.csv", "cannot be read"]),
+    ] {
+        place.refused(1, &format!("{gold} --directions {file}"), &words);
+    }
+    place.refused(1, "evaluate --material Nothing --grid --output out.csv", &["Nothing"]);
+    place.refused(1, &format!("{gold} --grid --set camera.fov=40"), &["camera.fov"]);
+    let of_gpu = "evaluate --material Gold --output out.csv --grid --engine gpu --precision f64";
+    place.refused(1, of_gpu, &["--precision f64", "--engine cpu"]);
+    for arguments in [
+        "",
+        "--grid --albedo 1",
+        "--grid 0",
+        "--albedo 0",
+        "--albedo 1,2",
+        "--albedo 1 --count 3",
+        "--grid --precision f16",
+        "--grid --side beside",
+    ] {
+        place.refused(2, &format!("{gold} {arguments}"), &[]);
+    }
+}
