@@ -432,7 +432,7 @@ fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sess
         .map(|film| film.dropped())
         .sum::<u64>() as f64;
     Ok(vec![
-        compare("engines", "this engine against the CPU, whole image", &processor),
+        compare("engines", "this engine against the CPU, whole image", &cpu),
         compare("strategies", "mis against lobe, whole image", &lobe),
         compare("strategies", "mis against light, whole image", &light),
         Check::new(

@@ -16,7 +16,7 @@ use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
 use crate::render::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
 use crate::render::{EngineChoice, Precision};
-use crate::say::say;
+use crate::console::message;
 use crate::store::exchange::{self, ReadOptions};
 use crate::store::replace::save_by;
 
@@ -113,7 +113,7 @@ pub fn run(arguments: &EvaluateArguments) -> anyhow::Result<()> {
     } else {
         write_albedos(arguments, &evaluator)?
     };
-    say!("wrote {}", arguments.output.display());
+    message!("wrote {}", arguments.output.display());
     arguments.answer.write(&serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "material": material.name,
