@@ -142,7 +142,7 @@ impl Graph<'_> {
         self.steps.update(|steps| steps + 1);
         if depth > DEPTH_MAX || self.steps.get() > STEPS_MAX {
             return Err(Unknown::Missing(format!(
-                "a graph deeper than {DEPTH_MAX} nodes or of more than {STEPS_MAX} steps, if it does not go in a circle"
+                "a graph that has a circle, more than {DEPTH_MAX} nodes in a row or more than {STEPS_MAX} steps"
             )));
         }
         if let Some(value) = input.attribute("value") {
