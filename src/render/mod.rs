@@ -7,6 +7,7 @@ mod attendant;
 pub mod background;
 mod calibration;
 pub mod check;
+mod choice;
 mod chosen;
 mod compile;
 mod convergence;
@@ -43,8 +44,9 @@ mod workshop;
 
 pub use assets::{Assets, Reloaded};
 pub use attendant::Attendant;
+pub use choice::Sampler;
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, Sampler};
+pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision};
 pub use error::SessionError;
 pub use output::Layers;
 pub use progress::{Progress, StopReason};
