@@ -329,6 +329,11 @@ impl Instanced {
         })
     }
 
+    /// Number of triangles that [`Instanced::whole`] has yet to copy.
+    pub fn triangles_to_copy(&self) -> usize {
+        self.whole.get().map_or(self.triangle_count, |_| 0)
+    }
+
     /// Appends the triangles of an instance.
     fn append(&self, instance: &Instance, to: &mut Part) {
         let (mesh, placement) = (&self.meshes[instance.mesh], &instance.placement);

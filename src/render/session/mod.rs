@@ -281,7 +281,11 @@ impl Session {
         let old = self.job.as_deref().filter(|_| is_in_use);
         let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
         let allowed = self.memory_limit.unwrap_or_else(|| memory::free(held));
-        Ok(memory::check(job, is_software_gpu, allowed)?)
+        memory::check(job, is_software_gpu, allowed)?;
+        if self.info.kind == EngineKind::Gpu {
+            memory::check_instances(job, is_software_gpu, allowed)?;
+        }
+        Ok(())
     }
 
     /// Restarts the engine with a job; after an error it continues with the old one.
