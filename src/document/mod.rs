@@ -3,6 +3,7 @@
 
 mod area_light;
 pub mod change;
+mod checked;
 mod compile;
 pub mod custom_curve;
 pub mod effect;
@@ -12,12 +13,16 @@ pub mod import;
 pub mod light_handle;
 pub mod match_look;
 pub mod material;
+mod material_textures;
 pub mod measured_look;
 mod metal_colors;
 pub mod of_model;
 pub mod parameter;
+pub mod range;
 mod settings;
+mod switches;
 pub mod technique;
+mod texture_json;
 pub mod turntable;
 mod user_textures;
 
@@ -28,23 +33,23 @@ use serde::{Deserialize, Serialize};
 
 pub use area_light::{AreaLight, AreaLightShape, Shine};
 pub use change::Change;
+pub use checked::SettingError;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
+pub use material_textures::{map_key, target_of_key, texture_assignments};
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
 };
 pub use settings::{
-    Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,
-    range,
+    Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, ViewSettings,
 };
-pub use user_textures::{
-    TextureError, UserTextures, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
-};
+pub use texture_json::{TextureError, texture_from_json, texture_to_json};
+pub use user_textures::UserTextures;
 
 pub use crate::job::{LightPaths, Strategy};
 pub use crate::scene::camera::PixelFilter;
@@ -111,7 +116,7 @@ impl Document {
     /// # Errors
     /// The first setting that is out of range.
     pub fn check(&self) -> Result<(), SettingError> {
-        settings::check(self)
+        checked::check(self)
     }
 
     /// The files that it names beside model and environment: its materials' textures, and the view's table of colours.
