@@ -12,7 +12,7 @@ use super::names;
 use super::parse::check_writable;
 use crate::analysis::fit::Merl;
 use crate::document::MaterialSettings;
-use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
+use crate::matching::{Candidate, LookMatch, Target, comparison, match_look};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;

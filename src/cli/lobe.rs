@@ -9,7 +9,7 @@ use super::answer::{Answer, file_names};
 use super::lobe_spec::lobe_model;
 use super::names;
 use super::parse::check_writable;
-use crate::document::match_look::lobe_of_material;
+use crate::matching::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
