@@ -13,7 +13,7 @@ use super::parse::check_writable;
 use crate::analysis::fit::Merl;
 use crate::console::{message, output};
 use crate::document::MaterialSettings;
-use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
+use crate::matching::{Candidate, LookMatch, Target, comparison, match_look};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;

@@ -10,7 +10,7 @@ use super::lobe_spec::lobe_model;
 use super::names;
 use super::parse::check_writable;
 use crate::console::message;
-use crate::document::match_look::lobe_of_material;
+use crate::matching::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};

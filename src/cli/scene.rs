@@ -80,7 +80,7 @@ pub struct SceneArguments {
     /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
     /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
     /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
-    #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::texture)]
+    #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::argument())]
     textures: Vec<TextureArgument>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
     #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]

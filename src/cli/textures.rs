@@ -1,13 +1,16 @@
 //! `--texture`: images of one's own on materials.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use crate::document::Document;
 use crate::import::endings;
 use crate::named::Named as _;
 use crate::scene::Model;
+use crate::scene::path_text::path_of_bytes;
 use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 /// Images, and the material that they are assigned to.
@@ -18,8 +21,19 @@ pub(super) struct TextureArgument {
     textures: Vec<(TextureTarget, UserTexture)>,
 }
 
-/// Reads `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
-pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
+/// `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
+pub(super) fn argument() -> impl TypedValueParser<Value = TextureArgument> {
+    OsStringValueParser::new().try_map(|argument| texture(&argument))
+}
+
+/// The text before a place, and the path after the byte there.
+fn around(argument: &OsStr, place: Option<usize>) -> Option<(&str, PathBuf)> {
+    let (left, right) = argument.as_encoded_bytes().split_at_checked(place?)?;
+    let path = path_of_bytes(right.get(1..)?.to_vec());
+    Some((std::str::from_utf8(left).ok()?, path))
+}
+
+fn texture(argument: &OsStr) -> Result<TextureArgument, String> {
     let uses = || {
         TextureTarget::ALL
             .iter()
@@ -27,7 +41,8 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
             .collect::<Vec<_>>()
             .join(", ")
     };
-    if let Some((left, file)) = text.split_once('=') {
+    let bytes = argument.as_encoded_bytes();
+    if let Some((left, file)) = around(argument, bytes.iter().position(|byte| *byte == b'=')) {
         let (slot, name) = match left.rsplit_once(':') {
             Some((slot, name)) => (Some(slot.to_owned()), name),
             None => (None, left),
@@ -42,9 +57,9 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
             textures: vec![(target, texture)],
         });
     }
-    let (slot, path) = match text.rsplit_once(':') {
-        Some((slot, path)) if !Path::new(text).exists() => (Some(slot.to_owned()), path),
-        _ => (None, text),
+    let (slot, path) = match around(argument, bytes.iter().rposition(|byte| *byte == b':')) {
+        Some((slot, path)) if !Path::new(argument).exists() => (Some(slot.to_owned()), path),
+        _ => (None, argument.into()),
     };
     let path = existing(path)?;
     let (textures, _) = match path.is_dir() {
@@ -61,8 +76,7 @@ pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
     Ok(TextureArgument { slot, textures })
 }
 
-fn existing(path: &str) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
+fn existing(path: PathBuf) -> Result<PathBuf, String> {
     match path.exists() {
         true => Ok(path),
         false => Err(format!("{}: there is no such file", path.display())),

@@ -1,12 +1,10 @@
 //! Lights of the document's own: rectangles, triangles, discs and spheres that shine, spots and suns.
 
 use std::f64::consts::PI;
-use std::ops::RangeInclusive;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::parameter::LIGHT_PARAMETERS;
 use super::{MaterialSettings, range};
 use crate::named::named;
 use crate::optics::material::Material;
@@ -239,12 +237,6 @@ impl AreaLight {
             self.yaw_deg = x.atan2(z).to_degrees();
         }
         self.pitch_deg = y.clamp(-1.0, 1.0).asin().to_degrees();
-    }
-
-    /// What it is checked for.
-    pub(super) fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
-        let numbers = LIGHT_PARAMETERS.iter().flat_map(|parameter| parameter.numbers(self));
-        numbers.map(|(key, value, [low, high])| (key, value, low..=high))
     }
 
     /// Its surface: black but for what it emits.

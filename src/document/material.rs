@@ -4,12 +4,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
-use super::import::{ImportLobe, geometric_from_ggx};
 use super::user_textures::UserTextures;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
-use crate::scene::{AlphaMode, Slot};
 
 /// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
 pub const SPECULAR_COLOR_MAX: f32 = 1000.0;
@@ -166,58 +164,6 @@ impl MaterialSettings {
             specular_weight: 0.0,
             ..Self::default()
         }
-    }
-
-    /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
-    /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
-    pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
-        let unit = |x: f32| x.clamp(0.0, 1.0);
-        let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
-        let mut material = Self {
-            name: slot.name.clone(),
-            base_color: slot.base_color.map(unit),
-            diffuse_roughness: unit(slot.diffuse_roughness),
-            metalness: unit(slot.metalness),
-            roughness: unit(slot.roughness),
-            ior: slot.ior.clamp(1.0, 4.0),
-            specular_weight: unit(slot.specular),
-            specular_on_metal: false,
-            specular_color: slot.specular_color.map(specular_color),
-            anisotropy: slot.anisotropy.clamp(-1.0, 1.0),
-            rotation_deg: slot.anisotropy_rotation_rad.to_degrees(),
-            extra: slot.kept.clone(),
-            ..Self::default()
-        };
-        lobe.of_slot(slot).apply(&mut material);
-        material.textures = TextureUse {
-            color: slot.base_color_texture.is_some() || (slot.has_vertex_colors && !slot.is_unlit),
-            roughness: slot.metallic_roughness_texture.is_some(),
-            normal: slot.normal_texture.is_some(),
-            emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
-            opacity: slot.alpha_mode != AlphaMode::Opaque,
-            coat: slot.coat_texture.is_some(),
-        };
-        material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
-        if slot.alpha_mode != AlphaMode::Opaque {
-            material.opacity = unit(slot.opacity);
-        }
-        material.coat_weight = unit(slot.coat);
-        material.coat_ior = slot.coat_ior;
-        if slot.coat > 0.0 {
-            material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
-        }
-        material.transmission_weight = unit(slot.transmission);
-        if slot.attenuation_distance.is_finite() {
-            material.transmission_color = slot.attenuation_color.map(unit);
-            material.transmission_depth = slot.attenuation_distance.clamp(0.0, 1000.0);
-        } else if slot.transmission > 0.0 {
-            material.transmission_color = material.base_color;
-        }
-        if strength > 0.0 {
-            material.emission_color = slot.emission.map(|x| unit(x / strength));
-            material.emission_strength = strength.min(1e6);
-        }
-        material
     }
 
     /// True where the specular lobe reflects anything.

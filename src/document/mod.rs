@@ -3,6 +3,7 @@
 
 mod area_light;
 pub mod change;
+mod checked;
 mod compile;
 pub mod custom_curve;
 pub mod effect;
@@ -10,14 +11,15 @@ mod ground;
 pub mod history;
 pub mod import;
 pub mod light_handle;
-pub mod match_look;
 pub mod material;
-pub mod measured_look;
+mod material_textures;
 mod metal_colors;
 pub mod of_model;
 pub mod parameter;
+pub mod range;
 mod settings;
-pub mod technique;
+mod switches;
+mod texture_json;
 pub mod turntable;
 mod user_textures;
 
@@ -28,23 +30,23 @@ use serde::{Deserialize, Serialize};
 
 pub use area_light::{AreaLight, AreaLightShape, Shine};
 pub use change::Change;
+pub use checked::SettingError;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
+pub use material_textures::{map_key, target_of_key, texture_assignments};
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
 };
 pub use settings::{
-    Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,
-    range,
+    Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, ViewSettings,
 };
-pub use user_textures::{
-    TextureError, UserTextures, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
-};
+pub use texture_json::{TextureError, texture_from_json, texture_to_json};
+pub use user_textures::UserTextures;
 
 pub use crate::job::{LightPaths, Strategy};
 pub use crate::scene::camera::PixelFilter;
@@ -111,7 +113,7 @@ impl Document {
     /// # Errors
     /// The first setting that is out of range.
     pub fn check(&self) -> Result<(), SettingError> {
-        settings::check(self)
+        checked::check(self)
     }
 
     /// The files that it names beside model and environment: its materials' textures, and the view's table of colours.

@@ -1,14 +1,11 @@
-//! Light, camera, view and render settings, and the ranges of their numbers.
+//! Light, camera, view and render settings.
 
 use std::path::PathBuf;
 
-use std::ops::RangeInclusive;
-
 use serde::{Deserialize, Serialize};
 
-use super::effect::{EffectSwitches, Switch};
-use super::parameter::{ParameterError, SETTINGS, Stage};
-use super::{AreaLight, Document, GroundSettings};
+use super::switches::{EffectSwitches, Switch};
+use super::{AreaLight, GroundSettings};
 use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
 use crate::named::named;
@@ -16,80 +13,6 @@ use crate::optics::random::Sequence;
 use crate::optics::tone::{Grade, ToneCurve};
 use crate::scene::camera::PixelFilter;
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-
-/// The ranges of the settings, both ends included.
-pub mod range {
-    use std::ops::RangeInclusive;
-
-    /// Factor on the environment's radiance.
-    pub const STRENGTH: RangeInclusive<f64> = 0.0..=1e6;
-    /// Turn of the environment, degrees.
-    pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
-    /// Blur of the environment as a background, degrees.
-    pub const BACKGROUND_BLUR_DEG: RangeInclusive<f64> = 0.0..=90.0;
-    /// Sides of the rendered part, shares of the image.
-    pub const REGION: RangeInclusive<f64> = 0.0..=1.0;
-    /// Coordinates and distances of the camera, scene units.
-    pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
-    /// Distance of the camera from its target, scene units.
-    pub const DISTANCE: RangeInclusive<f64> = 1e-6..=1e9;
-    /// Azimuth of the camera, degrees.
-    pub const YAW_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
-    /// Height of the camera, degrees.
-    pub const PITCH_DEG: RangeInclusive<f64> = -90.0..=90.0;
-    /// Vertical field of view, degrees.
-    pub const FOV_DEG: RangeInclusive<f64> = 0.1..=170.0;
-    /// Radius of the lens, bounding radii.
-    pub const APERTURE: RangeInclusive<f64> = 0.0..=10.0;
-    /// Exposure, stops.
-    pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
-    /// Temperature of the light that appears white, K.
-    pub const WHITE_K: RangeInclusive<f64> = 2000.0..=20_000.0;
-    /// Power around middle grey.
-    pub const CONTRAST: RangeInclusive<f64> = 0.1..=4.0;
-    /// Factor of the distance from grey.
-    pub const SATURATION: RangeInclusive<f64> = 0.0..=4.0;
-    /// Strength of the darker corners.
-    pub const VIGNETTE: RangeInclusive<f64> = 0.0..=2.0;
-    /// Share of the light that the glare spreads.
-    pub const GLARE: RangeInclusive<f64> = 0.0..=1.0;
-    /// Width and height, pixels; the random numbers' counters have 16 bits for each.
-    pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
-    /// Samples per pixel.
-    pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
-    /// Render time, seconds.
-    pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
-    /// Relative error of the image at which rendering stops.
-    pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
-    /// Samples per pixel before an estimate of the error is believed.
-    pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
-    /// Longest path, bounces.
-    pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
-    /// The largest radiance that an indirect contribution keeps.
-    pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
-    /// Distance and sides of an area light, bounding radii.
-    pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
-    /// Coordinates of what an area light looks at, bounding radii.
-    pub const LIGHT_TARGET: RangeInclusive<f64> = -1e3..=1e3;
-    /// The angle across a spot's cone, degrees.
-    pub const CONE_DEG: RangeInclusive<f64> = 1.0..=180.0;
-    /// The share of a spot's cone over which it fades.
-    pub const SOFTNESS: RangeInclusive<f64> = 0.0..=1.0;
-    /// The angle across a sun, degrees.
-    pub const SUN_ANGLE_DEG: RangeInclusive<f64> = 0.01..=90.0;
-    /// Metres of a scene unit.
-    pub const UNIT_M: RangeInclusive<f64> = 1e-6..=1e6;
-    /// The longest side of a model's textures, texels.
-    pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
-    /// Time of a model's pose, seconds.
-    pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
-    /// How many area lights there may be.
-    pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=crate::scene::LIGHTS_MAX as f64;
-    /// Shares.
-    pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
-    /// Linear colours of things that do not emit.
-    pub const COLOR: RangeInclusive<f64> = 0.0..=1.0;
-}
 
 /// Where the light comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -356,81 +279,4 @@ impl RenderSettings {
         let is_switched_off = self.effects.get(EffectId::AdaptiveSampling) == Switch::Off;
         !is_switched_off && self.adaptive.unwrap_or(self.noise.is_some())
     }
-}
-
-/// A setting out of its range.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SettingError {
-    /// Of the table.
-    #[error(transparent)]
-    Setting(#[from] ParameterError),
-    /// Of a bookmark's camera.
-    #[error("bookmark {0}: {1}")]
-    Bookmark(String, ParameterError),
-    /// A number of a list.
-    #[error("{name} is {value}; it must lie between {low} and {high}")]
-    Range {
-        /// As it is called in files.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// The least value it takes.
-        low: f64,
-        /// The largest value it takes.
-        high: f64,
-    },
-}
-
-/// See [`Document::check`].
-pub(super) fn check(document: &Document) -> Result<(), SettingError> {
-    for setting in SETTINGS.iter() {
-        setting.check(&setting.get(document))?;
-    }
-    for bookmark in &document.bookmarks {
-        let seen = Document {
-            camera: bookmark.camera,
-            ..Document::default()
-        };
-        for setting in SETTINGS.iter().filter(|setting| setting.stage == Stage::Camera) {
-            let checked = setting.check(&setting.get(&seen));
-            checked.map_err(|error| SettingError::Bookmark(bookmark.name.clone(), error))?;
-        }
-    }
-    let lights = &document.lighting.area_lights;
-    let number = (
-        "the number of lighting.area_lights",
-        lights.len() as f64,
-        range::AREA_LIGHTS,
-    );
-    let background = match document.lighting.background {
-        Background::Color(color) => color.map(f64::from),
-        _ => [0.0; 3],
-    };
-    let background = background.map(|value| ("lighting.background", value, range::COLOR));
-    let sides = render_region(document);
-    let numbers = lights
-        .iter()
-        .flat_map(AreaLight::numbers)
-        .chain(background)
-        .chain(sides)
-        .chain([number]);
-    for (name, value, range) in numbers {
-        if !range.contains(&value) {
-            let (low, high) = range.into_inner();
-            return Err(SettingError::Range { name, value, low, high });
-        }
-    }
-    Ok(())
-}
-
-/// The sides of the rendered part: within the image, and not empty.
-fn render_region(document: &Document) -> [(&'static str, f64, RangeInclusive<f64>); 4] {
-    let [left, top, right, bottom] = document.render.region.unwrap_or([0.0, 0.0, 1.0, 1.0]);
-    let far = |near: f64| near.next_up()..=1.0;
-    [
-        ("render.region", left, range::REGION),
-        ("render.region", top, range::REGION),
-        ("render.region", right, far(left)),
-        ("render.region", bottom, far(top)),
-    ]
 }

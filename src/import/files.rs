@@ -1,6 +1,8 @@
 //! The files beside a model: in its folder, or in the archive that it came in.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -223,10 +225,18 @@ impl Files {
     }
 }
 
-/// Whether a file has this name, ignoring case.
+/// Whether a file has this name, ignoring case. Names that are not Unicode are taken as Latin-1.
 fn is_called(path: &Path, name: &str) -> bool {
-    let known = path.file_name().and_then(|known| known.to_str());
-    known.is_some_and(|known| known.eq_ignore_ascii_case(name))
+    let known = path.file_name().map(OsStr::as_encoded_bytes);
+    known.is_some_and(|known| text_or_latin_1(known).eq_ignore_ascii_case(name))
+}
+
+/// Text of bytes in UTF-8, or else in Latin-1, where every byte is a character.
+pub(super) fn text_or_latin_1(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect::<String>().into(),
+    }
 }
 
 /// A path without `.` and `..`.

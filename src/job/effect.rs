@@ -101,6 +101,24 @@ effects! {
     Denoising "denoising";
 }
 
+impl EffectId {
+    /// True for an effect without which nothing could be rendered.
+    pub const fn is_needed(self) -> bool {
+        matches!(
+            self,
+            Self::Interreflection
+                | Self::Lobe
+                | Self::Curve
+                | Self::Horizon
+                | Self::Fresnel
+                | Self::RoughTables
+                | Self::Variance
+                | Self::PictureLayers
+                | Self::Guides
+        )
+    }
+}
+
 impl fmt::Display for EffectId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())

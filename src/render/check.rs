@@ -6,7 +6,8 @@ use std::time::Duration;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::engine::{EngineChoice, Sampler};
+use super::choice::Sampler;
+use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::session::Session;
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};

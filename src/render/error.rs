@@ -20,6 +20,9 @@ pub enum SessionError {
     /// The image does not fit into memory; nothing was started.
     #[error(transparent)]
     TooLarge(#[from] memory::TooLarge),
+    /// The model's instances do not fit into memory one by one; nothing was started.
+    #[error(transparent)]
+    Instances(#[from] memory::InstancesTooLarge),
 }
 
 impl SessionError {

@@ -6,6 +6,7 @@ mod assets;
 pub mod background;
 mod calibration;
 pub mod check;
+mod choice;
 mod chosen;
 mod compile;
 mod convergence;
@@ -43,8 +44,9 @@ pub mod worker;
 mod workshop;
 
 pub use assets::{Assets, Reloaded};
+pub use choice::Sampler;
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, Sampler};
+pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision};
 pub use error::SessionError;
 pub use output::Layers;
 pub use progress::{Progress, StopReason};

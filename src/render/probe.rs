@@ -1,6 +1,7 @@
 //! Questions to single functions of an engine.
 
-use super::engine::{EngineChoice, device_for_functions};
+use super::choice::device_for_functions;
+use super::engine::EngineChoice;
 use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;

@@ -261,6 +261,11 @@ impl Geometry {
         }
     }
 
+    /// Number of triangles of instances that [`Geometry::whole_model`] has yet to copy.
+    pub fn triangles_to_copy(&self) -> usize {
+        self.instanced.triangles_to_copy()
+    }
+
     /// Both parts as the GPU has them, each with the place of its first triangle there.
     pub fn whole_parts(&self) -> [(&Part, usize); 2] {
         let model = self.whole_model();

@@ -239,17 +239,19 @@ impl Instanced {
     /// The closest hit with 0 < t < `t_max`.
     #[inline(never)]
     pub fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
-        self.top()
-            .closest_hit_below(level, frame, t_max, |instance| self.bottom(instance))
+        self.hit::<false>(level, frame, t_max)
     }
 
     /// True if any triangle is hit with 0 < t < `t_max`.
     #[inline(never)]
     pub fn is_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
-        let hit = self
-            .top()
-            .any_hit_below(level, frame, t_max, |instance| self.bottom(instance));
-        hit.is_some()
+        self.hit::<true>(level, frame, t_max).is_some()
+    }
+
+    #[inline(always)]
+    fn hit<const ANY: bool>(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
+        self.top()
+            .hit_below::<ANY>(level, frame, t_max, |instance| self.bottom(instance))
     }
 
     /// The instance of a triangle, its mesh, and the triangle's number there.
@@ -325,6 +327,11 @@ impl Instanced {
             let numbers = part.build(&Loading::default()).expect("nobody cancels it");
             Whole { part, numbers }
         })
+    }
+
+    /// Number of triangles that [`Instanced::whole`] has yet to copy.
+    pub fn triangles_to_copy(&self) -> usize {
+        self.whole.get().map_or(self.triangle_count, |_| 0)
     }
 
     /// Appends the triangles of an instance.

@@ -118,6 +118,33 @@ fn names_that_are_no_unicode_are_written() {
     }
 }
 
+/// Textures whose names are no Unicode are used, named with a slot or not.
+#[cfg(target_os = "linux")]
+#[test]
+fn textures_whose_names_are_no_unicode_are_read() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let place = Workplace::new();
+    let name = std::ffi::OsStr::from_bytes(b"w\xff_basecolor.png");
+    image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]))
+        .save_with_format(place.path("").join(name), image::ImageFormat::Png)
+        .unwrap();
+    for before in ["", "1:", "base-color=", "1:base-color="] {
+        let argument = [before.as_bytes(), name.as_bytes()].concat();
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+            .args("render --model sphere --engine cpu --size 8x8 --samples 1 --output a.png --report a.json".split(' '))
+            .arg("--texture")
+            .arg(std::ffi::OsStr::from_bytes(&argument))
+            .current_dir(place.path(""))
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{before}: {told}");
+        let picture = image::open(place.path("a.png")).unwrap().to_rgb8();
+        let [r, g, b] = picture.get_pixel(4, 4).0;
+        assert!(r > 2 * g && r > 2 * b, "{before}: {:?}", [r, g, b]);
+    }
+}
+
 /// Files of a batch in folders whose names are not Unicode are found, and their records lead back to them.
 #[cfg(target_os = "linux")]
 #[test]

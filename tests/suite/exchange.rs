@@ -1,7 +1,7 @@
 //! Materials to other programs' formats and back, through the command line.
 
 use glossmith::document::MaterialSettings;
-use glossmith::document::match_look::lobe_of_material;
+use glossmith::matching::lobe_of_material;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, weighted_ior};
 use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::vector::{Vec3, vec3};

@@ -2,8 +2,8 @@
 
 use std::process::Command;
 
-use glossmith::document::match_look::lobe_of_material;
 use glossmith::document::{CustomCurve, MaterialSettings};
+use glossmith::matching::lobe_of_material;
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::lobe::raw_sample;

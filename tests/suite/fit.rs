@@ -10,9 +10,7 @@ use glossmith::analysis::fit::{
 };
 use glossmith::document::MaterialSettings;
 use glossmith::document::custom_curve::POINTS_MAX;
-use glossmith::document::match_look::{
-    Candidate, MatchError, Target, comparison, curve_from_fit, match_look, nearest_ggx,
-};
+use glossmith::matching::{Candidate, MatchError, Target, comparison, curve_from_fit, match_look, nearest_ggx};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::lobe::{Horizon, Lobe, phong};
@@ -185,7 +183,7 @@ fn own_curve_comes_closer_to_ggx_than_any_named_one() {
         // The residual is that of the material, read back.
         let mut material = MaterialSettings::default();
         found.apply(&mut material);
-        let model = glossmith::document::match_look::lobe_of_material(&material);
+        let model = glossmith::matching::lobe_of_material(&material);
         let distance = total_variation(&profile, &model, 0.0, Measure::Evaluate);
         assert!(
             (distance - found.after.total_variation).abs() < 1e-4,

@@ -331,3 +331,78 @@ fn broken_details_cost_themselves_alone() {
         );
     }
 }
+
+/// A number that JSON or single precision cannot hold, or that is none, costs its own value, and the report says where.
+#[test]
+fn unreadable_numbers_of_a_gltf_file_cost_themselves_alone() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    std::fs::write(folder.path("square.bin"), &buffer.bytes).unwrap();
+    document["buffers"][0]["uri"] = json!("square.bin");
+    document["materials"] = json!([{"name": "1e999", "pbrMetallicRoughness": {
+        "roughnessFactor": 777, "metallicFactor": 0.25, "baseColorFactor": [0.5, 777, 0.5, 1],
+    }}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    document["nodes"] = json!([{"mesh": 0, "translation": [777, 0, 0], "scale": [2, 2, 2]}]);
+    for number in ["1e999", "-1e999", "1e39", "NaN", "Infinity", "1.2.3", "wide"] {
+        let text = document.to_string().replace("777", number);
+        let model = folder.load("numbers.gltf", text.as_bytes()).expect(number);
+        let slot = &model.slots[0];
+        assert_eq!((slot.name.as_str(), slot.metalness), ("1e999", 0.25), "{number}");
+        assert_eq!(model.mesh.positions[2].to_array(), [2.0, 2.0, 0.0], "{number}");
+        assert_eq!((slot.roughness, slot.base_color), (1.0, [1.0; 3]), "{number}");
+        let told = model.report.of(Fate::Ignored);
+        let places: Vec<&String> = told.flat_map(|entry| &entry.names).collect();
+        for place in [
+            "/materials/0/pbrMetallicRoughness/roughnessFactor",
+            "/materials/0/pbrMetallicRoughness/baseColorFactor",
+            "/nodes/0/translation",
+        ] {
+            assert!(places.iter().any(|told| *told == place), "{number}: {:?}", model.report);
+        }
+    }
+    // Members of the whole file of another type.
+    for (member, value) in [
+        ("scene", json!("hello")),
+        ("asset", json!({"version": "2.0", "generator": 42})),
+        ("textures", json!({"0": {}})),
+        ("extensionsUsed", json!(7)),
+    ] {
+        let mut broken = document.clone();
+        broken[member] = value;
+        let text = broken.to_string().replace("777", "0.5");
+        let model = folder.load("members.gltf", text.as_bytes()).expect(member);
+        assert_eq!(model.mesh.triangles.len(), 2, "{member}");
+        let mut told = model.report.of(Fate::Ignored);
+        assert!(
+            told.any(|entry| entry.names == [member]),
+            "{member}: {:?}",
+            model.report
+        );
+    }
+    // What the format asks for: the part that cannot do without it goes.
+    for (pointer, lost) in [
+        ("/accessors/1/count", "an accessor"),
+        ("/bufferViews/2/byteLength", "a buffer view"),
+        ("/buffers/1/byteLength", "a buffer"),
+        ("/meshes/1/primitives", "a mesh"),
+        ("/nodes/1/children", "a node"),
+        ("/scenes/1/nodes", "a scene"),
+    ] {
+        let mut broken = document.clone();
+        for (list, more) in [
+            ("buffers", json!({"byteLength": 4})),
+            ("meshes", json!({"primitives": []})),
+            ("nodes", json!({"children": [0]})),
+            ("scenes", json!({"nodes": [0]})),
+        ] {
+            broken[list].as_array_mut().expect("a list").push(more);
+        }
+        *broken.pointer_mut(pointer).expect(pointer) = json!("wide");
+        let text = broken.to_string().replace("777", "0.5");
+        let model = folder.load("parts.gltf", text.as_bytes()).expect(pointer);
+        assert_eq!(model.mesh.triangles.len(), 2, "{pointer}");
+        let is_told = model.report.of(Fate::Ignored).any(|entry| entry.what.starts_with(lost));
+        assert!(is_told, "{pointer}: {:?}", model.report);
+    }
+}

@@ -4,7 +4,7 @@ use glam::{DMat4, DQuat, DVec3, EulerRot};
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{Document, ImportLobe};
 use glossmith::import::load;
-use glossmith::render::EngineChoice;
+use glossmith::render::{EngineChoice, Session, SessionError};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Geometry, Loading, Model, ModelSource, NO_OBJECT, teapot};
 use serde_json::{Value, json};
@@ -146,6 +146,28 @@ fn an_instance_is_picked_and_hidden_as_its_node() {
     assert_eq!(geometry.object(hit.triangle as usize), 7);
     let behind = without.intersect(origin, [0.0, 0.0, -1.0], f32::MAX);
     assert!(behind.is_none_or(|behind| without.object(behind.triangle as usize) != 7));
+}
+
+/// A GPU has the triangles of instances one by one: what does not fit is refused before it is made.
+#[test]
+fn instances_that_do_not_fit_a_gpu_are_refused_with_the_remedy() {
+    let folder = Folder::new();
+    let source = teapots(&folder, &json!({}), true);
+    let mut document = document(source, EnvironmentSource::Studio, &[]);
+    (document.render.width, document.render.height, document.render.samples) = (16, 16, 1);
+    let submitted = |engine: EngineChoice, mib: u64| {
+        let mut session = Session::open(engine).expect("opens");
+        session.limit_memory(mib << 20);
+        session.submit(&document).map(|_| ())
+    };
+    submitted(EngineChoice::Cpu, 60).expect("each mesh once");
+    let refused = submitted(EngineChoice::Gpu, 60).expect_err("one by one");
+    assert!(matches!(refused, SessionError::Instances(_)), "{refused}");
+    let text = refused.to_string();
+    for words in ["triangles of the model's instances", "60 MiB are free", "--engine cpu"] {
+        assert!(text.contains(words), "{text}");
+    }
+    submitted(EngineChoice::Gpu, 400).expect("one by one");
 }
 
 /// Brushed metal shows normals and tangents; shining plaster shows that all triangles are sampled.

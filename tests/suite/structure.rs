@@ -18,16 +18,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("gpu", &["named", "optics", "scene", "job"]),
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
+    ("document", &["named", "optics", "scene", "import", "job"]),
+    ("matching", &["optics", "analysis", "plot", "document"]),
     (
-        "document",
-        &["named", "optics", "scene", "import", "job", "analysis", "plot"],
+        "store",
+        &["named", "optics", "scene", "import", "analysis", "document", "matching"],
     ),
-    ("store", &["named", "optics", "scene", "import", "analysis", "document"]),
     (
         "render",
         &[
-            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "store",
-            "import",
+            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
+            "store", "import",
         ],
     ),
     (
@@ -43,6 +44,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "analysis",
             "plot",
             "document",
+            "matching",
             "store",
             "render",
         ],
@@ -50,7 +52,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "app",
         &[
-            "named", "panics", "optics", "scene", "import", "job", "analysis", "plot", "document", "store", "render",
+            "named", "panics", "optics", "scene", "import", "job", "analysis", "plot", "document", "matching", "store",
+            "render",
         ],
     ),
 ];

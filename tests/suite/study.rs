@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::Duration;
 
-use glossmith::document::technique::{Setting, Technique, techniques};
 use glossmith::document::{Document, MaterialSettings, Strategy};
 use glossmith::gpu::sampling::SamplingMeter;
 use glossmith::gpu::{AdapterKind, GpuDevice};
@@ -15,6 +14,7 @@ use glossmith::render::study::StudyError;
 use glossmith::render::study::ledger::{LedgerOptions, ledger};
 use glossmith::render::study::race::{Race, RaceOptions, Runner, race};
 use glossmith::render::study::references::ReferenceCache;
+use glossmith::render::study::technique::{Setting, Technique, techniques};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use serde_json::Value;

@@ -1,7 +1,7 @@
 //! The editor as a person uses it, with the real renderer behind it, in few pixels.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::{self, NodeId, Role};
@@ -59,6 +59,23 @@ pub(super) fn editor_of(options: Options) -> Editor {
     for pane in [Pane::Lighting, Pane::Curve] {
         harness.state_mut().reveal(pane);
     }
+    harness
+}
+
+/// A window of a size in pixels, as a person has it, whose first picture is finished. Its own files are in `folder`.
+pub(super) fn window_of(document: Document, folder: &Path, [width, height]: [u32; 2]) -> Editor {
+    let made = Options {
+        document: Some(document),
+        resolution: Some(Resolution::Auto),
+        data: Some(folder.join("data")),
+        cache: Some(folder.join("cache")),
+        typed_paths: Some(folder.to_owned()),
+        ..options()
+    };
+    let mut harness: Editor = Harness::builder()
+        .with_size(Vec2::new(width as f32, height as f32))
+        .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
+    settle(&mut harness);
     harness
 }
 

@@ -6,16 +6,14 @@ use std::time::{Duration, Instant};
 
 use egui::Vec2;
 use egui::accesskit::Role;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{Denoise, Document};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::store::examples::EXAMPLES;
 
-use super::ui::{Editor, options, request, see, see_label, settle};
+use super::ui::{Editor, request, see, see_label, settle, window_of};
 use super::ui_hands::{press, type_path};
 use super::ui_study::race_strategies;
 
@@ -58,19 +56,8 @@ fn rest(harness: &mut Editor, seconds: f64) {
 }
 
 /// A window in which something has been done in every panel.
-fn worked_in(folder: &Path, [width, height]: [u32; 2]) -> Editor {
-    let made = Options {
-        document: Some(document()),
-        resolution: Some(Resolution::Auto),
-        data: Some(folder.join("data")),
-        cache: Some(folder.join("cache")),
-        typed_paths: Some(folder.to_owned()),
-        ..options()
-    };
-    let mut harness: Editor = Harness::builder()
-        .with_size(Vec2::new(width as f32, height as f32))
-        .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
-    settle(&mut harness);
+fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
+    let mut harness = window_of(document(), folder, size);
     request(&mut harness, Action::Do(Command::Pin));
     rest(&mut harness, 1.0);
     request(&mut harness, Action::LookFrom(60.0, 15.0));

@@ -3,19 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::Vec2;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{Denoise, Document};
 use glossmith::store::material_by_name;
 use glossmith::store::picture::{load_picture_document, png_bytes};
 use glossmith::store::save_document;
 
 use super::docs::{pages, root, text_of};
-use super::ui::{Editor, options, request, see, see_label, settle, wait};
+use super::ui::{Editor, request, see, see_label, settle, wait, window_of};
 use super::ui_hands::type_path;
 
 /// Width and height of the window, pixels.
@@ -56,19 +53,7 @@ fn document() -> Document {
 }
 
 fn window(folder: &Path) -> Editor {
-    let made = Options {
-        document: Some(document()),
-        resolution: Some(Resolution::Auto),
-        data: Some(folder.join("data")),
-        cache: Some(folder.join("cache")),
-        typed_paths: Some(folder.to_owned()),
-        ..options()
-    };
-    let mut harness: Editor = Harness::builder()
-        .with_size(Vec2::new(SIZE[0] as f32, SIZE[1] as f32))
-        .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
-    settle(&mut harness);
-    harness
+    window_of(document(), folder, SIZE)
 }
 
 fn reveal(harness: &mut Editor, panes: &[Pane]) {

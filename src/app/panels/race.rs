@@ -15,10 +15,10 @@ use crate::app::kit::words::{about, duration, percent};
 use crate::app::kit::{theme, widgets::RowResponse};
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::document::ViewSettings;
-use crate::document::technique::{GROUPS, Technique};
 use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
+use crate::render::study::technique::{GROUPS, Technique};
 
 /// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use crate::analysis::difference::difference;
-use crate::document::match_look::{lobe_of_material, matched_lobe};
 use crate::document::{Document, MaterialSettings};
+use crate::matching::{lobe_of_material, matched_lobe};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::render::EngineKind;

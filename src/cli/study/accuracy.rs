@@ -8,13 +8,13 @@ use image::RgbImage;
 use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits};
 use crate::console::{message, output};
-use crate::document::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;
 use crate::plot::lobe_view::Axis;
 use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_picture_sheet};
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
+use crate::render::study::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::render::{EngineChoice, Session};
 use crate::store::replace::save_by;
 

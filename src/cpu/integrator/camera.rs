@@ -2,8 +2,9 @@
 
 use super::Integrator;
 use super::group::Groups;
-use super::paths::{Paths, Vectors};
+use super::paths::Paths;
 use super::results::Results;
+use super::vectors::Vectors;
 use super::wave::Tile;
 use crate::cpu::recorder::{Recorder, single};
 use crate::instructions;

@@ -6,37 +6,18 @@
 //!
 //! Over a transparent background, alpha is 1 minus the light's luminance.
 
+use super::catcher_hit::CatcherHit;
 use super::paths::Paths;
-use super::{Integrator, PathResult, PathVertex};
+use super::{Integrator, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
 use crate::job::Catcher;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::{catcher_light, catcher_reflectance};
 use crate::scene::surface::SurfacePoint;
 
 /// Dimensions of the catcher's choice to mirror, and (the next one) of the background's blur: beyond those of every path.
 pub const CATCHER_DIMENSION: u32 = 12288;
-
-/// A path's state after its camera ray hit the shadow catcher or not.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum CatcherHit<S> {
-    /// The camera ray did not hit the catcher, or a mirrored path has hit a surface.
-    #[default]
-    Miss,
-    /// The path gathers the light at the catcher, which scales the background.
-    Shadow {
-        /// Whether the background is transparent, so that the light becomes alpha.
-        is_transparent: bool,
-    },
-    /// The path was mirrored: if it escapes, it shows the background with this alpha.
-    Mirrored {
-        /// Linear RGB.
-        background: Vec3<S>,
-        /// See [`PathResult`].
-        alpha: S,
-    },
-}
 
 /// How the shadow catcher affects the lanes of a group.
 #[derive(Clone, Copy)]
@@ -152,30 +133,6 @@ impl<T: Real> Integrator<'_, T> {
         CatcherMasks {
             is_visible,
             is_mirrored,
-        }
-    }
-}
-
-impl<S: Scalar> CatcherHit<S> {
-    /// True if the path's last surface was the mirroring catcher.
-    #[inline(always)]
-    pub(super) fn is_mirrored(&self) -> bool {
-        matches!(self, Self::Mirrored { .. })
-    }
-
-    /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
-    /// light has no shadow.
-    pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
-        match self {
-            Self::Shadow { is_transparent: true } => PathResult {
-                alpha: match is_all_light {
-                    true => S::one() - path.radiance.luminance(),
-                    false => S::zero(),
-                },
-                radiance: Vec3::zero(),
-                ..path
-            },
-            _ => path,
         }
     }
 }

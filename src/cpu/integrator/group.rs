@@ -3,7 +3,8 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use super::paths::{PathOutput, Paths, Vectors};
+use super::paths::{PathOutput, Paths};
+use super::vectors::Vectors;
 use crate::cpu::recorder::{Event, Purpose, Recorder, single};
 use crate::optics::random::random_pairs;
 use crate::optics::real::{Mask, Real, Scalar};

@@ -2,14 +2,15 @@
 //! (MIS).
 
 use super::group::Group;
-use super::paths::{Paths, Vectors, gather};
+use super::paths::Paths;
+use super::shadow_rays::{ShadowRay, ShadowRays};
 use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::layer::{Layers, material_evaluate};
 use crate::optics::material::Material;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
 use crate::scene::environment::{
@@ -417,126 +418,6 @@ impl<T: Real> Integrator<'_, T> {
 fn store_uv<T: Real>(group: &Group<T>, field: &mut [Vec<T::Scalar>; 2], uv: [T; 2]) {
     group.set_number(&mut field[0], group.mask(), uv[0]);
     group.set_number(&mut field[1], group.mask(), uv[1]);
-}
-
-/// Shadow rays as structure of arrays, by path index.
-pub(super) struct ShadowRays<S> {
-    /// Path ids; only of unoccluded rays.
-    ids: Vec<u16>,
-    /// Environment map coordinates; only of unoccluded rays.
-    environment_uv: [Vec<S>; 2],
-    /// True if the ray is to be traced; the other fields are arbitrary otherwise.
-    pub is_pending: Vec<bool>,
-    /// See [`LightSample`].
-    pub direction: Vectors<S>,
-    density: Vec<S>,
-    pub distance: Vec<S>,
-    /// Of the emitter; unused for the environment.
-    radiance: Vectors<S>,
-    /// True for a sample of the environment, whose radiance is looked up later. Always true if no emitters are sampled. Set
-    /// together with the random numbers, for all hits.
-    is_environment: Vec<bool>,
-    /// The material's value (cosine included) times the MIS weight of light sampling.
-    value: Vectors<S>,
-    /// Path throughput before the surface.
-    throughput: Vectors<S>,
-    /// Ray origins.
-    pub origin: Vectors<S>,
-    /// True if the ray is known to be unoccluded: no traversal needed.
-    pub is_known_miss: Vec<bool>,
-    /// Share of the light in [0, 1] that passes.
-    pub visibility: Vec<S>,
-}
-
-impl<S: Scalar> ShadowRays<S> {
-    /// Fields for `count` paths.
-    pub fn new(count: usize) -> Self {
-        let numbers = || vec![S::zero(); count];
-        Self {
-            ids: vec![0; count],
-            environment_uv: [numbers(), numbers()],
-            is_pending: vec![false; count],
-            direction: Vectors::new(count),
-            density: numbers(),
-            distance: numbers(),
-            radiance: Vectors::new(count),
-            is_environment: vec![true; count],
-            value: Vectors::new(count),
-            throughput: Vectors::new(count),
-            origin: Vectors::new(count),
-            is_known_miss: vec![false; count],
-            visibility: numbers(),
-        }
-    }
-
-    /// The shadow ray of one path.
-    pub fn get(&self, index: usize) -> ShadowRay<S> {
-        ShadowRay {
-            origin: self.origin.get(index),
-            direction: self.direction.get(index),
-            distance: self.distance[index],
-            density: self.density[index],
-            value: self.value.get(index),
-            is_environment: self.is_environment[index],
-            is_known_miss: self.is_known_miss[index],
-            visibility: self.visibility[index],
-        }
-    }
-}
-
-impl<S: Scalar, R: Recorder> Paths<S, R> {
-    /// Compacts the fields of unoccluded rays that adding their light needs, in the given order. Emitters' fields are copied
-    /// only if they are sampled.
-    pub(super) fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
-        let (to, from) = (&mut self.unoccluded_rays, &self.shadow_rays);
-        gather(&mut to.ids, &self.state.ids, order);
-        to.direction.gather(&from.direction, order);
-        gather(&mut to.density, &from.density, order);
-        if samples_emitters {
-            to.radiance.gather(&from.radiance, order);
-            gather(&mut to.is_environment, &from.is_environment, order);
-        }
-        to.value.gather(&from.value, order);
-        to.throughput.gather(&from.throughput, order);
-        gather(&mut to.visibility, &from.visibility, order);
-    }
-}
-
-/// The shadow ray of one path; see [`ShadowRays`] for the fields.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ShadowRay<S> {
-    origin: Vec3<S>,
-    direction: Vec3<S>,
-    distance: S,
-    density: S,
-    value: Vec3<S>,
-    is_environment: bool,
-    is_known_miss: bool,
-    visibility: S,
-}
-
-impl<S: Scalar> ShadowRay<S> {
-    fn source(&self) -> Source {
-        if self.is_environment {
-            Source::Environment
-        } else {
-            Source::Surface
-        }
-    }
-
-    /// The recorded event of this ray; `unweighted` is its value without the MIS weight.
-    pub fn event(&self, unweighted: Vec3<S>, visibility: S, radiance: Vec3<S>) -> Event {
-        let (unweighted, kept) = (unweighted.to_f32(), self.value.to_f32());
-        Event::Light {
-            source: self.source(),
-            direction: self.direction.to_f32(),
-            density: single(self.density),
-            value: unweighted,
-            weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / unweighted[i] } else { 0.0 }),
-            visible: single(visibility),
-            radiance: radiance.to_f32(),
-        }
-    }
 }
 
 /// Balance-heuristic weight of BSDF sampling (Veach 1997).

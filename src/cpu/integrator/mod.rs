@@ -3,6 +3,7 @@
 
 mod camera;
 mod catcher;
+mod catcher_hit;
 mod group;
 mod light;
 mod medium;
@@ -10,6 +11,8 @@ mod paths;
 mod rays;
 mod results;
 mod scatter;
+mod shadow_rays;
+mod vectors;
 mod wave;
 
 use std::borrow::Cow;
@@ -31,7 +34,7 @@ use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
-use catcher::CatcherHit;
+use catcher_hit::CatcherHit;
 use group::{Group, Members};
 use paths::{GuideRecord, PathOutput, Paths, StartOptions};
 pub(in crate::cpu) use results::Results;

@@ -7,64 +7,15 @@
 use std::mem::swap;
 
 use super::PathResult;
-use super::catcher::CatcherHit;
-use super::light::ShadowRays;
+use super::catcher_hit::CatcherHit;
+use super::shadow_rays::ShadowRays;
+use super::vectors::{Vectors, gather};
 use crate::cpu::recorder::{Event, Recorder};
 use crate::job::guides::GuideSums;
 use crate::optics::random::{RandomState, Sequence, path_state};
 use crate::optics::real::Scalar;
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::vector::Vec3;
 use crate::scene::Hit;
-
-/// A vector per path, axis by axis.
-pub(super) struct Vectors<S> {
-    pub x: Vec<S>,
-    pub y: Vec<S>,
-    pub z: Vec<S>,
-}
-
-impl<S: Scalar> Vectors<S> {
-    /// Zero vectors.
-    pub fn new(count: usize) -> Self {
-        Self {
-            x: vec![S::zero(); count],
-            y: vec![S::zero(); count],
-            z: vec![S::zero(); count],
-        }
-    }
-
-    #[inline(always)]
-    pub fn get(&self, index: usize) -> Vec3<S> {
-        vec3(self.x[index], self.y[index], self.z[index])
-    }
-
-    #[inline(always)]
-    pub fn set(&mut self, index: usize, value: Vec3<S>) {
-        (self.x[index], self.y[index], self.z[index]) = (value.x, value.y, value.z);
-    }
-
-    pub fn fill(&mut self, value: S) {
-        self.x.fill(value);
-        self.y.fill(value);
-        self.z.fill(value);
-    }
-
-    /// Gathers vectors from `from` by index.
-    #[inline(always)]
-    pub fn gather(&mut self, from: &Self, order: &[u16]) {
-        gather(&mut self.x, &from.x, order);
-        gather(&mut self.y, &from.y, order);
-        gather(&mut self.z, &from.z, order);
-    }
-}
-
-/// Gathers elements of `from` by index: `field[i] = from[order[i]]`.
-#[inline(always)]
-pub(super) fn gather<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
-    for (to, &index) in field.iter_mut().zip(order) {
-        *to = from[usize::from(index)];
-    }
-}
 
 /// What paths need to continue, by index.
 pub(super) struct State<S> {
@@ -172,6 +123,13 @@ pub(super) struct Paths<S, R> {
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
+    /// Compacts the unoccluded shadow rays, in the given order, see [`ShadowRays::gather_unoccluded`].
+    pub(super) fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
+        let (rays, ids) = (&self.shadow_rays, &self.state.ids);
+        self.unoccluded_rays
+            .gather_unoccluded(rays, ids, order, samples_emitters);
+    }
+
     /// Fields for `count` paths that are processed in groups of `lanes`.
     pub fn new(count: usize, lanes: usize, sequence: Sequence) -> Self {
         // The last group loads past the last path.

@@ -2,7 +2,7 @@
 
 use super::PathResult;
 use super::group::Group;
-use super::paths::Vectors;
+use super::vectors::Vectors;
 use crate::job::guides::GuideSums;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::Vec3;

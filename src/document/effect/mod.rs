@@ -5,7 +5,6 @@
 //! specialised against general images loop over the table.
 
 mod horizon;
-mod switches;
 mod table;
 
 use std::borrow::Cow;
@@ -18,7 +17,7 @@ use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 
-pub use switches::{EffectSwitches, Switch, SwitchError};
+pub use super::switches::{EffectSwitches, Switch, SwitchError};
 pub use table::EFFECTS;
 
 /// What the user reads about an effect, and how a scene calls for it.
@@ -49,11 +48,7 @@ impl Effect {
     /// Whether a switch makes a difference: what has no code of its own cannot run needlessly, and nothing could be rendered
     /// without some.
     pub fn can_be(&self, switch: Switch) -> bool {
-        match switch {
-            Switch::Auto => true,
-            Switch::On => self.id.constant().is_some(),
-            Switch::Off => self.remove.is_some(),
-        }
+        switch.can_be_set(self.id)
     }
 }
 
@@ -137,5 +132,17 @@ impl Facts<'_> {
 
     fn is_environment_black(&self) -> bool {
         self.environment.is_black || self.settings.environment_strength == 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn effects_that_nothing_removes_are_needed() {
+        for effect in EFFECTS {
+            assert_eq!(effect.remove.is_none(), effect.id.is_needed(), "{}", effect.name());
+        }
     }
 }

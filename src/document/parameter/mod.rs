@@ -11,7 +11,7 @@ mod text;
 use serde_json::Value as Json;
 
 use super::custom_curve::CustomCurve;
-use super::user_textures::{map_key, target_of_key};
+use super::material_textures::{map_key, target_of_key};
 use super::{Document, MaterialSettings};
 use crate::named::Named;
 use crate::scene::texture::{TextureTarget, UserTexture};

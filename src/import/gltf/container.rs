@@ -12,7 +12,8 @@ use serde::Deserialize as _;
 use serde_json::Value as Json;
 
 use super::json::Plain;
-use crate::files::Files;
+use super::numbers;
+use crate::files::{Files, text_or_latin_1};
 use crate::model_error::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
@@ -82,7 +83,8 @@ impl Document {
     /// Reads a file with its buffers; images are read on demand.
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
-        let Plain(mut raw) = parse(path, text)?;
+        let mut raw = parse(path, text)?;
+        numbers::drop_unreadable(&mut raw, &mut String::new(), report);
         check_version(path, &raw)?;
         complete(&mut raw);
         let mut document = Self {
@@ -233,7 +235,8 @@ impl Document {
         if uri.contains("://") {
             return Err(self.resource(uri, "web addresses are not loaded"));
         }
-        let file = percent_decode_str(uri).decode_utf8_lossy();
+        let file = Cow::from(percent_decode_str(uri));
+        let file = text_or_latin_1(&file);
         self.files.read(&file).map_err(|error| self.resource(&file, error))
     }
 
@@ -276,14 +279,27 @@ fn check<T: serde::de::DeserializeOwned>(part: Json) -> serde_json::Result<()> {
     serde_json::from_value::<T>(part).map(|_| ())
 }
 
-/// Optional lists of a scene: the name of a part, and the replacement of an unreadable one, so that the others keep their
+/// Lists of a scene: the name of a part, and the replacement of an unreadable one, so that the others keep their
 /// indices.
-const DETAILS: [(&str, &str, &str, Check); 7] = [
+const DETAILS: [(&str, &str, &str, Check); 13] = [
+    (
+        "accessors",
+        "an accessor",
+        r#"{"componentType": 5126, "count": 0, "type": "SCALAR"}"#,
+        check::<json::Accessor>,
+    ),
     (
         "animations",
         "an animation",
         r#"{"channels": [], "samplers": []}"#,
         check::<json::Animation>,
+    ),
+    ("buffers", "a buffer", r#"{"byteLength": 0}"#, check::<json::Buffer>),
+    (
+        "bufferViews",
+        "a buffer view",
+        r#"{"buffer": 0, "byteLength": 0}"#,
+        check::<json::buffer::View>,
     ),
     (
         "cameras",
@@ -293,23 +309,38 @@ const DETAILS: [(&str, &str, &str, Check); 7] = [
     ),
     ("images", "an image", "{}", check::<json::Image>),
     ("materials", "a material", "{}", check::<json::Material>),
+    ("meshes", "a mesh", r#"{"primitives": []}"#, check::<json::Mesh>),
+    ("nodes", "a node", "{}", check::<json::Node>),
     ("samplers", "a sampler", "{}", check::<json::texture::Sampler>),
+    ("scenes", "a scene", r#"{"nodes": []}"#, check::<json::Scene>),
     ("skins", "a skin", r#"{"joints": []}"#, check::<json::Skin>),
     ("textures", "a texture", "{}", check::<json::Texture>),
 ];
 
 fn without_broken_details(raw: &mut Json, report: &mut ImportReport) {
+    let mut note = |what: String, error: serde_json::Error, name: &str| {
+        report.note(Fate::Ignored, format!("{what} that cannot be read ({error})"), name);
+    };
     for (list, what, substitute, check) in DETAILS {
         for (index, part) in parts(raw, list).enumerate() {
             if let Err(error) = check(part.clone()) {
                 let name = part["name"]
                     .as_str()
                     .map_or_else(|| format!("{list} {index}"), str::to_owned);
-                report.note(Fate::Ignored, format!("{what} that cannot be read ({error})"), &name);
+                note(what.to_owned(), error, &name);
                 *part = serde_json::from_str(substitute).unwrap_or_default();
             }
         }
     }
+    let Some(members) = raw.as_object_mut() else { return };
+    let asset = serde_json::json!({ "version": "2.0" });
+    members.retain(|key, part| {
+        let alone = serde_json::json!({ "asset": asset, key: part });
+        check::<json::Root>(alone)
+            .map_err(|error| note(format!("\"{key}\""), error, key))
+            .is_ok()
+    });
+    members.entry("asset").or_insert(asset);
 }
 
 /// Adds data that the crate requires and the format leaves optional. Without any nodes, meshes get one each.
@@ -471,8 +502,11 @@ fn next_chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     Some((kind, data, rest))
 }
 
-fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &[u8]) -> Result<T, ModelError> {
-    serde_json::from_slice(text).map_err(|error| {
+/// The JSON of a text, or else of the text with readable numbers.
+fn parse(path: &Path, text: &[u8]) -> Result<Json, ModelError> {
+    let read = serde_json::from_slice(text);
+    let read = read.or_else(|error| serde_json::from_slice(&numbers::readable(text)).map_err(|_| error));
+    read.map(|Plain(json)| json).map_err(|error: serde_json::Error| {
         let reason = if error.is_eof() {
             "its JSON is cut short".to_owned()
         } else {

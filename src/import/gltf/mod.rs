@@ -15,6 +15,7 @@ mod json;
 mod material;
 mod material_extensions;
 mod nodes;
+mod numbers;
 mod pose;
 mod primitive;
 mod specular_glossiness;

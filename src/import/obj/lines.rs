@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use crate::files::text_or_latin_1;
 use crate::scene::report::{Fate, ImportReport};
 
 /// Name of an unnamed material.
@@ -34,7 +35,7 @@ pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
 /// Byte order mark of UTF-8.
 const UTF_8: &[u8] = b"\xef\xbb\xbf";
 
-/// The text of a file in UTF-8 or UTF-16.
+/// The text of a file in UTF-8, UTF-16 or, if it is neither, Latin-1.
 fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     let of_units = |bytes: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = bytes.as_chunks::<2>().0.iter().map(|pair| unit(*pair)).collect();
@@ -43,7 +44,7 @@ fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     match bytes {
         [0xfe, 0xff, rest @ ..] => of_units(rest, u16::from_be_bytes),
         [0xff, 0xfe, rest @ ..] => of_units(rest, u16::from_le_bytes),
-        _ => String::from_utf8_lossy(bytes.strip_prefix(UTF_8).unwrap_or(bytes)),
+        _ => text_or_latin_1(bytes.strip_prefix(UTF_8).unwrap_or(bytes)),
     }
 }
 
@@ -52,7 +53,7 @@ fn has_some_colors(bytes: &[u8]) -> bool {
     let vertices = bytes
         .split(|byte| *byte == b'\n')
         .filter(|line| line.starts_with(b"v "));
-    let mut has_color = vertices.map(|line| words(line) > 4);
+    let mut has_color = vertices.map(|line| words(line) > 6);
     let first = has_color.next();
     has_color.any(|has| Some(has) != first)
 }
@@ -99,23 +100,24 @@ fn are_numbers(words: &[&str]) -> bool {
     words.iter().all(|word| word.parse::<f32>().is_ok())
 }
 
-/// Lines, with those that end in `\` joined to the next. A comment may end in a folder's name.
+/// Lines, with those that end in `\` joined to the next, which become empty. A comment may end in a folder's name.
 fn joined(text: &str) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut continues = false;
+    let mut lines: Vec<String> = Vec::new();
+    // The line that goes on.
+    let mut open = None;
     for line in text.lines() {
-        let (line, next_continues) = match line.trim_end().strip_suffix('\\') {
-            Some(start) if continues || !line.trim_start().starts_with('#') => (start, true),
+        let (line, continues) = match line.trim_end().strip_suffix('\\') {
+            Some(start) if open.is_some() || !line.trim_start().starts_with('#') => (start, true),
             _ => (line, false),
         };
-        match lines.last_mut() {
-            Some(last) if continues => {
-                String::push(last, ' ');
-                last.push_str(line);
-            }
-            _ => lines.push(line.to_owned()),
+        let place = open.unwrap_or(lines.len());
+        if let Some(first) = lines.get_mut(place) {
+            *first = format!("{first} {line}");
+            lines.push(String::new());
+        } else {
+            lines.push(line.to_owned());
         }
-        continues = next_continues;
+        open = continues.then_some(place);
     }
     lines
 }

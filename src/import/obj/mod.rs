@@ -3,6 +3,7 @@
 //! The format is Y up, like ours, with texture coordinates upwards. Its materials are of the 1990s: their exponent becomes
 //! a roughness, and the additions of later exporters (`Pr`, `Pm`, `norm`, …) are taken where they are.
 
+mod damage;
 mod lines;
 mod map;
 mod table;
@@ -15,7 +16,7 @@ pub use self::table::MTL_PARAMETERS;
 
 use self::map::Map;
 use glam::{DVec3, Vec2, Vec3, Vec4};
-use tobj::{LoadError, LoadOptions, Material};
+use tobj::{LoadOptions, LoadResult, Material};
 
 use crate::files::Files;
 use crate::model_error::ModelError;
@@ -28,31 +29,25 @@ use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Te
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
-    let report = RefCell::new(ImportReport::default());
-    let load_options = LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
-    // Some malformed faces make the crate panic.
-    let loaded = contained(|| {
-        tobj::load_obj_buf(
-            &mut BufReader::new(files.import.loading.watched(&*lines::of_model(bytes))),
-            &load_options,
-            |library| read_library(files, library, &report),
-        )
-    });
     let invalid = |reason: String| ModelError::Invalid {
         path: path.to_owned(),
         reason,
     };
+    let text = lines::of_model(bytes);
+    let (read, mut report) = match parse(&text, files) {
+        (Some(Ok(read)), report) => (read, report),
+        _ => {
+            files.import.loading.check()?;
+            let mut damage = ImportReport::default();
+            let (read, mut report) = parse(&damage::mended(&text, &mut damage), files);
+            report.append(damage);
+            let read = read.ok_or_else(|| invalid("its faces contradict each other".to_owned()))?;
+            (read.map_err(|error| invalid(error.to_string()))?, report)
+        }
+    };
     files.import.loading.check()?;
-    let (parts, materials) = loaded
-        .ok_or_else(|| invalid("its faces contradict each other".to_owned()))?
-        .map_err(|error: LoadError| invalid(error.to_string()))?;
+    let (parts, materials) = read;
     let materials = materials.unwrap_or_default();
-    let mut report = report.into_inner();
     let mut slots = Slots::new(files, options, &materials);
     let mut mesh = Mesh::default();
     let mut objects: Vec<ModelObject> = Vec::new();
@@ -67,6 +62,15 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
         if !read.colors.is_empty() {
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
+        }
+        let vertices = part.mesh.positions.len() / 3;
+        for (what, numbers, width) in [
+            ("texture coordinates", &part.mesh.texcoords, 2),
+            ("normals", &part.mesh.normals, 3),
+        ] {
+            if !numbers.is_empty() && numbers.len() != width * vertices {
+                report.note(Fate::Ignored, format!("{what} that only some faces have"), &part.name);
+            }
         }
         let first = mesh.triangles.len();
         mesh.append(read);
@@ -89,6 +93,23 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
         report,
         ..Model::default()
     })
+}
+
+/// Parts and materials of prepared lines, and the report on its libraries; `None` if the crate panics, as it does for some
+/// malformed faces.
+fn parse(text: &[u8], files: &Files) -> (Option<LoadResult>, ImportReport) {
+    let report = RefCell::new(ImportReport::default());
+    let options = LoadOptions {
+        single_index: true,
+        triangulate: true,
+        ignore_points: true,
+        ignore_lines: true,
+    };
+    let read = contained(|| {
+        let mut lines = BufReader::new(files.import.loading.watched(text));
+        tobj::load_obj_buf(&mut lines, &options, |library| read_library(files, library, &report))
+    });
+    (read, report.into_inner())
 }
 
 /// Materials of a library; empty if it is missing.

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::device_choice::{DenoiseDevice, DeviceKind};
-use super::library::{BufferHandle, DeviceHandle, FilterHandle, Functions, Library, LibraryError, message};
+use super::functions::{BufferHandle, DeviceHandle, FilterHandle, Functions, message};
+use super::library_error::LibraryError;
 
 /// `OIDN_STORAGE_HOST` and `OIDN_STORAGE_MANAGED`.
 const STORAGE_HOST: c_int = 1;
@@ -54,8 +55,7 @@ pub(super) struct Device<'a> {
 
 impl<'a> Device<'a> {
     /// The first device that works of those that the choice names.
-    pub(super) fn of(library: &'a Library, choice: DenoiseDevice) -> Result<Self, LibraryError> {
-        let functions = &library.functions;
+    pub(super) fn of(functions: &'a Functions, choice: DenoiseDevice) -> Result<Self, LibraryError> {
         // SAFETY: the library is asked for its devices, and then for each of them by its number.
         let count = unsafe { (functions.get_num_physical_devices)() };
         let kind = |id| DeviceKind::of(unsafe { (functions.get_physical_device_int)(id, c"type".as_ptr()) });
@@ -354,7 +354,7 @@ impl<'a> Filter<'a> {
     }
 }
 
-/// Progress callback over a cancellation flag: a [`ProgressMonitor`](super::library::ProgressMonitor) that returns false to
+/// Progress callback over a cancellation flag: a [`ProgressMonitor`](super::functions::ProgressMonitor) that returns false to
 /// cancel.
 unsafe extern "C" fn continues(cancel: *mut c_void, _share: f64) -> bool {
     // SAFETY: the pointer is that of the flag which `Filter::run` was given.

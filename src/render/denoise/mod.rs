@@ -6,7 +6,9 @@
 mod device_choice;
 pub mod fetch;
 mod filter;
+mod functions;
 mod library;
+mod library_error;
 mod picture;
 
 use std::sync::Arc;
@@ -16,7 +18,8 @@ use std::time::Instant;
 pub use device_choice::DenoiseDevice;
 use filter::{Device, Filter};
 pub use filter::{Guides, Quality};
-pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};
+pub use library::{Library, data_folder};
+pub use library_error::{FOLDER_VARIABLE, LibraryError};
 use picture::NoisyHalf;
 pub use picture::{Denoised, Noisy};
 
@@ -45,7 +48,7 @@ impl Denoiser {
     /// [`LibraryError`] in one line with the remedy.
     pub fn open() -> Result<Self, LibraryError> {
         Ok(Self {
-            device: Arc::new(Device::of(Library::get()?, DenoiseDevice::chosen())?),
+            device: Arc::new(Device::of(&Library::get()?.functions, DenoiseDevice::chosen())?),
             filters: Vec::new(),
             pixels_max: PIXELS_MAX,
         })
@@ -59,7 +62,7 @@ impl Denoiser {
         );
         DenoiseDevice::Cpu.choose();
         self.filters.clear();
-        self.device = Arc::new(Device::of(Library::get()?, DenoiseDevice::Cpu)?);
+        self.device = Arc::new(Device::of(&Library::get()?.functions, DenoiseDevice::Cpu)?);
         Ok(())
     }
 

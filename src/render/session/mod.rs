@@ -77,7 +77,7 @@ impl Session {
     ///
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        Ok(Self::around(Engine::open(choice, true)?, assets))
+        Ok(Self::around(super::choice::open(choice, true)?, assets))
     }
 
     /// Opens an adapter for a kind of traversal.
@@ -87,7 +87,7 @@ impl Session {
     /// [`GpuError`] if the adapter cannot render, or not this way.
     pub fn on_adapter(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, SessionError> {
         let device = adapter.open(traversal)?;
-        let opened = super::engine::gpu(device, "chosen by you".to_owned())?;
+        let opened = super::choice::on_device(device)?;
         Ok(Self::around(opened, Assets::default()))
     }
 
@@ -124,7 +124,7 @@ impl Session {
     ///
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        let mut session = Self::around(Engine::open(choice, false)?, assets);
+        let mut session = Self::around(super::choice::open(choice, false)?, assets);
         session.is_automatic = choice == EngineChoice::Auto;
         let fallback = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, fallback) {
@@ -281,7 +281,11 @@ impl Session {
         let old = self.job.as_deref().filter(|_| is_in_use);
         let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
         let allowed = self.memory_limit.unwrap_or_else(|| memory::free(held));
-        Ok(memory::check(job, is_software_gpu, allowed)?)
+        memory::check(job, is_software_gpu, allowed)?;
+        if self.info.kind == EngineKind::Gpu {
+            memory::check_instances(job, is_software_gpu, allowed)?;
+        }
+        Ok(())
     }
 
     /// Restarts the engine with a job; after an error it continues with the old one.

@@ -11,7 +11,6 @@ use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
 use crate::document::effect::{Effect, Switch};
-use crate::document::technique::{Setting, Technique, converged};
 use crate::document::{Document, PixelFilter, Strategy};
 use crate::job::effect::EffectId;
 use crate::job::plan::Plan;
@@ -19,6 +18,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
 use crate::render::StepDenoiser;
+use crate::render::study::technique::{Setting, Technique, converged};
 use crate::render::{EngineChoice, Session};
 
 /// Minimum samples per pixel of each render by default: two in either half.

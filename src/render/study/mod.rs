@@ -8,6 +8,7 @@ pub mod race;
 pub mod references;
 pub mod sampling;
 pub mod scaling;
+pub mod technique;
 
 use std::time::Duration;
 

@@ -13,11 +13,11 @@ use super::references::{Effort, Reference, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::document::technique::{Technique, converged, most_accurate};
 use crate::job::film::Image;
 use crate::render::StepDenoiser;
 use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
+use crate::render::study::technique::{Technique, converged, most_accurate};
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
 /// Precision of references relative to the target noise, if time permits.

@@ -131,26 +131,15 @@ pub(in crate::scene) struct Bottom<'a> {
 }
 
 impl Wide {
-    /// The closest hit with 0 < t < `t_max` on the instances whose boxes these are; `bottom` gives each.
-    pub fn closest_hit_below<'a>(
+    /// The closest hit with 0 < t < `t_max` on the instances whose boxes these are, or any hit if `ANY`; `bottom` gives each.
+    pub fn hit_below<'a, const ANY: bool>(
         &self,
         level: Level,
         frame: &RayFrame,
         t_max: f32,
         bottom: impl Fn(u32) -> Bottom<'a>,
     ) -> Option<Hit> {
-        dispatch!(level, simd => trace::<_, false>(simd, self, frame, t_max, &bottom))
-    }
-
-    /// Any hit with 0 < t < `t_max` on the instances.
-    pub fn any_hit_below<'a>(
-        &self,
-        level: Level,
-        frame: &RayFrame,
-        t_max: f32,
-        bottom: impl Fn(u32) -> Bottom<'a>,
-    ) -> Option<Hit> {
-        dispatch!(level, simd => trace::<_, true>(simd, self, frame, t_max, &bottom))
+        dispatch!(level, simd => trace::<_, ANY>(simd, self, frame, t_max, &bottom))
     }
 }
 

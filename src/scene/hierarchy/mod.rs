@@ -5,6 +5,7 @@ mod compressed;
 mod instances;
 mod interval;
 mod packet;
+mod packet_trace;
 #[cfg(test)]
 mod tests;
 mod traverse;

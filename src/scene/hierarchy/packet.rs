@@ -1,23 +1,17 @@
-//! Packets of sixteen coherent rays through the CPU's hierarchy. The interval of all rays tests a node's eight boxes first,
-//! so that rays through empty space end at once.
+//! Packets of sixteen coherent rays, and their tests against boxes and triangles.
 //!
 //! Invariant: the test of a ray against a block's box or a triangle gives the same bits as that of a single ray. A ray tests
 //! the triangles of those blocks alone whose boxes it hits, and of hits at equal distance the lowest triangle wins. So a
 //! ray's hit does not depend on the packet that it is in.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f32x8, f32x16, mask32x16};
 
-use super::interval::{ChildId, EntryPoints, RayInterval};
-use super::traverse::{BoxRay, Entry, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, Stack, TriangleRay};
-use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
+use super::traverse::{BoxRay, Entry, HitSink, INVERSE_MAX, RELATIVE_ERROR, SingleRay, TriangleRay};
+use super::wide::{Block, Node, Normals, WIDTH, Wide};
 use crate::scene::Hit;
 
 /// Rays per packet.
 pub const PACKET: usize = 16;
-
-/// At or below this many active rays, they continue as single rays: testing eight boxes or triangles at a time is cheaper
-/// than a nearly empty packet.
-const SINGLE_MAX: u32 = 4;
 
 /// Rays as structure of arrays: `[axis][ray]`.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +84,7 @@ impl Packet {
 #[repr(C, align(64))]
 pub(in crate::scene) struct PacketHits {
     /// Distance of each hit, or the ray's t_max.
-    t: [f32; PACKET],
+    pub(super) t: [f32; PACKET],
     /// Triangle index plus one; 0 without a hit.
     marks: [u32; PACKET],
     /// Twice the signed areas into which the ray divides the projected triangle, each opposite to a corner. Not set for any
@@ -182,70 +176,6 @@ pub fn ray_octant(direction: [f32; 3]) -> usize {
 /// Number of octants: eight, times three longest axes.
 pub const OCTANTS: usize = 24;
 
-impl Wide {
-    /// Updates each ray with its closest hit with 0 < t, if that is nearer than its current one. Traversal starts from
-    /// `entry_points`, or from the root. Returns false, and changes nothing, if the rays are not all in one octant.
-    pub fn closest_hits(
-        &self,
-        level: Level,
-        packet: &Packet,
-        entry_points: Option<&EntryPoints>,
-        hits: &mut PacketHits,
-    ) -> bool {
-        dispatch!(level, simd => trace::<_, false>(simd, self, packet, entry_points, hits))
-    }
-
-    /// The same for any hit of each ray that has none yet.
-    pub fn any_hits(&self, level: Level, packet: &Packet, hits: &mut PacketHits) -> bool {
-        dispatch!(level, simd => trace::<_, true>(simd, self, packet, None, hits))
-    }
-}
-
-/// Traces a packet for closest hits, or for any hits if `ANY`.
-#[inline(always)]
-fn trace<S: Simd, const ANY: bool>(
-    simd: S,
-    wide: &Wide,
-    packet: &Packet,
-    entry_points: Option<&EntryPoints>,
-    hits: &mut PacketHits,
-) -> bool {
-    let Some(octant) = common_octant(simd, packet) else {
-        return false;
-    };
-    if wide.nodes.is_empty() {
-        return true;
-    }
-    let rays = PacketRays::new(simd, packet, wide, octant);
-    let interval = RayInterval::of(simd, &rays, wide);
-    let mut limit = largest(simd, &hits.t);
-    let mut stack = Stack::new();
-    match entry_points {
-        Some(entry_points) => entry_points.push_to(&mut stack),
-        None => interval.push_children(wide, 0, limit, &mut stack),
-    }
-    while let Some(next) = stack.pop_before(limit) {
-        let (parent, child) = ChildId(next.child()).parts();
-        let parent = &wide.nodes[parent];
-        let Some(entered) = rays.intersect_box(parent, child, &hits.t) else {
-            continue;
-        };
-        let target = parent.children[child];
-        let is_closer = if entered.mask.to_bitmask().count_ones() <= SINGLE_MAX {
-            rays.traverse_singly::<ANY>(wide, target, &entered, hits)
-        } else if target & BLOCK == 0 {
-            interval.push_children(wide, target, limit, &mut stack);
-            false
-        } else {
-            rays.intersect_block::<ANY>(wide, (target & !BLOCK) as usize, &entered, hits)
-        };
-        if is_closer {
-            limit = largest(simd, &hits.t);
-        }
-    }
-    true
-}
-
 #[inline(always)]
 pub(super) fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
     f32x16::load_array_ref(simd, lanes)
@@ -256,14 +186,9 @@ fn load_three<S: Simd>(simd: S, axes: &[[f32; PACKET]; 3]) -> [f32x16<S>; 3] {
     [load(simd, &axes[0]), load(simd, &axes[1]), load(simd, &axes[2])]
 }
 
-#[inline(always)]
-fn largest<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32 {
-    simd.reduce_max_f32x16(load(simd, lanes))
-}
-
 /// The octant of all rays; `None` if they differ.
 #[inline(always)]
-fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
+pub(super) fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
     let octant = ray_octant(packet.direction(0));
     let zero = f32x16::splat(simd, 0.0);
     let directions = load_three(simd, &packet.directions);
@@ -291,9 +216,9 @@ fn common_octant<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
 }
 
 /// Result of a packet against a box.
-struct BoxHits<S: Simd> {
+pub(super) struct BoxHits<S: Simd> {
     /// Rays that overlap the box within [0, t_max].
-    mask: mask32x16<S>,
+    pub mask: mask32x16<S>,
     /// Entry distances, at least 0.
     distance: f32x16<S>,
 }
@@ -313,7 +238,7 @@ pub(super) struct PacketRays<S: Simd> {
 
 impl<S: Simd> PacketRays<S> {
     #[inline(always)]
-    fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
+    pub(super) fn new(simd: S, packet: &Packet, wide: &Wide, octant: usize) -> Self {
         let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][octant >> 3];
         let [axis_x, axis_y, along] = axes;
         let direction = load_three(simd, &packet.directions);
@@ -352,7 +277,7 @@ impl<S: Simd> PacketRays<S> {
 
     /// Tests the rays against a child's box; `None` if none hits.
     #[inline(always)]
-    fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
+    pub(super) fn intersect_box(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<BoxHits<S>> {
         let limits = load(self.origin[0].token(), t_max);
         let simd = limits.token();
         let (x, y, z) = (
@@ -387,7 +312,7 @@ impl<S: Simd> PacketRays<S> {
 
     /// Continues below a child with the rays that hit its box, one by one. Returns true if any hit is replaced.
     #[inline(always)]
-    fn traverse_singly<const ANY: bool>(
+    pub(super) fn traverse_singly<const ANY: bool>(
         &self,
         wide: &Wide,
         child: u32,
@@ -437,7 +362,7 @@ impl<S: Simd> PacketRays<S> {
 
     /// Tests the triangles of a block one by one against all rays, and records closer hits. Returns true if there are any.
     #[inline(always)]
-    fn intersect_block<const ANY: bool>(
+    pub(super) fn intersect_block<const ANY: bool>(
         &self,
         wide: &Wide,
         block: usize,

@@ -1,5 +1,7 @@
 //! Hierarchies that are built in parts.
 
+use glam::{DAffine3, DMat3, DVec3};
+
 use super::*;
 use crate::scene::intersect::RayFrame;
 
@@ -84,4 +86,81 @@ fn levels_are_counted_to_the_deepest() {
         "{depth} levels of {} triangles",
         found.len()
     );
+}
+
+/// A mirrored, stretched and sheared placement.
+fn mirrored() -> Placement {
+    let turn = |x: f64, y: f64| DMat3::from_euler(glam::EulerRot::XYZ, x, y, 0.3);
+    let linear = turn(0.4, 1.1) * DMat3::from_diagonal(DVec3::new(-0.3, 0.7, 0.5)) * turn(-0.6, 0.2);
+    Placement::new(DAffine3::from_mat3_translation(linear, DVec3::new(0.3, -0.2, 0.1)))
+}
+
+#[test]
+fn a_placement_moves_normals_tangents_and_areas_as_it_moves_corners() {
+    let placement = mirrored();
+    let place = |corner: [f32; 3]| glam::Vec3::from_array(placement.point(corner));
+    for corners in triangles() {
+        let [a, b, c] = corners.map(glam::Vec3::from_array);
+        let (normal, tangent) = ((b - a).cross(c - a).normalize(), (b - a).normalize());
+        let [placed_a, placed_b, placed_c] = placement.in_order(corners.map(place));
+        let expected = (placed_b - placed_a).cross(placed_c - placed_a).normalize();
+        let placed = glam::Vec3::from_array(placement.normal(normal.to_array()));
+        assert!(placed.dot(expected) > 0.9999, "{placed} and {expected}");
+        for side in [1.0, -1.0] {
+            let [x, y, z, placed_side] = placement.tangent(tangent.to_array(), side);
+            let along = glam::vec3(x, y, z);
+            let expected = (place(b.to_array()) - place(a.to_array())).normalize();
+            assert!(along.dot(expected) > 0.9999, "{along} and {expected}");
+            let bitangent = side * normal.cross(tangent);
+            let expected = place((a + bitangent).to_array()) - place(a.to_array());
+            assert!(placed.cross(along).dot(expected) * placed_side > 0.0, "{corners:?}");
+        }
+    }
+    let tripled = Placement::new(DAffine3::from_scale(DVec3::new(3.0, -3.0, 3.0)));
+    assert!((tripled.area_scale() - 9.0).abs() < 1e-6, "{}", tripled.area_scale());
+}
+
+#[test]
+fn an_instance_is_hit_as_its_triangles_one_by_one() {
+    let (placement, found) = (mirrored(), triangles());
+    let placed: Vec<[[f32; 3]; 3]> = found
+        .iter()
+        .map(|corners| placement.in_order(corners.map(|corner| placement.point(corner))))
+        .collect();
+    let wide = |triangles: &[[[f32; 3]; 3]]| {
+        let box_of = |triangle: u32| triangle_box(triangles[triangle as usize]);
+        let (tree, order) =
+            binary::tree(triangles.len() as u32, u32::MAX, box_of, &Loading::default()).expect("not cancelled");
+        let wide = Wide::new(&tree, u32::MAX, |triangle| triangles[order[triangle as usize] as usize]);
+        (wide, order)
+    };
+    let ((mesh, order), (flat, order_of_flat)) = (wide(&found), wide(&placed));
+    let corners = || placed.iter().flatten();
+    let bound = |pick: fn(f32, f32) -> f32| {
+        [0, 1, 2].map(|axis| corners().map(|corner| corner[axis]).reduce(pick).unwrap_or_default())
+    };
+    let (top, _) = wide(&[triangle_of_box([bound(f32::min), bound(f32::max)])]);
+    let level = crate::instructions::level();
+    let mut met = 0;
+    for i in 0..400 {
+        let angle = i as f32 * 0.37;
+        let origin = [2.0 * angle.cos(), (i % 20) as f32 * 0.05 - 0.5, 2.0 * angle.sin()];
+        let target = placed[i % placed.len()][0];
+        let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis] + 0.02);
+        let frame = RayFrame::new(origin.into(), direction.into());
+        let bottom = |_| Bottom {
+            wide: &mesh,
+            placement: &placement,
+            first: 0,
+        };
+        let hit = top.hit_below::<false>(level, &frame, f32::MAX, bottom);
+        let expected = flat.closest_hit(level, &frame, f32::MAX);
+        let seen = hit.map(|hit| (hit.t, placed[order[hit.triangle as usize] as usize]));
+        let expected = expected.map(|hit| (hit.t, placed[order_of_flat[hit.triangle as usize] as usize]));
+        assert_eq!(seen, expected, "ray {i}");
+        let any = top.hit_below::<true>(level, &frame, f32::MAX, bottom);
+        assert_eq!(any.is_some(), expected.is_some(), "ray {i}");
+        met += usize::from(expected.is_some());
+    }
+    assert!(met > 100, "{met} rays met something");
 }

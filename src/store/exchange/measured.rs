@@ -90,7 +90,7 @@ impl Reflectance {
         }
         let (materials, tables) = compile(std::slice::from_ref(settings));
         let material: Material<f64> = materials[0].cast();
-        let is_sharp = settings.reflects() && !crate::document::match_look::lobe_of_material(settings).has_density();
+        let is_sharp = settings.reflects() && !crate::matching::lobe_of_material(settings).has_density();
         if material_is_mirror(&material) || is_sharp {
             return Err("a mirror's reflection fits in no table; give it some roughness".to_owned());
         }

@@ -2,9 +2,9 @@
 
 use super::report::{Entry, Residual};
 use crate::document::import::{ggx_from_geometric, ggx_under_texture};
-use crate::document::match_look::{lobe_of_material, nearest_ggx};
 use crate::document::material::specular_color;
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
+use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried};
-use crate::document::match_look::lobe_of_material;
+use crate::matching::lobe_of_material;
 use crate::optics::vector::vec3;
 
 /// `.csv` files.

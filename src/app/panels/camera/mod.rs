@@ -132,8 +132,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
                 .on_hover_text("Looks from there.")
                 .clicked()
             {
-                desk.document.camera = bookmark.camera;
-                desk.edits.note("Apply bookmark", "");
+                desk.actions.push(Action::UseBookmark(index));
             }
             // From the right, so that the name has what the buttons leave and none is pushed out of the panel.
             let rest = egui::Layout::right_to_left(egui::Align::Center);

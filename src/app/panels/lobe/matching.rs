@@ -10,7 +10,7 @@ use crate::analysis::fit::Merl;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::widgets;
-use crate::document::match_look::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
+use crate::matching::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::LinePlot;

@@ -14,7 +14,7 @@ use matching::MatchState;
 use super::Panel;
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::document::match_look::lobe_of_material;
+use crate::matching::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;

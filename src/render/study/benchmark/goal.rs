@@ -24,8 +24,8 @@ const REFERENCE_SEEDS: [u32; 2] = [1000, 1001];
 /// Materials of the scenes besides the default one.
 const MATERIALS: [&str; 2] = ["diffuse", "metal 0.25"];
 /// Most turns, after one of few samples that warms kernels and denoiser.
-const TURNS: u32 = 5;
-const WARM: u32 = 0;
+const TURNS: usize = 5;
+const WARM: usize = 0;
 /// Render time in seconds after which the rest is extrapolated: the error falls with the number of samples.
 const PATIENCE: f64 = 4.0;
 
@@ -90,20 +90,15 @@ pub(super) fn goals(
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];
-    for turn in WARM..=TURNS {
-        for (number, times) in times.iter_mut().enumerate() {
-            if slot.is_over_at(turn as usize, number) {
-                break;
-            }
-            let goal = &run.goals[number];
-            let found = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
-            if turn != WARM {
-                times[0].push(found.raw);
-                times[1].extend(found.denoised);
-            }
-            let what = format!("{}, to a clean image: {}", report.name(), goal.name);
-            run.steps.report(what, run.begun.elapsed().as_secs_f64())?;
+    for (turn, number) in slot.turns(TURNS, times.len()) {
+        let goal = &run.goals[number];
+        let found = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
+        if turn != WARM {
+            times[number][0].push(found.raw);
+            times[number][1].extend(found.denoised);
         }
+        let what = format!("{}, to a clean image: {}", report.name(), goal.name);
+        run.report(&what)?;
     }
     for (goal, [raw, denoised]) in std::iter::zip(&run.goals, &times) {
         report.add("to clean", &goal.name, SECONDS, raw);
@@ -127,9 +122,9 @@ struct Times {
 
 impl Goal {
     /// Renders with doubling samples until raw and denoised image are clean.
-    fn times(&self, session: &mut Session, denoiser: Option<&mut Denoiser>, turn: u32) -> Result<Times, StudyError> {
+    fn times(&self, session: &mut Session, denoiser: Option<&mut Denoiser>, turn: usize) -> Result<Times, StudyError> {
         let mut document = self.document.clone();
-        document.render.seed = turn;
+        document.render.seed = turn as u32;
         let mut denoiser = denoiser;
         let (mut denoised, mut before) = (None, None);
         let doublings = if turn == WARM { 2 } else { u32::MAX };

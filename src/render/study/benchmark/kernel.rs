@@ -49,8 +49,7 @@ pub(super) fn kernels(
         }
         let folder = TempDir::new().map_err(|error| StudyError::Folder(error.to_string()))?;
         for seconds in &mut seconds {
-            run.steps
-                .report(format!("{}, kernel", report.name()), run.begun.elapsed().as_secs_f64())?;
+            run.report(&format!("{}, kernel", report.name()))?;
             match in_process(program, adapter, folder.path()) {
                 Ok(time) => seconds.push(time),
                 Err(why) => {

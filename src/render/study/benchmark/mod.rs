@@ -105,6 +105,12 @@ impl Slot {
         self.is_over() && (turn > 1 || scene > 0)
     }
 
+    /// Turns 0 to `last` with every scene in each; in a turn, those for which there is time.
+    fn turns(self, last: usize, scenes: usize) -> impl Iterator<Item = (usize, usize)> {
+        let of_turn = move |turn| (0..scenes).map(move |scene| (turn, scene));
+        (0..=last).flat_map(move |turn| of_turn(turn).take_while(move |(turn, scene)| !self.is_over_at(*turn, *scene)))
+    }
+
     fn left(self) -> Duration {
         self.end.saturating_duration_since(Instant::now())
     }

@@ -30,24 +30,22 @@ pub(super) fn rates(
 ) -> Result<(), StudyError> {
     let mut session = place.open()?;
     let mut found: Vec<Rates> = run.cases.iter().map(|_| Rates::default()).collect();
-    for turn in 0..=run.extent.turns {
-        for (place, (case, rates)) in std::iter::zip(&run.cases, &mut found).enumerate() {
-            if slot.is_over_at(turn, place) {
-                break;
+    for (turn, number) in slot.turns(run.extent.turns, found.len()) {
+        let (case, rates) = (&run.cases[number], &mut found[number]);
+        // The first turn compiles kernels and fills caches.
+        match measured(&mut session, case, turn, run.extent.turn) {
+            Ok([samples, rays]) if turn > 0 => {
+                rates.samples.push(samples);
+                rates.rays.push(rays);
             }
-            // The first turn compiles kernels and fills caches.
-            match measured(&mut session, case, turn, run.extent.turn) {
-                Ok([samples, rays]) if turn > 0 => {
-                    rates.samples.push(samples);
-                    rates.rays.push(rays);
-                }
-                Ok(_) => {}
-                Err(error) => report.leave_out("samples", &case.name, error.to_string()),
-            }
-            let what = format!("{}, {}, turn {turn}", report.name(), case.name);
-            run.steps.report(what, run.begun.elapsed().as_secs_f64())?;
+            Ok(_) => {}
+            Err(error) => report.leave_out("samples", &case.name, error.to_string()),
         }
-        run.measure_pace();
+        let what = format!("{}, {}, turn {turn}", report.name(), case.name);
+        run.report(&what)?;
+        if number == 0 {
+            run.measure_pace();
+        }
     }
     for (case, rates) in std::iter::zip(&run.cases, &found) {
         report.add("samples", &case.name, SAMPLES, &rates.samples);
@@ -104,19 +102,13 @@ pub(super) fn ray_queries(
     }
     let count = run.cases.len().min(TRAVERSED);
     let mut found = vec![[const { Vec::new() }; 2]; count];
-    for turn in 0..=run.extent.turns {
-        for (number, of_case) in found.iter_mut().enumerate() {
-            if slot.is_over_at(turn, number) {
-                break;
+    for (turn, number) in slot.turns(run.extent.turns, count) {
+        for (session, rates) in sessions.iter_mut().zip(&mut found[number]) {
+            let [_, rays] = measured(session, &run.cases[number], turn, run.extent.turn)?;
+            if turn > 0 {
+                rates.push(rays);
             }
-            for (session, rates) in sessions.iter_mut().zip(of_case) {
-                let [_, rays] = measured(session, &run.cases[number], turn, run.extent.turn)?;
-                if turn > 0 {
-                    rates.push(rays);
-                }
-                let what = format!("{}, ray queries, turn {turn}", report.name());
-                run.steps.report(what, run.begun.elapsed().as_secs_f64())?;
-            }
+            run.report(&format!("{}, ray queries, turn {turn}", report.name()))?;
         }
     }
     for (case, of_case) in std::iter::zip(&run.cases, &found) {

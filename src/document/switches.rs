@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::Effect;
 use crate::job::effect::EffectId;
 use crate::named::named;
 
@@ -17,6 +16,18 @@ named! {
         Auto, "auto", "auto", "Simulated where the scene calls for it.";
         On, "on", "on", "Its code runs whether it is needed or not: to see what it costs.";
         Off, "off", "off", "Removed from the scene: to see what it does to the image.";
+    }
+}
+
+impl Switch {
+    /// Whether it makes a difference to an effect: what has no code of its own cannot run needlessly, and nothing could be
+    /// rendered without some.
+    pub fn can_be_set(self, effect: EffectId) -> bool {
+        match self {
+            Self::Auto => true,
+            Self::On => effect.constant().is_some(),
+            Self::Off => !effect.is_needed(),
+        }
     }
 }
 
@@ -54,10 +65,10 @@ impl EffectSwitches {
         }
     }
 
-    /// Sets the switch of an effect; to automatic where it can't be set so ([`Effect::can_be`]).
+    /// Sets the switch of an effect; to automatic where it can't be set so ([`Switch::can_be_set`]).
     pub fn set(&mut self, effect: EffectId, switch: Switch) {
         let bit = bit(effect);
-        let is_possible = Effect::of(effect).can_be(switch);
+        let is_possible = switch.can_be_set(effect);
         self.on &= !bit;
         self.off &= !bit;
         match switch {
@@ -75,20 +86,19 @@ pub enum SwitchError {
     #[error("no effect is called {0}; there are {names}", names = names(|_| true))]
     Unknown(String),
     /// It is always there.
-    #[error("nothing can be rendered without {0}; what can be removed: {names}", names = names(|e| e.can_be(Switch::Off)))]
+    #[error("nothing can be rendered without {0}; what can be removed: {names}", names = names(|effect| Switch::Off.can_be_set(effect)))]
     Needed(String),
     /// It is simulated where it is called for, and has no code that could run besides.
-    #[error("{0} has no code that could run where it is not called for; what has: {names}", names = names(|e| e.can_be(Switch::On)))]
+    #[error("{0} has no code that could run where it is not called for; what has: {names}", names = names(|effect| Switch::On.can_be_set(effect)))]
     NoCode(String),
     /// Names to keep and changes to what the scene calls for.
     #[error("give either the names of the effects to keep, or changes such as +anisotropy,-ground")]
     Mixed,
 }
 
-fn names(chosen: fn(&Effect) -> bool) -> String {
-    let effects = EffectId::ALL.iter().map(|id| Effect::of(*id));
-    let names: Vec<_> = effects.filter(|effect| chosen(effect)).map(Effect::name).collect();
-    names.join(", ")
+fn names(chosen: fn(EffectId) -> bool) -> String {
+    let chosen = EffectId::ALL.iter().filter(|effect| chosen(**effect));
+    chosen.map(|effect| effect.name()).collect::<Vec<_>>().join(", ")
 }
 
 /// `auto`; `all`, needed or not; the names of the effects to keep, with commas between, all others that can be removed
@@ -122,7 +132,7 @@ impl FromStr for EffectSwitches {
                 _ => Switch::Auto,
             };
             match switch {
-                _ if Effect::of(id).can_be(switch) => {}
+                _ if switch.can_be_set(id) => {}
                 Switch::On => return Err(SwitchError::NoCode(name.to_owned())),
                 _ => return Err(SwitchError::Needed(name.to_owned())),
             }

@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::MaterialSettings;
 use crate::analysis::fit::{CurveTarget, Merl, fit_curve, roughness};
 use crate::analysis::sphere_grid::{Side, SphereGrid};
+use crate::document::MaterialSettings;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::{LobeModel, NORMAL, view_direction};

@@ -1,12 +1,14 @@
 //! PLY files, of text or bytes in either order, by the ply-rs crate: places, normals, colours, texture coordinates, and
 //! faces of any number of corners.
 
-use std::io::BufReader;
+mod damage;
+
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Encoding, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
 
 use crate::model_error::ModelError;
 use crate::optics::tone::linear_from_srgb;
@@ -100,51 +102,28 @@ impl PropertyAccess for Skipped {
 
 /// Loads the contents of a PLY file.
 pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
-    let invalid = |error: &dyn std::fmt::Display| ModelError::Invalid {
+    let invalid = |reason: String| ModelError::Invalid {
         path: path.to_owned(),
-        reason: error.to_string().replace('\n', " "),
+        reason: reason.replace('\n', " "),
     };
-    let mut reader = Reader::new(BufReader::new(loading.watched(bytes)));
-    let (vertex, face, skipped) = (Parser::<Vertex>::new(), Parser::<Face>::new(), Parser::<Skipped>::new());
-    let header = vertex.read_header(&mut reader).map_err(|error| invalid(&error))?;
-    let mut vertices = Vec::new();
-    let mut faces = Vec::new();
+    let read_header = |reader: &mut Reader<_>| {
+        let read = Parser::<Vertex>::new().read_header(reader);
+        read.map_err(|error| invalid(error.to_string()))
+    };
     let mut report = ImportReport::default();
-    for element in header.elements.values() {
-        if element.properties.is_empty() && header.encoding != Encoding::Ascii {
-            // Empty elements take no bytes, so that only their count would end the reading.
-            let what = format!("elements called {}, which are empty", element.name);
-            report.count(Fate::Ignored, what, "", element.count);
-            continue;
-        }
-        let read = match element.name.as_str() {
-            "vertex" => vertex
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| vertices = read),
-            "face" => face
-                .read_payload_for_element(&mut reader, element, &header)
-                .map(|read| faces = read),
-            name => {
-                report.count(Fate::Ignored, format!("elements called {name}"), "", element.count);
-                skipped
-                    .read_payload_for_element(&mut reader, element, &header)
-                    .map(drop)
-            }
-        };
+    let mut reader = Reader::new(BufReader::new(loading.watched(bytes)));
+    let header = read_header(&mut reader)?;
+    let mut read = elements(&mut reader, &header, &mut report);
+    loading.check()?;
+    if read.is_err() && header.encoding == Encoding::Ascii {
+        report = ImportReport::default();
+        let text = damage::mended(bytes, &header, &mut report);
+        let mut reader = Reader::new(BufReader::new(loading.watched(text.as_slice())));
+        read_header(&mut reader)?;
+        read = elements(&mut reader, &header, &mut report);
         loading.check()?;
-        if let Err(error) = read {
-            // The data before the damage may suffice.
-            if vertices.is_empty() || faces.is_empty() {
-                return Err(invalid(&error));
-            }
-            report.note(
-                Fate::Missing,
-                format!("what follows a breach of the format ({error})"),
-                "",
-            );
-            break;
-        }
     }
+    let (vertices, faces) = read.map_err(invalid)?;
     let mut slot = Slot::neutral("default");
     loading.step("normals and tangents")?;
     let mesh = assemble(&vertices, &faces, &mut report, loading);
@@ -159,6 +138,49 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
         report,
         ..Model::default()
     })
+}
+
+/// Vertices and faces of a file after its header; the reason if there are none of either before it breaks the format.
+fn elements<R: BufRead>(
+    reader: &mut Reader<R>,
+    header: &Header,
+    report: &mut ImportReport,
+) -> Result<(Vec<Vertex>, Vec<Face>), String> {
+    let (vertex, face, skipped) = (Parser::<Vertex>::new(), Parser::<Face>::new(), Parser::<Skipped>::new());
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for element in header.elements.values() {
+        if element.properties.is_empty() && header.encoding != Encoding::Ascii {
+            // Empty elements take no bytes, so that only their count would end the reading.
+            let what = format!("elements called {}, which are empty", element.name);
+            report.count(Fate::Ignored, what, "", element.count);
+            continue;
+        }
+        let read = match element.name.as_str() {
+            "vertex" => vertex
+                .read_payload_for_element(reader, element, header)
+                .map(|read| vertices = read),
+            "face" => face
+                .read_payload_for_element(reader, element, header)
+                .map(|read| faces = read),
+            name => {
+                report.count(Fate::Ignored, format!("elements called {name}"), "", element.count);
+                skipped.read_payload_for_element(reader, element, header).map(drop)
+            }
+        };
+        if let Err(error) = read {
+            // The data before the damage may suffice.
+            if vertices.is_empty() || faces.is_empty() {
+                return Err(error.to_string());
+            }
+            report.note(
+                Fate::Missing,
+                format!("what follows a breach of the format ({error})"),
+                "",
+            );
+            break;
+        }
+    }
+    Ok((vertices, faces))
 }
 
 /// Triangles of vertices and faces.

@@ -10,11 +10,11 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-use super::effect::{EFFECTS, Effect, EffectSwitches, Switch, without_what_is_off};
-use super::match_look::{lobe_of_material, matched_lobe_and_curve};
-use super::{Denoise, Document, RenderSettings, Strategy, ViewSettings};
+use crate::document::effect::{EFFECTS, Effect, EffectSwitches, Switch, without_what_is_off};
+use crate::document::{Denoise, Document, RenderSettings, Strategy, ViewSettings};
 use crate::job::effect::EffectId;
 use crate::job::plan::Plan;
+use crate::matching::{lobe_of_material, matched_lobe_and_curve};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;

@@ -1,13 +1,15 @@
 //! "Match look": the material whose highlight comes closest to another lobe's or to a measured one's.
 
+pub mod measured;
+
 use std::sync::Arc;
 
-use super::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN};
-use super::{MaterialSettings, measured_look};
 use crate::analysis::fit::{
     CurveFit, CurveTarget, Measure, Merl, Nearest, fit_curve, nearest_roughness, roughness, total_variation,
 };
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
+use crate::document::MaterialSettings;
+use crate::document::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN};
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::model::{LobeModel, roughness_min, view_direction};
 use crate::optics::lobe::{Horizon, Lobe};
@@ -92,7 +94,7 @@ pub struct LookMatch {
     /// The fitted curve.
     pub curve: Option<CustomCurve>,
     /// Colours of a measured material.
-    pub colors: Option<measured_look::Colors>,
+    pub colors: Option<measured::Colors>,
 }
 
 impl LookMatch {
@@ -159,7 +161,7 @@ impl<'a> TargetProfile<'a> {
             Target::Lobe(model) if !model.is_symmetric() => Err(MatchError::Anisotropic),
             Target::Lobe(_) => Ok(profile),
             Target::Measured { merl, .. } => {
-                let base = measured_look::base_albedo(merl, view_angle_rad);
+                let base = measured::base_albedo(merl, view_angle_rad);
                 profile.base_albedo = base.ok_or(MatchError::NoHighlight)?;
                 Ok(profile)
             }
@@ -170,7 +172,7 @@ impl<'a> TargetProfile<'a> {
     pub fn value(&self, wi: Vec3<f64>) -> f64 {
         match self.target {
             Target::Lobe(model) => model.evaluate(self.wo, wi)[0],
-            Target::Measured { merl, .. } => measured_look::highlight(merl, self.wo, wi, self.base_albedo),
+            Target::Measured { merl, .. } => measured::highlight(merl, self.wo, wi, self.base_albedo),
         }
     }
 }
@@ -212,7 +214,7 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
     }
     let colors = match target {
         Target::Lobe(_) => None,
-        Target::Measured { merl, .. } => Some(measured_look::colors(merl, view_angle_rad, &after.model)),
+        Target::Measured { merl, .. } => Some(measured::colors(merl, view_angle_rad, &after.model)),
     };
     Ok(LookMatch {
         view_angle_deg,

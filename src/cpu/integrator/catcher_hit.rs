@@ -1,0 +1,49 @@
+//! What a path has met of the shadow catcher.
+
+use super::PathResult;
+use crate::optics::real::Scalar;
+use crate::optics::vector::Vec3;
+
+/// A path's state after its camera ray hit the shadow catcher or not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) enum CatcherHit<S> {
+    /// The camera ray did not hit the catcher, or a mirrored path has hit a surface.
+    #[default]
+    Miss,
+    /// The path gathers the light at the catcher, which scales the background.
+    Shadow {
+        /// Whether the background is transparent, so that the light becomes alpha.
+        is_transparent: bool,
+    },
+    /// The path was mirrored: if it escapes, it shows the background with this alpha.
+    Mirrored {
+        /// Linear RGB.
+        background: Vec3<S>,
+        /// See [`PathResult`].
+        alpha: S,
+    },
+}
+
+impl<S: Scalar> CatcherHit<S> {
+    /// True if the path's last surface was the mirroring catcher.
+    #[inline(always)]
+    pub(super) fn is_mirrored(&self) -> bool {
+        matches!(self, Self::Mirrored { .. })
+    }
+
+    /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
+    /// light has no shadow.
+    pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
+        match self {
+            Self::Shadow { is_transparent: true } => PathResult {
+                alpha: match is_all_light {
+                    true => S::one() - path.radiance.luminance(),
+                    false => S::zero(),
+                },
+                radiance: Vec3::zero(),
+                ..path
+            },
+            _ => path,
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Vectors of the paths of a wave as structure of arrays.
+
+use crate::optics::real::Scalar;
+use crate::optics::vector::{Vec3, vec3};
+
+/// A vector per path, axis by axis.
+pub(super) struct Vectors<S> {
+    pub x: Vec<S>,
+    pub y: Vec<S>,
+    pub z: Vec<S>,
+}
+
+impl<S: Scalar> Vectors<S> {
+    /// Zero vectors.
+    pub fn new(count: usize) -> Self {
+        Self {
+            x: vec![S::zero(); count],
+            y: vec![S::zero(); count],
+            z: vec![S::zero(); count],
+        }
+    }
+
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Vec3<S> {
+        vec3(self.x[index], self.y[index], self.z[index])
+    }
+
+    #[inline(always)]
+    pub fn set(&mut self, index: usize, value: Vec3<S>) {
+        (self.x[index], self.y[index], self.z[index]) = (value.x, value.y, value.z);
+    }
+
+    pub fn fill(&mut self, value: S) {
+        self.x.fill(value);
+        self.y.fill(value);
+        self.z.fill(value);
+    }
+
+    /// Gathers vectors from `from` by index.
+    #[inline(always)]
+    pub fn gather(&mut self, from: &Self, order: &[u16]) {
+        gather(&mut self.x, &from.x, order);
+        gather(&mut self.y, &from.y, order);
+        gather(&mut self.z, &from.z, order);
+    }
+}
+
+/// Gathers elements of `from` by index: `field[i] = from[order[i]]`.
+#[inline(always)]
+pub(super) fn gather<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
+    for (to, &index) in field.iter_mut().zip(order) {
+        *to = from[usize::from(index)];
+    }
+}
