@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{EffectSwitches, Switch};
 use super::parameter::{ParameterError, SETTINGS, Stage};
-use super::{AreaLight, Document, GroundSettings};
+use super::{AreaLight, Document, GroundSettings, Reference};
 use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
 use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::{Grade, ToneCurve};
-use crate::scene::camera::PixelFilter;
+use crate::scene::camera::{PixelFilter, Projection};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 
 /// The ranges of the settings, both ends included.
@@ -117,9 +117,13 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// The area lights that are not muted.
+    /// The area lights that are not muted: first those that the camera sees.
     pub fn shining(&self) -> impl Iterator<Item = &AreaLight> {
-        self.area_lights.iter().filter(|light| !light.is_muted)
+        let of = |is_hidden: bool| {
+            let lights = self.area_lights.iter();
+            lights.filter(move |light| !light.is_muted && light.is_hidden == is_hidden)
+        };
+        of(false).chain(of(true))
     }
 }
 
@@ -167,8 +171,11 @@ pub struct CameraSettings {
     pub distance: Option<f64>,
     /// The camera's place; replaces yaw, pitch and distance.
     pub position: Option<[f64; 3]>,
-    /// Vertical field of view, degrees.
+    /// Vertical field of view, degrees; of an orthographic camera what it would see of its target.
     pub fov_deg: f64,
+    /// How it projects.
+    #[serde(skip_serializing_if = "is_perspective")]
+    pub projection: Projection,
     /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
     pub roll_deg: f64,
     /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
@@ -186,11 +193,16 @@ impl Default for CameraSettings {
             distance: None,
             position: None,
             fov_deg: 30.0,
+            projection: Projection::default(),
             roll_deg: 0.0,
             aperture: 0.0,
             focus_distance: None,
         }
     }
+}
+
+fn is_perspective(projection: &Projection) -> bool {
+    *projection == Projection::Perspective
 }
 
 /// A camera to come back to.
@@ -228,6 +240,9 @@ pub struct ViewSettings {
     /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lut: Option<PathBuf>,
+    /// An image to work from, which the viewport shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference: Option<Reference>,
     /// Whether the image is denoised, and how.
     pub denoise: Denoise,
     /// When that is done in the window.
@@ -251,6 +266,7 @@ impl Default for ViewSettings {
             vignette: 0.0,
             glare: 0.0,
             lut: None,
+            reference: None,
             denoise: Denoise::default(),
             denoise_when: DenoiseWhen::default(),
         }
