@@ -22,6 +22,8 @@ mod bounded;
 mod bounds;
 #[path = "suite/brushed.rs"]
 mod brushed;
+#[path = "suite/camera_views.rs"]
+mod camera_views;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/circles.rs"]
@@ -272,6 +274,8 @@ mod ui_strangers;
 mod ui_study;
 #[path = "suite/ui_textures.rs"]
 mod ui_textures;
+#[path = "suite/ui_views.rs"]
+mod ui_views;
 #[path = "suite/ui_windows.rs"]
 mod ui_windows;
 #[path = "suite/ui_workshop.rs"]

@@ -350,7 +350,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                 if PLAN_ALPHA == 1u && !is_shadow_ray {
                     xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
                 }
-                intersection = intersect(along, length, is_shadow_ray, xi, &rays);
+                let is_camera_ray = bounce == 0u && !is_shadow_ray;
+                intersection = intersect(along, length, is_shadow_ray, is_camera_ray, xi, &rays);
             }
             if !is_shadow_ray {
                 hit = intersection.hit;
@@ -439,7 +440,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             guides.normal = material_normal(material, point.surface, layers);
             if bounce == 0u {
                 guides.hits = 1.0;
-                guides.depth = hit.t * dot(ray.direction, camera.forward);
+                guides.depth = hit.t * dot(ray.direction, camera.forward) - camera.parallel_from;
             }
         }
         // Emission that the path hit by BSDF sampling, weighted against light sampling.

@@ -31,11 +31,16 @@ fn pixel_ray(camera: Camera, pixel: vec2u, image_size: vec2u, state: RandomState
 
 fn camera_ray(camera: Camera, place: vec2f, image_size: vec2u, xi_lens: vec2f) -> Ray {
     let ndc = 2.0 * place / vec2f(image_size) - 1.0;
-    let along = camera.forward + camera.right * ndc.x - camera.up * ndc.y;
+    var origin = camera.origin;
+    var along = camera.forward + camera.right * ndc.x - camera.up * ndc.y;
+    if camera.parallel_from > 0.0 {
+        origin = camera.origin + camera.right * ndc.x - camera.up * ndc.y;
+        along = camera.forward;
+    }
     if camera.lens_radius <= 0.0 {
-        return Ray(camera.origin, normalize(along));
+        return Ray(origin, normalize(along));
     }
     let disc = uniform_disc(xi_lens) * camera.lens_radius;
     let shift = normalize(camera.right) * disc.x + normalize(camera.up) * disc.y;
-    return Ray(camera.origin + shift, normalize(along * camera.focus_distance - shift));
+    return Ray(origin + shift, normalize(along * camera.focus_distance - shift));
 }

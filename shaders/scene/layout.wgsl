@@ -10,11 +10,12 @@ struct Camera {
     lens_radius: f32,
     forward: vec3f,
     focus_distance: f32,
-    // Half the image's width and height at distance 1.
+    // Half the image's width and height at distance 1; with parallel rays themselves.
     right: vec3f,
     filter_kind: u32,
     up: vec3f,
-    reserved: u32,
+    // How far behind the camera parallel rays start, which is where the origin is; 0 for a perspective.
+    parallel_from: f32,
 }
 
 struct Globals {
@@ -52,8 +53,10 @@ struct Globals {
     around_triangle: u32,
     // The slot of the solid around the camera.
     camera_medium: u32,
+    // From this slot on the camera does not see surfaces.
+    first_hidden_slot: u32,
     // To a multiple of 16 bytes.
-    unused: vec2u,
+    unused: u32,
     // 1: coarse triangles are rounded according to their normals.
     rounds_surfaces: u32,
     // Throughput limit of Russian roulette for paths with few rough bounces.

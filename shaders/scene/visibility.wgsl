@@ -18,7 +18,14 @@ struct Intersection {
 }
 
 // The closest hit of a ray, which passes surfaces at random by their opacity; or the transmittance of a shadow ray.
-fn intersect(ray: Ray, length: f32, is_shadow_ray: bool, opacity_number: f32, rays: ptr<function, u32>) -> Intersection {
+fn intersect(
+    ray: Ray,
+    length: f32,
+    is_shadow_ray: bool,
+    is_camera_ray: bool,
+    opacity_number: f32,
+    rays: ptr<function, u32>,
+) -> Intersection {
     if PLAN_ALPHA == 0u {
         *rays += 1u;
         let hit = trace(ray.origin, ray.direction, length, is_shadow_ray);
@@ -37,7 +44,8 @@ fn intersect(ray: Ray, length: f32, is_shadow_ray: bool, opacity_number: f32, ra
         }
         // Before the opacity, which reads the same triangle: drivers load it once.
         let passed = passed_origin(hit, ray.direction);
-        let opacity = hit_opacity(hit);
+        let is_hidden = is_camera_ray && slot_at(hit.triangle) >= globals.first_hidden_slot;
+        let opacity = select(hit_opacity(hit), 0.0, is_hidden);
         distance += hit.t;
         if is_shadow_ray {
             intersection.transmittance *= 1.0 - opacity;

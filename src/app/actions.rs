@@ -44,6 +44,8 @@ pub enum Action {
     UseMaterial(Box<MaterialSettings>),
     /// Asks for a table of colours for the image.
     ChooseLut,
+    /// Asks for a reference image.
+    ChooseReference,
     /// Asks for an image to assign to the selected material.
     ChooseTexture(TextureTarget),
     /// Asks where to write a material for another program.
@@ -52,6 +54,8 @@ pub enum Action {
     CopyAs(Box<MaterialSettings>, &'static str),
     /// Selects a material slot.
     SelectSlot(usize),
+    /// Selects several material slots, the first of which is shown.
+    SelectSlots(Vec<usize>),
     /// Shows everything that made a sample (from 0) of a pixel of the image.
     Explain([u32; 2], u32),
     /// Changes the user's folder of materials.
@@ -174,7 +178,7 @@ commands! {
     ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
     TypePaths, File, "Type file names", "Files are chosen by typing their paths in the window; or again in the system's dialog.", None, 0;
-    Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
+    Save, File, "Save project", "Saves materials, light, camera and settings (.glossmith.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
     WatchFolder, File, "Watch a folder…", "Shows the materials and environments of a folder among the presets, as they come and go.", None, 1;
@@ -193,6 +197,10 @@ commands! {
     PasteMaterial, Edit, "Paste material", "Gives the selected materials what was copied.", None, 1;
     FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
     FrameSelected, View, "Frame selected", "Moves the camera so that the selected objects are seen, or the surfaces of the selected material.", keys(Modifiers::SHIFT, Key::F), 0;
+    FrontView, View, "Front view", "Looks from the front, in parallel rays.", key(Key::Num1), 0;
+    SideView, View, "Side view", "Looks from the right side, in parallel rays.", key(Key::Num3), 0;
+    TopView, View, "Top view", "Looks from above, in parallel rays.", key(Key::Num7), 0;
+    ToggleProjection, View, "Perspective or orthographic", "Changes between a perspective and parallel rays.", key(Key::Num5), 0;
     ShowObjects, View, "Show all objects", "Shows the objects again that were hidden.", None, 0;
     Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;

@@ -15,6 +15,7 @@ use crate::app::services::library::Library;
 use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
 use crate::app::services::recent::Recent;
+use crate::app::services::reference::ReferenceImage;
 use crate::app::services::selection::Selection;
 use crate::app::services::shelves::Shelves;
 use crate::app::services::snapshots::Snapshots;
@@ -92,6 +93,8 @@ pub(super) struct Shared {
     pub(super) compare: Compare,
     /// Renders that go on beside the window.
     pub(super) queue: Queue,
+    /// What is shown beside the render.
+    pub(super) reference: ReferenceImage,
 }
 
 /// What a click in the viewport can be for instead of choosing.
@@ -191,6 +194,14 @@ impl Desk<'_> {
     /// The material of the selected slot.
     pub(super) fn material(&self) -> MaterialSettings {
         self.document.material(self.shared.slot)
+    }
+
+    /// The slots of the model whose materials are as asked for.
+    pub(super) fn slots_where(&self, is_wanted: impl Fn(&MaterialSettings) -> bool) -> Vec<usize> {
+        let count = self.scene().map_or(0, |scene| scene.model.slots.len());
+        (0..count)
+            .filter(|slot| is_wanted(&self.document.material(*slot)))
+            .collect()
     }
 
     /// Replaces the material of the selected slot; slots before it keep what they show. What is another in it becomes the

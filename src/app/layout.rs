@@ -1,11 +1,12 @@
 //! The panels and how they are docked.
 
-use egui::{Color32, Stroke, Ui, Visuals, WidgetText};
+use egui::{Color32, Response, Sense, Stroke, TextStyle, Ui, Vec2, Visuals, WidgetInfo, WidgetText, vec2};
 use egui_tiles::{
     Behavior, Container, Linear, LinearDir, ResizeState, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles,
     Tree, UiResponse,
 };
 
+use crate::app::actions::Action;
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::pane::Home;
@@ -17,6 +18,12 @@ use crate::app::viewport::Viewport;
 /// Shares of the window's width: at 1366 points all tabs fit.
 const LEFT_SHARE: f32 = 0.205;
 const RIGHT_SHARE: f32 = 0.25;
+
+/// To either side of a tab's title, points.
+const TAB_SPACING: f32 = 7.0;
+/// Width of the button of the manual behind the tabs, and of that for more of them, points.
+const HELP_WIDTH: f32 = 36.0;
+const MORE_WIDTH: f32 = 34.0;
 
 /// Panels in which the look is made: those that are open in *Look*.
 const LOOK_PANES: [Pane; 8] = [
@@ -144,11 +151,92 @@ fn titles(tiles: &Tiles<Pane>, tile: TileId) -> Vec<&'static str> {
     }
 }
 
+/// The text of a tab.
+fn tab_text(ui: &Ui, tiles: &Tiles<Pane>, tile: TileId) -> std::sync::Arc<egui::Galley> {
+    let font = TextStyle::Button.resolve(ui.style());
+    // Painted in the colour of its state.
+    ui.painter()
+        .layout_no_wrap(titles(tiles, tile).join(" | "), font, Color32::PLACEHOLDER)
+}
+
+/// The tabs for which there is no room: behind the others they would be cut off in the middle of a word, and stand in a
+/// menu instead. The tab in front always has room.
+pub(super) fn hidden_tabs(ui: &Ui, tree: &Tree<Pane>) -> Vec<TileId> {
+    let tiles = &tree.tiles;
+    let of_bar = |(bar, tile): (&TileId, &Tile<Pane>)| {
+        let Tile::Container(Container::Tabs(tabs)) = tile else {
+            return Vec::new();
+        };
+        let is_front = |tile: &TileId| tabs.active == Some(*tile);
+        let width = |tile: TileId| tab_text(ui, tiles, tile).size().x + 2.0 * TAB_SPACING;
+        let mut open: Vec<TileId> = tabs
+            .children
+            .iter()
+            .copied()
+            .filter(|tile| tiles.is_visible(*tile))
+            .collect();
+        let room = tiles.rect(*bar).map_or(f32::INFINITY, |rect| rect.width() - HELP_WIDTH);
+        if open.iter().map(|tile| width(*tile)).sum::<f32>() <= room {
+            return Vec::new();
+        }
+        open.sort_by_key(|tile| !is_front(tile));
+        let mut taken = MORE_WIDTH;
+        open.retain(|tile| {
+            let after = taken + width(*tile);
+            let is_hidden = after > room && !is_front(tile);
+            if !is_hidden {
+                taken = after;
+            }
+            is_hidden
+        });
+        open
+    };
+    tiles.iter().flat_map(of_bar).collect()
+}
+
+/// The panels of a tile, the first of which stands for it.
+fn first_pane(tiles: &Tiles<Pane>, tile: TileId) -> Option<Pane> {
+    match tiles.get(tile)? {
+        Tile::Pane(pane) => Some(*pane),
+        Tile::Container(container) => container.children().find_map(|child| first_pane(tiles, *child)),
+    }
+}
+
 /// Shows panes.
 pub(super) struct Panes<'a, 'd> {
     pub(super) desk: &'a mut Desk<'d>,
     pub(super) panels: &'a mut Panels,
     pub(super) viewport: &'a mut Viewport,
+    /// See [`hidden_tabs`].
+    pub(super) hidden: Vec<TileId>,
+}
+
+impl Panes<'_, '_> {
+    /// The menu of the tabs for which there is no room.
+    fn more_tabs(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, tabs: &Tabs) {
+        let hidden: Vec<TileId> = tabs
+            .children
+            .iter()
+            .copied()
+            .filter(|tile| self.hidden.contains(tile))
+            .collect();
+        if hidden.is_empty() {
+            return;
+        }
+        let button = ui.menu_button("…", |ui| {
+            for tile in &hidden {
+                let chosen = ui.button(titles(tiles, *tile).join(" | ")).clicked();
+                let pane = first_pane(tiles, *tile).filter(|_| chosen);
+                self.desk.actions.extend(pane.map(Action::Reveal));
+            }
+        });
+        let front = tabs
+            .active
+            .map(|tile| titles(tiles, tile).join(" | "))
+            .unwrap_or_default();
+        let button = button.response.on_hover_text("Panels for whose tabs there is no room");
+        button.accessible_name(format!("More panels beside {front}"));
+    }
 }
 
 impl Behavior<Pane> for Panes<'_, '_> {
@@ -183,6 +271,40 @@ impl Behavior<Pane> for Panes<'_, '_> {
             ui.add_space(6.0);
             help_button(ui, pane.title(), pane.manual());
         }
+        self.more_tabs(tiles, ui, tabs);
+    }
+
+    /// As the trait's own, but for those without room.
+    fn tab_ui(
+        &mut self,
+        tiles: &mut Tiles<Pane>,
+        ui: &mut Ui,
+        id: egui::Id,
+        tile: TileId,
+        state: &TabState,
+    ) -> Response {
+        if self.hidden.contains(&tile) {
+            return ui.allocate_response(Vec2::ZERO, Sense::hover());
+        }
+        let text = tab_text(ui, tiles, tile);
+        let (_, place) = ui.allocate_space(vec2(text.size().x + 2.0 * TAB_SPACING, ui.available_height()));
+        let response = ui.interact(place, id, Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, state.active, text.text()));
+        if ui.is_rect_visible(place) && !state.is_being_dragged {
+            let fill = self.tab_bg_color(ui.visuals(), tiles, tile, state);
+            ui.painter().rect_filled(place.shrink(0.5), 0.0, fill);
+            if state.active {
+                // It connects with what it is the tab of.
+                ui.painter()
+                    .hline(place.x_range(), place.bottom(), Stroke::new(1.0, fill));
+            }
+            let color = self.tab_text_color(ui.visuals(), tiles, tile, state);
+            let at = egui::Align2::CENTER_CENTER
+                .align_size_within_rect(text.size(), place)
+                .min;
+            ui.painter().galley(at, text, color);
+        }
+        response.on_hover_cursor(egui::CursorIcon::Grab)
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
@@ -198,7 +320,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
     }
 
     fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
-        7.0
+        TAB_SPACING
     }
 
     fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {

@@ -249,6 +249,7 @@ impl App {
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 compare: compare::Compare::default(),
                 queue,
+                reference: services::reference::ReferenceImage::default(),
             },
             panels: Panels::default(),
             workspaces,
@@ -443,6 +444,7 @@ impl App {
             };
             self.panels.tick(&mut desk);
             let mut panes = layout::Panes {
+                hidden: layout::hidden_tabs(ui, &self.layout),
                 desk: &mut desk,
                 panels: &mut self.panels,
                 viewport: &mut self.viewport,

@@ -1,5 +1,6 @@
 //! `glossmith check`: proof on the user's own machine.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -62,7 +63,13 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         thorough: arguments.thorough,
     };
     let never = AtomicBool::new(false);
-    let checks = run_checks(options, &never, |group| message!("checking {group} …"))?.unwrap_or_default();
+    let shown = RefCell::new(String::new());
+    let progress = |group: &str, _| {
+        if shown.replace(group.to_owned()) != group {
+            message!("checking {group} …");
+        }
+    };
+    let checks = run_checks(options, &never, progress)?.unwrap_or_default();
     if arguments.has_words() {
         print_table(&checks, arguments.verbose);
     }

@@ -49,6 +49,9 @@ pub struct AreaLight {
     pub color: [f32; 3],
     /// Radiance of white; a sun's irradiance at the model.
     pub strength: f32,
+    /// It shines and throws shadows, but the camera does not see it, except in mirrors and through glass.
+    #[serde(rename = "hidden_from_camera", skip_serializing_if = "std::ops::Not::not")]
+    pub is_hidden: bool,
     /// It does not shine, and is not there.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_muted: bool,
@@ -70,6 +73,7 @@ impl Default for AreaLight {
             angle_deg: 0.53,
             color: [1.0; 3],
             strength: 10.0,
+            is_hidden: false,
             is_muted: false,
         }
     }

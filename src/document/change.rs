@@ -107,7 +107,9 @@ fn emit_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
 }
 
 fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {
-    old.iter().map(AreaLight::shape).eq(new.iter().map(AreaLight::shape))
+    // Hidden ones stand behind the others.
+    let placed = |light: &AreaLight| (light.shape(), light.is_hidden);
+    old.iter().map(placed).eq(new.iter().map(placed))
 }
 
 fn look_alike(old: &Document, new: &Document) -> bool {

@@ -2,9 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
+pub use super::light_move::{Pull, View};
+use super::light_move::{move_along, move_in_plane, put_at, vector};
 use super::{AreaLight, range};
 use crate::named::named;
-use crate::scene::camera::Camera;
 
 /// Degrees to which angles snap.
 const SNAP_DEG: f64 = 15.0;
@@ -14,6 +15,10 @@ const SNAP_LENGTH: f64 = 0.1;
 const POINTS_PER_E: f64 = 120.0;
 /// Least distance between the middles of two handles, points.
 const APART: f64 = 20.0;
+/// A step along an axis that says where its handle is, in distances of the light from its target; and how far that is at
+/// least in the image for it to have one, points.
+const AXIS_STEP: f64 = 0.1;
+const AXIS_SEEN: f64 = 3.0;
 /// From the light's middle to handles that stand for no place, points.
 const ARM: f64 = 46.0;
 
@@ -26,62 +31,31 @@ named! {
         Distance, "distance", "Distance", "Moves the light to its target or away from it.";
         Turn, "turn", "Turn", "Turns the light about the line to its target.";
         Cone, "cone", "Cone", "Opens or closes the cone of a spot.";
+        InPlane, "in the plane", "In the plane", "Moves the light in the plane of the image. It goes on looking at its target.";
+        AlongX, "along x", "Along x", "Moves the light along x, to the right of the model. It goes on looking at its target.";
+        AlongY, "along y", "Along y", "Moves the light up or down. It goes on looking at its target.";
+        AlongZ, "along z", "Along z", "Moves the light along z, before the model. It goes on looking at its target.";
     }
 }
 
-/// How a scene is seen in an image of this size.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// In the geometry's units.
-    pub camera: Camera<f64>,
-    /// Width and height of the image, points.
-    pub size: DVec2,
-}
-
-/// A pull of the pointer, in points from the image's top left.
-#[derive(Clone, Copy, Debug)]
-pub struct Pull {
-    /// Where it began.
-    pub from: DVec2,
-    /// Where it is.
-    pub to: DVec2,
-    /// Angles and lengths become round.
-    pub snaps: bool,
-}
-
-impl View {
-    /// Where a place is seen; `None` behind the camera.
-    pub fn seen(&self, place: DVec3) -> Option<DVec2> {
-        let away = place - vector(self.camera.origin.to_f64());
-        let depth = away.dot(vector(self.camera.forward.to_f64()));
-        let share = |axis: [f64; 3]| away.dot(vector(axis)) / vector(axis).length_squared() / depth;
-        let at = DVec2::new(share(self.camera.right.to_f64()), -share(self.camera.up.to_f64()));
-        (depth > 1e-6 && at.is_finite()).then(|| 0.5 * (at + 1.0) * self.size)
+impl LightHandle {
+    /// The axis along which it moves the light, if it does.
+    pub fn axis(self) -> Option<DVec3> {
+        match self {
+            Self::AlongX => Some(DVec3::X),
+            Self::AlongY => Some(DVec3::Y),
+            Self::AlongZ => Some(DVec3::Z),
+            _ => None,
+        }
     }
 
-    /// The same within the image.
-    pub fn seen_inside(&self, place: DVec3) -> Option<DVec2> {
-        self.seen(place)
-            .filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmple(self.size).all())
-    }
-
-    /// The point of the image's edge beyond which a place lies that is not in it.
-    pub fn edge_towards(&self, place: DVec3, margin: f64) -> DVec2 {
-        let away = place - vector(self.camera.origin.to_f64());
-        let side = |axis: [f64; 3]| away.dot(vector(axis).normalize());
-        let towards = DVec2::new(side(self.camera.right.to_f64()), -side(self.camera.up.to_f64()));
-        let towards = towards.try_normalize().unwrap_or(DVec2::Y);
-        let half = (0.5 * self.size - margin).max(DVec2::ONE);
-        let reach = half / towards.abs().max(DVec2::splat(1e-9));
-        0.5 * self.size + towards * reach.min_element()
-    }
-
-    /// The ray through a point: origin and unit direction.
-    fn ray(&self, at: DVec2) -> [DVec3; 2] {
-        let share = 2.0 * at / self.size - 1.0;
-        let along = vector(self.camera.forward.to_f64()) + share.x * vector(self.camera.right.to_f64())
-            - share.y * vector(self.camera.up.to_f64());
-        [vector(self.camera.origin.to_f64()), along.normalize()]
+    /// What it is called of a light.
+    pub fn full_name(self, light: &str) -> String {
+        match self {
+            Self::Direction => format!("Move {light}"),
+            Self::InPlane | Self::AlongX | Self::AlongY | Self::AlongZ => format!("Move {light} {}", self.name()),
+            _ => format!("{} handle of {light}", self.label()),
+        }
     }
 }
 
@@ -121,6 +95,17 @@ pub fn handles(light: &AreaLight, view: &View, margin: f64) -> Vec<(LightHandle,
     if light.is_spot() {
         put(LightHandle::Cone, ahead.perp(), ARM);
     }
+    if !light.is_sun() {
+        for handle in [LightHandle::AlongX, LightHandle::AlongY, LightHandle::AlongZ] {
+            let axis = handle.axis().unwrap_or_default();
+            let (along, length) = towards(frame.middle + AXIS_STEP * shape.distance * axis, DVec2::ZERO);
+            // Towards the viewer there is nothing to be pulled.
+            if length > AXIS_SEEN {
+                put(handle, along, ARM);
+            }
+        }
+        put(LightHandle::InPlane, DVec2::ONE.normalize(), APART);
+    }
     placed
 }
 
@@ -143,6 +128,10 @@ pub fn pulled(light: &AreaLight, handle: LightHandle, view: &View, pull: &Pull) 
     };
     match handle {
         LightHandle::Direction => move_around(&mut moved, view, middle, pull),
+        LightHandle::InPlane => move_in_plane(&mut moved, view, pull),
+        LightHandle::AlongX | LightHandle::AlongY | LightHandle::AlongZ => {
+            move_along(&mut moved, handle.axis().unwrap_or_default(), view, pull);
+        }
         LightHandle::Width if light.is_sun() => {
             let (least, most) = range::SUN_ANGLE_DEG.into_inner();
             moved.angle_deg = snapped(light.angle_deg * factor, SNAP_LENGTH, pull.snaps).clamp(least, most);
@@ -184,6 +173,11 @@ pub fn nudged(light: &AreaLight, handle: LightHandle, steps: DVec2) -> AreaLight
         LightHandle::Distance => moved.distance = scaled(light.distance, range::AREA_LENGTH),
         LightHandle::Turn => moved.turn_deg = wrapped_deg(light.turn_deg + sum),
         LightHandle::Cone => moved.cone_deg = scaled(light.cone_deg, range::CONE_DEG),
+        LightHandle::InPlane => put_at(&mut moved, light.shape().frame().middle + 0.01 * steps.extend(0.0)),
+        LightHandle::AlongX | LightHandle::AlongY | LightHandle::AlongZ => {
+            let axis = handle.axis().unwrap_or_default();
+            put_at(&mut moved, light.shape().frame().middle + 0.01 * sum * axis);
+        }
     }
     moved
 }
@@ -244,10 +238,6 @@ fn snapped(value: f64, step: f64, snaps: bool) -> f64 {
     if snaps { (value / step).round() * step } else { value }
 }
 
-fn vector(of: [f64; 3]) -> DVec3 {
-    DVec3::from_array(of)
-}
-
 /// In [−180, 180).
 fn wrapped_deg(angle: f64) -> f64 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
@@ -257,7 +247,7 @@ fn wrapped_deg(angle: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::document::AreaLightShape;
-    use crate::scene::camera::PixelFilter;
+    use crate::scene::camera::{Camera, PixelFilter};
 
     fn view() -> View {
         View {
@@ -298,6 +288,28 @@ mod tests {
                 pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, DVec2::ZERO)).width,
                 light.width
             );
+        }
+    }
+
+    #[test]
+    fn a_light_stays_under_the_pointer_in_parallel_rays() {
+        let view = View {
+            camera: view().camera.orthographic(1.0),
+            ..view()
+        };
+        for (yaw_deg, distance) in [(-30.0, 3.0), (160.0, 2.0)] {
+            let light = AreaLight {
+                yaw_deg,
+                distance,
+                ..AreaLight::default()
+            };
+            let at = view
+                .seen_inside(light.shape().frame().middle)
+                .expect("it is in the image");
+            let by = DVec2::new(25.0, -30.0);
+            let moved = pulled(&light, LightHandle::Direction, &view, &pull(at, by));
+            let now = view.seen_inside(moved.shape().frame().middle).expect("it still is");
+            assert!(now.distance(at + by) < 1e-6, "yaw {yaw_deg}: {at} to {now}");
         }
     }
 
@@ -475,6 +487,55 @@ mod tests {
         let larger = pulled(&sun, LightHandle::Width, &view(), &pull(at[1].1, at[1].1 - at[0].1));
         assert!((larger.angle_deg - 2.0 * sun.angle_deg).abs() < 1e-9);
         assert_eq!(larger.shape, AreaLightShape::Sun);
+    }
+
+    fn place_of(light: &AreaLight) -> DVec3 {
+        light.shape().frame().middle
+    }
+
+    /// The light stays under the pointer, in the plane or on the line, and looks at its target.
+    #[test]
+    fn a_light_follows_the_pointer_in_its_plane_and_along_its_axes() {
+        let camera = Camera::look_at([2.0, 3.0, 8.0], [0.0; 3], 60.0, 1.5, PixelFilter::Box);
+        for camera in [camera, camera.orthographic(1.0)] {
+            let view = View {
+                camera,
+                size: DVec2::new(600.0, 400.0),
+            };
+            let light = AreaLight {
+                yaw_deg: 20.0,
+                target: [0.1, 0.2, 0.0],
+                ..AreaLight::default()
+            };
+            let seen = |light: &AreaLight| view.seen(place_of(light)).expect("it is before the camera");
+            for (handle, from) in handles(&light, &view, 0.0) {
+                let arm = from - seen(&light);
+                let pull = Pull {
+                    from: seen(&light),
+                    to: seen(&light) + 0.5 * arm,
+                    snaps: false,
+                };
+                let moved = pulled(&light, handle, &view, &pull);
+                let by = place_of(&moved) - place_of(&light);
+                let forward = DVec3::from_array(view.camera.forward.to_f64());
+                match handle {
+                    LightHandle::InPlane => assert!(by.dot(forward).abs() < 1e-9 && by.length() > 0.01, "{by}"),
+                    _ if handle.axis().is_some() => {
+                        let axis = handle.axis().unwrap_or_default();
+                        assert!(
+                            by.dot(axis) > 0.01 && by.cross(axis).length() < 1e-9,
+                            "{handle:?}: {by}"
+                        );
+                    }
+                    _ => continue,
+                }
+                assert!(
+                    seen(&moved).distance(pull.to) < 1e-6,
+                    "{handle:?} is not under the pointer"
+                );
+                assert_eq!((moved.target, moved.width), (light.target, light.width));
+            }
+        }
     }
 
     #[test]

@@ -11,12 +11,14 @@ mod ground;
 pub mod history;
 pub mod import;
 pub mod light_handle;
+pub mod light_move;
 pub mod material;
 mod material_textures;
 mod metal_colors;
 pub mod of_model;
 pub mod parameter;
 pub mod range;
+mod reference;
 mod settings;
 mod switches;
 mod texture_json;
@@ -42,6 +44,7 @@ pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
 };
+pub use reference::{Reference, ReferencePlace};
 pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, ViewSettings,
 };
@@ -116,10 +119,13 @@ impl Document {
         checked::check(self)
     }
 
-    /// The files that it names beside model and environment: its materials' textures, and the view's table of colours.
+    /// The files that it names beside model and environment: its materials' textures, the view's table of colours and its
+    /// reference.
     pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
         let textures = self.materials.iter().flat_map(|material| material.user_textures.iter());
-        textures.map(|(_, texture)| &texture.file).chain(&self.view.lut)
+        let reference = self.view.reference.as_ref().map(|reference| &reference.file);
+        let of_view = self.view.lut.as_ref().into_iter().chain(reference);
+        textures.map(|(_, texture)| &texture.file).chain(of_view)
     }
 
     /// The material that a slot shows.

@@ -58,6 +58,7 @@ impl Document {
         for light in model.lights.iter().map(|light| area_light(light, model)) {
             let is_there = |own: &AreaLight| {
                 AreaLight {
+                    is_hidden: false,
                     is_muted: false,
                     ..*own
                 } == light

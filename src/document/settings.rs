@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::switches::{EffectSwitches, Switch};
-use super::{AreaLight, GroundSettings};
+use super::{AreaLight, GroundSettings, Reference};
 use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
 use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::{Grade, ToneCurve};
-use crate::scene::camera::PixelFilter;
+use crate::scene::camera::{PixelFilter, Projection};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 
 /// Where the light comes from.
@@ -40,9 +40,13 @@ pub struct Lighting {
 }
 
 impl Lighting {
-    /// The area lights that are not muted.
+    /// The area lights that are not muted: first those that the camera sees.
     pub fn shining(&self) -> impl Iterator<Item = &AreaLight> {
-        self.area_lights.iter().filter(|light| !light.is_muted)
+        let of = |is_hidden: bool| {
+            let lights = self.area_lights.iter();
+            lights.filter(move |light| !light.is_muted && light.is_hidden == is_hidden)
+        };
+        of(false).chain(of(true))
     }
 }
 
@@ -90,8 +94,11 @@ pub struct CameraSettings {
     pub distance: Option<f64>,
     /// The camera's place; replaces yaw, pitch and distance.
     pub position: Option<[f64; 3]>,
-    /// Vertical field of view, degrees.
+    /// Vertical field of view, degrees; of an orthographic camera what it would see of its target.
     pub fov_deg: f64,
+    /// How it projects.
+    #[serde(skip_serializing_if = "is_perspective")]
+    pub projection: Projection,
     /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
     pub roll_deg: f64,
     /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
@@ -109,11 +116,16 @@ impl Default for CameraSettings {
             distance: None,
             position: None,
             fov_deg: 30.0,
+            projection: Projection::default(),
             roll_deg: 0.0,
             aperture: 0.0,
             focus_distance: None,
         }
     }
+}
+
+fn is_perspective(projection: &Projection) -> bool {
+    *projection == Projection::Perspective
 }
 
 /// A camera to come back to.
@@ -151,6 +163,9 @@ pub struct ViewSettings {
     /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lut: Option<PathBuf>,
+    /// An image to work from, which the viewport shows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference: Option<Reference>,
     /// Whether the image is denoised, and how.
     pub denoise: Denoise,
     /// When that is done in the window.
@@ -174,6 +189,7 @@ impl Default for ViewSettings {
             vignette: 0.0,
             glare: 0.0,
             lut: None,
+            reference: None,
             denoise: Denoise::default(),
             denoise_when: DenoiseWhen::default(),
         }

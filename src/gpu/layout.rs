@@ -74,8 +74,10 @@ pub struct Globals {
     pub around_triangle: u32,
     /// Slot of the medium around the camera, or [`NO_MEDIUM`].
     pub camera_medium: u32,
+    /// See [`Settings::first_hidden_slot`].
+    pub first_hidden_slot: u32,
     /// To a multiple of 16 bytes.
-    pub unused: [u32; 2],
+    pub unused: u32,
     /// 1: coarse triangles are rounded according to their normals.
     pub rounds_surfaces: u32,
     /// Early roulette is played below this throughput alone.
@@ -166,7 +168,8 @@ impl Globals {
             around_root,
             around_triangle,
             camera_medium: settings.camera_medium.unwrap_or(NO_MEDIUM),
-            unused: [0; 2],
+            first_hidden_slot: settings.first_hidden_slot,
+            unused: 0,
             rounds_surfaces: u32::from(settings.rounds_surfaces),
             roulette_floor: settings.roulette_floor as f32,
         }

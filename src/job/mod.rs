@@ -67,6 +67,8 @@ pub struct Settings {
     pub camera: Camera<f64>,
     /// Slot of the medium around the camera; `None` if irrelevant.
     pub camera_medium: Option<u32>,
+    /// Slot from which on the camera does not see surfaces: those of hidden area lights; [`u32::MAX`] without any.
+    pub first_hidden_slot: u32,
     /// Background of camera rays that miss.
     pub background: BackgroundKind,
     /// The shadow catcher, if any.

@@ -165,7 +165,7 @@ where
         .build_cartesian_2d(Scale::bare([-outer, outer]), Scale::bare([0.0, outer]))?;
     draw_polar_net(&mut chart, reach, style)?;
     for (series, rank) in ranked(&plot.series) {
-        let points: Vec<(f64, f64)> = series.polar_points().map(|[x, y]| (x, y)).collect();
+        let points: Vec<(f64, f64)> = series.polar_points(&plot.y).map(|[x, y]| (x, y)).collect();
         draw_series(&mut chart, series, rank, points.into_iter(), style)?;
         if let Some(angle_deg) = series.view_angle_deg {
             draw_view(&mut chart, angle_deg, reach, style)?;

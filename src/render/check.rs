@@ -32,6 +32,9 @@ const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
 /// Render time between two checks for a stop.
 const STEP: Duration = Duration::from_millis(200);
 
+/// Cases of the χ² tests between two reports of progress, for each thread.
+const CASES_PER_THREAD: usize = 4;
+
 /// Relative tolerance of an f64 sample's weight against evaluate / density.
 const WEIGHT_ERROR: f64 = 1e-9;
 
@@ -220,7 +223,8 @@ pub fn chi_square(
     test_samples(&grid, &samples, &[frame.normal], density).p_value
 }
 
-/// Runs the checks; `progress` receives the name of each group before it starts. `None` if `stop` was set.
+/// Runs the checks; `progress` receives the name of the group and the share of all that is done, which is estimated. `None`
+/// if `stop` was set.
 ///
 /// # Errors
 ///
@@ -228,23 +232,29 @@ pub fn chi_square(
 pub fn run(
     options: CheckOptions,
     stop: &AtomicBool,
-    progress: impl Fn(&str),
+    progress: impl Fn(&str, f64),
 ) -> Result<Option<Vec<Check>>, SessionError> {
-    type Group = fn(CheckOptions, &AtomicBool) -> Result<Vec<Check>, SessionError>;
-    let groups: [(&str, Group); 5] = [
-        ("samples against densities", samples),
-        ("energy", |_, stop| Ok(energy(stop))),
-        ("weights", |_, stop| Ok(weights(stop))),
-        ("white furnace", furnace),
-        ("engines and strategies", pictures),
+    type Group = fn(CheckOptions, &AtomicBool, &dyn Fn(f64)) -> Result<Vec<Check>, SessionError>;
+    // With the share of the time that each takes in a quick check.
+    let groups: [(&str, f64, Group); 5] = [
+        ("samples against densities", 0.89, samples),
+        ("energy", 0.05, |_, stop, _| Ok(energy(stop))),
+        ("weights", 0.01, |_, stop, _| Ok(weights(stop))),
+        ("white furnace", 0.01, |options, stop, _| furnace(options, stop)),
+        ("engines and strategies", 0.04, |options, stop, _| {
+            pictures(options, stop)
+        }),
     ];
     let mut checks = Vec::new();
-    for (name, group) in groups {
-        progress(name);
-        checks.extend(group(options, stop)?);
+    let mut done = 0.0;
+    for (name, share, group) in groups {
+        let told = |of_group: f64| progress(name, done + share * of_group);
+        told(0.0);
+        checks.extend(group(options, stop, &told)?);
         if stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
+        done += share;
     }
     Ok(Some(checks))
 }
@@ -254,8 +264,9 @@ fn unless_stopped<T>(stop: &AtomicBool, work: impl FnOnce() -> T) -> Option<T> {
     (!stop.load(Ordering::Relaxed)).then(work)
 }
 
-fn samples(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
+fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Result<Vec<Check>, SessionError> {
     let cases = sample_cases(options.thorough);
+    let cases_total = cases.len();
     let sampler = Sampler::open(options.engine)?;
     let clouds = cases
         .iter()
@@ -268,7 +279,17 @@ fn samples(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sessi
             Check::new("samples", describe(case), "p", value, limit)
         })
     };
-    Ok(cases.par_iter().zip(&clouds).filter_map(check).collect())
+    // A few for each thread at a time: the stops between them cost little, and tell how far it is.
+    let part = CASES_PER_THREAD * rayon::current_num_threads();
+    let mut checks = Vec::with_capacity(cases.len());
+    for (cases, clouds) in cases.chunks(part).zip(clouds.chunks(part)) {
+        checks.par_extend(cases.par_iter().zip(clouds).filter_map(check));
+        if stop.load(Ordering::Relaxed) {
+            break;
+        }
+        told(checks.len() as f64 / cases_total as f64);
+    }
+    Ok(checks)
 }
 
 /// The name of a case.

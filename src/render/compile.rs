@@ -15,12 +15,16 @@ use crate::optics::material::Material;
 use crate::optics::table::append_table;
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
-use crate::scene::camera::{Camera, framing_distance, orbit_direction};
+use crate::scene::camera::{Camera, Projection, framing_distance, orbit_direction};
 use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::medium::medium_at;
 use crate::scene::texture::{Textures, UserTextureFile};
+
+/// How far from its target parallel rays start at least, bounding radii of the model, and how far behind the camera.
+const PARALLEL_REACH: f64 = 4.0;
+const PARALLEL_MIN: f64 = 0.01;
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
@@ -129,6 +133,7 @@ impl Compiler {
             image_size: [document.render.width, document.render.height],
             camera_medium: medium_at(&geometry, &materials, Vec3::from_f64(camera.origin.to_f64())),
             camera,
+            first_hidden_slot: first_hidden_slot(document, first_light),
             background: match document.lighting.background {
                 Background::Environment => match f64::from(document.lighting.background_blur_deg).to_radians().sin() {
                     sine if sine > 0.0 => BackgroundKind::Blurred(sine),
@@ -257,13 +262,19 @@ pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialS
     materials
 }
 
-/// The camera in the geometry's units.
+/// See [`Settings::first_hidden_slot`]; the slots of the area lights begin at `first_light`.
+fn first_hidden_slot(document: &Document, first_light: usize) -> u32 {
+    let first = document.lighting.shining().position(|light| light.is_hidden);
+    first.map_or(u32::MAX, |first| (first_light + first) as u32)
+}
+
 /// See [`Settings::roulette_floor`]: an albedo behind clear glass is not gambled for.
 fn roulette_floor(materials: &[Material<f32>]) -> f64 {
     let transmits = materials.iter().any(|material| material.least_metallic().transmits());
     if transmits { 1.0 / 16.0 } else { 1.0 }
 }
 
+/// The camera in the geometry's units.
 fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometry) -> Camera<f64> {
     let aspect = f64::from(render.width) / f64::from(render.height.max(1));
     let units = |place: [f64; 3]| geometry.units_from_world(place.into());
@@ -283,9 +294,17 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         render.filter,
     )
     .rolled(settings.roll_deg);
+    let pinhole = match settings.projection {
+        Projection::Perspective => pinhole,
+        // In front of it is all of the model, wherever the target is.
+        Projection::Orthographic => {
+            let reach = PARALLEL_REACH + target.length();
+            pinhole.orthographic((reach - pinhole.focus_distance).max(PARALLEL_MIN))
+        }
+    };
     let focus_distance = settings
         .focus_distance
-        .map(|distance| distance / geometry.world_units_per_unit);
+        .map(|distance| distance / geometry.world_units_per_unit + pinhole.parallel_from);
     Camera {
         lens_radius: settings.aperture,
         focus_distance: focus_distance.unwrap_or(pinhole.focus_distance),

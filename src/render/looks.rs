@@ -1,20 +1,26 @@
 //! Comparison of two materials: a ball of each in the studio, and the difference of the renders.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use image::RgbImage;
 
 use super::EngineChoice;
+use super::attendant::Attendant;
+use super::denoise::Library;
 use super::display::display;
 use super::error::SessionError;
 use super::session::Session;
+use crate::analysis::halves::Halves;
 use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
-use crate::job::film::Film;
+use crate::job::film::{Film, Image};
 use crate::plot::scale_color;
 use crate::scene::ModelSource;
 
 /// Width and height of each render, in pixels.
-pub const SIDE: u32 = 64;
+pub const SIDE: u32 = 160;
+/// Pixels to each side over which the difference is averaged.
+const REACH: usize = 3;
 /// Samples per pixel.
 const SAMPLES: u32 = 64;
 /// Step of the session.
@@ -25,7 +31,8 @@ const BRIGHTEST: f64 = 0.5;
 /// Result of a comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compared {
-    /// The first render, the second, and a map of their difference: dark for none, yellow from half the mean brightness.
+    /// The first render, the second, both denoised where there is a denoiser, and a map of their difference without noise:
+    /// dark for none, yellow from half the mean brightness.
     pub pictures: [RgbImage; 3],
     /// Root mean square of the difference of luminance over the mean luminance, free of noise: the two halves of the samples
     /// err independently, so that the mean of their differences' product does not.
@@ -43,32 +50,54 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
         rendered(&mut session, &materials[0])?,
         rendered(&mut session, &materials[1])?,
     ];
-    let mean = (0..first.pixel_count())
-        .map(|pixel| luminance(&first, pixel, None))
-        .sum::<f64>();
-    let mean = (mean / first.pixel_count() as f64).max(1e-9);
-    let mut squares = 0.0;
-    let mut map = RgbImage::new(SIDE, SIDE);
-    for (pixel, color) in map.pixels_mut().enumerate() {
-        let apart = |half: Option<usize>| luminance(&first, pixel, half) - luminance(&second, pixel, half);
-        squares += apart(Some(0)) * apart(Some(1));
-        color.0 = scale_color(apart(None).abs() / mean / BRIGHTEST);
-    }
-    let shown = |film: &Film| {
-        let codes = display(&film.image(), &ViewSettings::default());
-        let colors = codes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
-        RgbImage::from_raw(SIDE, SIDE, colors.collect()).unwrap_or_default()
+    let halves = [&first, &second].map(|render| Halves::of(&render.film));
+    let apart = |pixel: usize| {
+        let [first, second] = &halves;
+        (first.even[pixel] - second.even[pixel]) * (first.odd[pixel] - second.odd[pixel])
     };
+    let products: Vec<f64> = (0..first.film.pixel_count()).map(apart).collect();
+    let mean = halves[0].mean_luminance().max(1e-9);
+    let mut map = RgbImage::new(SIDE, SIDE);
+    for (x, y, color) in map.enumerate_pixels_mut() {
+        color.0 = scale_color(resolved(&products, [x as usize, y as usize]) / mean / BRIGHTEST);
+    }
+    let squares = products.iter().sum::<f64>() / products.len() as f64;
     Ok(Compared {
-        difference: (squares / first.pixel_count() as f64).max(0.0).sqrt() / mean,
-        pictures: [shown(&first), shown(&second), map],
+        difference: squares.max(0.0).sqrt() / mean,
+        pictures: [shown(&first.image), shown(&second.image), map],
     })
 }
 
-/// The mean luminance of a pixel, or of a half of its samples.
-fn luminance(film: &Film, pixel: usize, half: Option<usize>) -> f64 {
-    half.map_or_else(|| film.sums(pixel), |half| film.halves(pixel)[half])
-        .mean_luminance()
+/// The difference about a pixel as far as it is no noise: the root of the mean product of both halves' differences, less
+/// the standard error of that mean.
+fn resolved(products: &[f64], [x, y]: [usize; 2]) -> f64 {
+    let side = SIDE as usize;
+    let reach = |at: usize| at.saturating_sub(REACH)..(at + REACH + 1).min(side);
+    let near = reach(y).flat_map(|row| reach(x).map(move |column| products[row * side + column]));
+    let [mut count, mut sum, mut squares] = [0.0; 3];
+    for product in near {
+        count += 1.0;
+        sum += product;
+        squares += product * product;
+    }
+    let mean: f64 = sum / count;
+    let error = ((squares / count - mean * mean).max(0.0) / count).sqrt();
+    (mean - error).max(0.0).sqrt()
+}
+
+/// As the default view shows it.
+fn shown(image: &Image) -> RgbImage {
+    let codes = display(image, &ViewSettings::default());
+    let colors = codes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+    RgbImage::from_raw(image.width, image.height, colors.collect()).unwrap_or_default()
+}
+
+/// The denoiser, where there is one: a missing one is not reported, as nobody asked for it.
+pub(super) fn denoise_if_possible() -> Denoise {
+    match Library::get() {
+        Ok(_) => Denoise::High,
+        Err(_) => Denoise::Off,
+    }
 }
 
 /// A ball of a material in the studio. The studio stays visible, because glass needs something to refract.
@@ -90,15 +119,30 @@ pub(super) fn ball(material: &MaterialSettings, side: u32, samples: u32, denoise
     }
 }
 
-fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Film, SessionError> {
-    session.submit(&ball(material, SIDE, SAMPLES, Denoise::Off))?;
+/// What a material looks like, and its samples.
+struct Render {
+    image: Arc<Image>,
+    film: Film,
+}
+
+fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render, SessionError> {
+    let document = ball(material, SIDE, SAMPLES, denoise_if_possible());
+    session.submit(&document)?;
     while !session.step(STEP)?.is_done {}
-    Ok(session.film()?.clone())
+    let image = match Attendant::new(&document).finish(session)? {
+        Some(denoised) => denoised.image,
+        None => Arc::new(session.image()?),
+    };
+    Ok(Render {
+        image,
+        film: session.film()?.clone(),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
 
     #[test]
     fn the_same_material_is_not_apart_and_another_is() {
@@ -111,5 +155,31 @@ mod tests {
         let apart = compared(&[gold, rougher]).unwrap();
         assert!(apart.difference > 0.05, "{}", apart.difference);
         assert!(apart.pictures[0] != apart.pictures[1]);
+        // The map shows where: on the ball, not before what both let be seen alike.
+        let at = |x, y| u32::from(apart.pictures[2].get_pixel(x, y).0[0]);
+        assert!(at(SIDE / 2, SIDE / 3) > at(2, 2) && at(2, 2) <= u32::from(scale_color(0.02)[0]));
+    }
+
+    /// Where only the noise differs, whose signs are those of chance in each half, nothing is shown; a true difference is.
+    #[test]
+    fn the_map_of_the_difference_is_free_of_noise() {
+        let side = SIDE as usize;
+        let noise = |pixel: usize, salt: u32| {
+            let state = random_state(pixel as u32, salt, 7, 0, Sequence::Independent);
+            let [a, b]: [f64; 2] = random_pair(state, 0);
+            [a - 0.5, b - 0.5]
+        };
+        let seen = |by: f64| {
+            let product = |pixel: usize| noise(pixel, 1).map(|noise| by + noise).into_iter().product();
+            let products: Vec<f64> = (0..side * side).map(product).collect();
+            let pixels = (0..side)
+                .step_by(8)
+                .flat_map(|y| (0..side).step_by(8).map(move |x| [x, y]));
+            let values: Vec<f64> = pixels.map(|at| resolved(&products, at)).collect();
+            values.iter().sum::<f64>() / values.len() as f64
+        };
+        // Of a standard deviation of 0.29.
+        assert!(seen(0.0) < 0.04, "{}", seen(0.0));
+        assert!((seen(0.4) - 0.4).abs() < 0.05, "{}", seen(0.4));
     }
 }

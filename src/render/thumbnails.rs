@@ -9,23 +9,21 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::background::{Background, Responder};
-use super::denoise::Library;
 use super::display::display;
-use super::looks::ball;
-use super::step_denoiser::StepDenoiser;
+use super::looks::{ball, denoise_if_possible};
 use super::{EngineChoice, Session, SessionError, picture_cache};
-use crate::document::{Denoise, Document, MaterialSettings};
+use crate::document::{Document, MaterialSettings};
 use crate::scene::ModelSource;
 use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
-pub const SIDE: u32 = 128;
+pub const SIDE: u32 = 192;
 /// Samples per pixel: the noise is invisible at this size, and removed if denoised.
 const SAMPLES: u32 = 24;
 /// Render time between two checks for a newer request.
 const STEP: Duration = Duration::from_millis(30);
 /// Cache version: increase if thumbnails of the same material change.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// A thumbnail: RGBA, 8 bits each, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels, rows from the top.
 pub type Thumbnail = Arc<Vec<u8>>;
@@ -86,13 +84,7 @@ pub fn spawn_thumbnails(
 
 /// The document of a thumbnail.
 fn document(material: &MaterialSettings) -> Document {
-    // A missing denoiser is not reported: the user did not ask for one.
-    let denoise = if Library::get().is_ok() {
-        Denoise::High
-    } else {
-        Denoise::Off
-    };
-    let mut document = ball(material, SIDE, SAMPLES, denoise);
+    let mut document = ball(material, SIDE, SAMPLES, denoise_if_possible());
     if material.emission_strength > 0.0 {
         // In the light of a studio nothing would be seen of its own.
         document.ground = true;
@@ -154,8 +146,8 @@ mod tests {
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {
             // The centre of the image: the sphere.
-            let middle = (48..80).flat_map(|y| (48..80).map(move |x| 4 * (y * SIDE as usize + x) + channel));
-            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 1024.0
+            let middle = (72..120).flat_map(|y| (72..120).map(move |x| 4 * (y * SIDE as usize + x) + channel));
+            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 2304.0
         })
     }
 

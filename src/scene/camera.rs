@@ -1,4 +1,4 @@
-//! The camera: a thin lens, and the pixel filter that its rays are drawn from.
+//! The camera: a thin lens or parallel rays, and the pixel filter that they are drawn from.
 
 use crate::named::named;
 use glam::DVec3;
@@ -17,6 +17,16 @@ named! {
     }
 }
 
+named! {
+    /// How the camera projects.
+    #[derive(Default)]
+    Projection {
+        #[default]
+        Perspective, "perspective", "Perspective", "Rays from one place, as in an eye: what is farther away is smaller.";
+        Orthographic, "orthographic", "Orthographic", "Parallel rays, as in a drawing: sizes don't change with the distance. What is at the target keeps its size.";
+    }
+}
+
 /// The path's pair of numbers for the place in the pixel.
 pub const PIXEL_DIMENSION: u32 = 0;
 /// The path's pair of numbers for the place on the lens.
@@ -26,7 +36,7 @@ pub const GAUSSIAN_RADIUS: f64 = 1.5;
 /// Standard deviation in pixels.
 pub const GAUSSIAN_SIGMA: f64 = 0.5;
 
-/// A camera in the geometry's units (thin lens). The GPU reads the f32 form (`shaders/scene/layout.wgsl`).
+/// A camera in the geometry's units: a thin lens, or parallel rays from a plane behind it. The GPU reads the f32 form (`shaders/scene/layout.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Camera<T> {
@@ -38,14 +48,14 @@ pub struct Camera<T> {
     pub forward: Vec3<T>,
     /// Focus distance along `forward`.
     pub focus_distance: T,
-    /// Right vector, of half the image width at distance 1.
+    /// Right vector, of half the image width at distance 1; with parallel rays of half the width itself.
     pub right: Vec3<T>,
     /// [`PixelFilter`] as a number.
     pub filter_kind: u32,
-    /// Up vector, of half the image height at distance 1.
+    /// Up vector, of half the image height as `right` is of its width.
     pub up: Vec3<T>,
-    /// Fills the last 16 bytes.
-    pub reserved: u32,
+    /// How far behind the camera parallel rays start, which is where `origin` is; 0 for a perspective.
+    pub parallel_from: T,
 }
 
 // SAFETY: f32 and u32 fields without padding; any bit pattern is valid.
@@ -69,7 +79,21 @@ impl Camera<f64> {
             right: Vec3::from_f64((right * half_height * aspect).to_array()),
             filter_kind: filter as u32,
             up: Vec3::from_f64((up * half_height).to_array()),
-            reserved: 0,
+            parallel_from: 0.0,
+        }
+    }
+
+    /// The same camera with parallel rays, that shows what is at the focus as large. They start `behind` it, above 0, so that
+    /// nothing is cut off where it is near.
+    pub fn orthographic(self, behind: f64) -> Self {
+        let distance = self.focus_distance;
+        Camera {
+            origin: self.origin - self.forward * behind,
+            focus_distance: distance + behind,
+            right: self.right * distance,
+            up: self.up * distance,
+            parallel_from: behind,
+            ..self
         }
     }
 
@@ -98,7 +122,7 @@ impl Camera<f64> {
             right: vector(self.right),
             filter_kind: self.filter_kind,
             up: vector(self.up),
-            reserved: 0,
+            parallel_from: T::from_f64(self.parallel_from),
         }
     }
 }
@@ -153,17 +177,19 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
     let two = T::from_f64(2.0);
     let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::one();
     let y = T::one() - two * place[1] / T::from_f64(f64::from(image_size[1]));
-    let along = camera.forward + camera.right * x + camera.up * y;
+    let is_parallel = T::zero().less(camera.parallel_from).any();
+    let (origin, along) = if is_parallel {
+        (camera.origin + camera.right * x + camera.up * y, camera.forward)
+    } else {
+        (camera.origin, camera.forward + camera.right * x + camera.up * y)
+    };
     if !T::zero().less(camera.lens_radius).any() {
-        return [camera.origin, along.normalize()];
+        return [origin, along.normalize()];
     }
     let disc = uniform_disc(xi_lens);
     let shift = camera.right.normalize() * (disc[0] * camera.lens_radius)
         + camera.up.normalize() * (disc[1] * camera.lens_radius);
-    [
-        camera.origin + shift,
-        (along * camera.focus_distance - shift).normalize(),
-    ]
+    [origin + shift, (along * camera.focus_distance - shift).normalize()]
 }
 
 /// Framing distance relative to the tight one.

@@ -1,4 +1,4 @@
-//! A folder of the user's materials; what is removed can be restored.
+//! A folder of the user's materials, those with images in folders of their own; what is removed can be restored.
 
 use std::fs;
 use std::io;
@@ -40,12 +40,8 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
             source,
         })?,
     };
-    let paths = files.flatten().map(|file| file.path());
+    let paths = files.flatten().flat_map(|file| materials_at(&file.path()));
     let mut entries: Vec<Entry> = paths
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
-        })
         .map(|path| Entry {
             material: load_material(&path)
                 .map(|loaded| loaded.value)
@@ -57,15 +53,72 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
     Ok(entries)
 }
 
-/// Adds a material in a file named after it; no other file is replaced. The folder is made where it is not there.
+/// The material that is a file, or the one in a folder that has its name.
+fn materials_at(path: &Path) -> Option<PathBuf> {
+    let is_json = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("json");
+    if path.extension().is_some_and(is_json) {
+        return Some(path.to_owned());
+    }
+    let name = path.file_name()?;
+    let is_hidden = name.to_string_lossy().starts_with('.');
+    let within = path.join(Path::new(name).with_extension("json"));
+    (!is_hidden && within.is_file()).then_some(within)
+}
+
+/// Adds a material in a file named after it; no other file is replaced. One with images gets a folder, with copies of them.
+/// The folder is made where it is not there.
 ///
 /// # Errors
 /// [`FileError::Write`].
 pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileError> {
     fs::create_dir_all(folder).map_err(cannot_write(folder))?;
-    let path = free_path(folder, &file_stem(&material.name), "json");
-    save_material(&path, material)?;
+    let stem = file_stem(&material.name);
+    if material.user_textures.iter().next().is_none() {
+        let path = free_path(folder, &stem, "json");
+        save_material(&path, material)?;
+        return Ok(path);
+    }
+    let home = free_path(folder, &stem, "");
+    fs::create_dir_all(&home).map_err(cannot_write(&home))?;
+    let material = with_copies(material, &home)?;
+    let path = home.join(home.file_name().unwrap_or_default()).with_extension("json");
+    save_material(&path, &material)?;
     Ok(path)
+}
+
+/// The material with its images copied to a folder. One that is not there any more stays named as it is.
+fn with_copies(material: &MaterialSettings, home: &Path) -> Result<MaterialSettings, FileError> {
+    let mut copies: Vec<(PathBuf, PathBuf)> = Vec::new();
+    for (_, texture) in material
+        .user_textures
+        .iter()
+        .filter(|(_, texture)| texture.file.is_file())
+    {
+        if copies.iter().any(|(of, _)| *of == texture.file) {
+            continue;
+        }
+        let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+        let copy = free_path(home, &part(texture.file.file_stem()), &part(texture.file.extension()));
+        fs::copy(&texture.file, &copy).map_err(cannot_write(&copy))?;
+        copies.push((texture.file.clone(), copy));
+    }
+    let mut material = material.clone();
+    material.user_textures.map_files(|file| {
+        let copy = copies.iter().find(|(of, _)| of == file);
+        copy.map_or_else(|| file.to_owned(), |(_, copy)| copy.clone())
+    });
+    Ok(material)
+}
+
+/// The folder of a material that has one of its own.
+fn own_folder(path: &Path) -> Option<&Path> {
+    let folder = path.parent()?;
+    (folder.file_name()? == path.file_stem()?).then_some(folder)
+}
+
+/// The folder that a material is in, its own left aside.
+fn root(path: &Path) -> &Path {
+    own_folder(path).unwrap_or(path).parent().unwrap_or(Path::new("."))
 }
 
 /// Gives a material another name, and its file, too.
@@ -78,7 +131,7 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
         return Ok(path.to_owned());
     }
     material.name = name.to_owned();
-    let renamed = add(path.parent().unwrap_or(Path::new(".")), &material)?;
+    let renamed = add(root(path), &material)?;
     remove(path)?;
     Ok(renamed)
 }
@@ -90,15 +143,27 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
 pub fn duplicate(path: &Path) -> Result<PathBuf, FileError> {
     let mut material = load_material(path)?.value;
     material.name.push_str(" copy");
-    add(path.parent().unwrap_or(Path::new(".")), &material)
+    add(root(path), &material)
 }
 
-/// A file that was removed, to be restored.
+/// A material that was removed, to be restored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Removed {
     path: PathBuf,
-    bytes: Vec<u8>,
+    kept: Kept,
 }
+
+/// What is kept of it.
+#[derive(Clone, Debug, PartialEq)]
+enum Kept {
+    /// A file's contents.
+    Bytes(Vec<u8>),
+    /// Its folder, hidden beside the others until the next one is removed.
+    Folder(PathBuf),
+}
+
+/// The folder in which the one that was removed last is kept.
+const REMOVED: &str = ".removed";
 
 impl Removed {
     /// Where it was.
@@ -107,11 +172,22 @@ impl Removed {
     }
 }
 
-/// Removes a file.
+/// Removes a material, with its folder where it has one.
 ///
 /// # Errors
-/// [`FileError`]; the file is then still there.
+/// [`FileError`]; it is then still there.
 pub fn remove(path: &Path) -> Result<Removed, FileError> {
+    if let Some(folder) = own_folder(path) {
+        let kept = root(path).join(REMOVED);
+        if kept.exists() {
+            fs::remove_dir_all(&kept).map_err(cannot_write(&kept))?;
+        }
+        fs::rename(folder, &kept).map_err(cannot_write(folder))?;
+        return Ok(Removed {
+            path: path.to_owned(),
+            kept: Kept::Folder(kept),
+        });
+    }
     let bytes = fs::read(path).map_err(|source| FileError::Read {
         path: path.to_owned(),
         source,
@@ -119,20 +195,41 @@ pub fn remove(path: &Path) -> Result<Removed, FileError> {
     fs::remove_file(path).map_err(cannot_write(path))?;
     Ok(Removed {
         path: path.to_owned(),
-        bytes,
+        kept: Kept::Bytes(bytes),
     })
 }
 
-/// Puts a removed file back, beside one that has taken its name meanwhile.
+/// Puts what was removed back, beside one that has taken its name meanwhile.
 ///
 /// # Errors
 /// [`FileError::Write`].
 pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
-    let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
-    let folder = removed.path.parent().unwrap_or(Path::new("."));
-    let path = free_path(folder, &text(removed.path.file_stem()), &text(removed.path.extension()));
-    save_atomically(&path, &removed.bytes)?;
-    Ok(path)
+    let stem = removed
+        .path
+        .file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let folder = root(&removed.path);
+    match &removed.kept {
+        Kept::Bytes(bytes) => {
+            let path = free_path(folder, &stem, "json");
+            save_atomically(&path, bytes)?;
+            Ok(path)
+        }
+        Kept::Folder(kept) => {
+            let home = free_path(folder, &stem, "");
+            fs::rename(kept, &home).map_err(cannot_write(&home))?;
+            let name = home.file_name().unwrap_or_default().to_owned();
+            let [before, path] =
+                [removed.path.file_name().unwrap_or_default(), name.as_os_str()].map(|name| home.join(name));
+            let path = path.with_extension("json");
+            if before != path {
+                fs::rename(&before, &path).map_err(cannot_write(&path))?;
+            }
+            Ok(path)
+        }
+    }
 }
 
 /// A material's name as that of a file, with what is allowed everywhere.
@@ -146,10 +243,11 @@ fn file_stem(name: &str) -> String {
     }
 }
 
-/// A file of the folder that is not there yet: `stem.ending`, else with a number.
+/// A file of the folder that is not there yet: `stem.ending`, else with a number; without an ending the name of a folder.
 pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
-    let first = folder.join(format!("{stem}.{ending}"));
-    let others = (2..).map(|number| folder.join(format!("{stem} {number}.{ending}")));
+    let dot = if ending.is_empty() { "" } else { "." };
+    let first = folder.join(format!("{stem}{dot}{ending}"));
+    let others = (2..).map(|number| folder.join(format!("{stem} {number}{dot}{ending}")));
     let is_free = |path: &PathBuf| !path.exists();
     std::iter::once(first.clone())
         .chain(others)
@@ -191,6 +289,74 @@ mod tests {
         remove(&renamed).expect("removed");
         assert_eq!(list(&folder).expect("listed").len(), 3);
         assert!(remove(&renamed).is_err() && rename(&renamed, "Beta").is_err());
+    }
+
+    /// A material with images is a folder of its own, which holds all that it needs and comes back whole.
+    #[test]
+    fn materials_with_images_are_folders() {
+        use crate::scene::texture::{TextureTarget, UserTexture};
+
+        let place = tempfile::tempdir().expect("a temporary folder");
+        let folder = place.path().join("materials");
+        let images = [place.path().join("a/wood.png"), place.path().join("b/wood.png")];
+        let mut material = PRESETS[0].clone();
+        material.name = "Oak floor".to_owned();
+        let targets = [TextureTarget::BaseColor, TextureTarget::Roughness, TextureTarget::Coat];
+        let files = [images[0].clone(), images[1].clone(), place.path().join("gone.png")];
+        for (number, image) in images.iter().enumerate() {
+            fs::create_dir_all(image.parent().expect("a folder")).expect("made");
+            fs::write(image, [number as u8]).expect("written");
+        }
+        for (target, file) in std::iter::zip(targets, files) {
+            material.put_texture(
+                target,
+                UserTexture {
+                    file,
+                    ..UserTexture::default()
+                },
+            );
+        }
+        let path = add(&folder, &material).expect("added");
+        assert_eq!(path, folder.join("oak-floor/oak-floor.json"));
+        // Nothing of it lies elsewhere but what was gone before.
+        fs::remove_dir_all(place.path().join("a")).expect("removed");
+        let load = |path: &Path| load_material(path).expect("a material").value;
+        let image = |material: &MaterialSettings, target: usize| {
+            let texture = material.user_textures.get(targets[target]).expect("it has one");
+            fs::read(&texture.file).ok()
+        };
+        let has_all = |path: &Path| [0, 1, 2].map(|target| image(&load(path), target));
+        let whole = [Some(vec![0]), Some(vec![1]), None];
+        assert_eq!(has_all(&path), whole);
+        assert!(
+            !fs::read_to_string(&path).expect("text").contains("/b/"),
+            "by a name beside it"
+        );
+        let renamed = rename(&path, "Floor").expect("renamed");
+        assert_eq!(renamed, folder.join("floor/floor.json"));
+        assert_eq!(has_all(&renamed), whole);
+        let copy = duplicate(&renamed).expect("copied");
+        assert_eq!(has_all(&copy), whole);
+        let removed = remove(&renamed).expect("removed");
+        let names = |folder: &Path| {
+            list(folder)
+                .expect("listed")
+                .iter()
+                .map(Entry::name)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(names(&folder), ["Floor copy"]);
+        assert_eq!(restore(&removed).expect("restored"), renamed);
+        assert_eq!(has_all(&renamed), whole);
+        // Beside one that took its name meanwhile.
+        let removed = remove(&renamed).expect("removed");
+        add(&folder, &load(&copy))
+            .and_then(|path| rename(&path, "Floor"))
+            .expect("added");
+        let restored = restore(&removed).expect("restored");
+        assert_eq!(restored, folder.join("floor 2/floor 2.json"));
+        assert_eq!(has_all(&restored), whole);
+        assert_eq!(names(&folder), ["Floor", "Floor", "Floor copy"]);
     }
 
     #[test]

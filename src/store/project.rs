@@ -245,6 +245,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     if let Some(file) = &mut document.view.lut {
         *file = map(file);
     }
+    if let Some(reference) = &mut document.view.reference {
+        reference.file = map(&reference.file);
+    }
     for material in &mut document.materials {
         material.user_textures.map_files(&map);
     }

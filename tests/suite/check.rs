@@ -67,7 +67,7 @@ fn the_whole_check_passes() {
                 thorough: false,
             },
             &AtomicBool::new(false),
-            |_| {},
+            |_, _| {},
         )
         .unwrap()
         .expect("nobody stops it");
@@ -88,7 +88,7 @@ fn a_stopped_check_has_no_verdict() {
         thorough: true,
     };
     let told = std::cell::RefCell::new(Vec::new());
-    let checks = run(options, &stop, |group| {
+    let checks = run(options, &stop, |group, _| {
         told.borrow_mut().push(group.to_owned());
         stop.store(true, std::sync::atomic::Ordering::Relaxed);
     });

@@ -11,6 +11,7 @@ use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
+use glossmith::scene::camera::Projection;
 use glossmith::scene::environment::EnvironmentSource;
 use proptest::prelude::*;
 
@@ -135,6 +136,7 @@ fn any_document(seed: u64) -> Document {
             angle_deg: f64::from(setting(random, [0.01, 90.0])),
             color: setting_color(random),
             strength: setting(random, [0.0, 1e6]),
+            is_hidden: random.below(3) == 0,
             is_muted: false,
         }];
     }
@@ -142,6 +144,9 @@ fn any_document(seed: u64) -> Document {
     camera.fov_deg = f64::from(setting(random, [0.1, 170.0]));
     camera.yaw_deg = f64::from(setting(random, [-180.0, 180.0]));
     camera.pitch_deg = f64::from(setting(random, [-90.0, 90.0]));
+    if random.below(3) == 0 {
+        camera.projection = Projection::Orthographic;
+    }
     if random.below(4) == 0 {
         camera.distance = Some(f64::from(setting(random, [1e-6, 1e9])));
     }

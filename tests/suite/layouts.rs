@@ -54,7 +54,7 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(PixelColors: PixelColors { all, odd }),
         layout!(GuideSums: GuideSums { albedo, hits, normal, depth }),
         layout!(Camera: Camera<f32> {
-            origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
+            origin, lens_radius, forward, focus_distance, right, filter_kind, up, parallel_from,
         }),
         Layout {
             name: "Material",

@@ -12,7 +12,7 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::workspaces::MEASURE;
 use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{AreaLight, Document};
+use glossmith::document::{AreaLight, AreaLightShape, Document};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
@@ -400,7 +400,12 @@ fn an_area_light_is_added_moved_and_removed() {
     // The panel may have to be scrolled to reach it, which accessibility does by itself.
     harness.get_by_label("Add area light").click_accesskit();
     settle(&mut harness);
-    assert_eq!(harness.state().document().lighting.area_lights, [AreaLight::default()]);
+    let added = harness.state().document().lighting.area_lights.clone();
+    assert_eq!(added.len(), 1);
+    assert_eq!(
+        (added[0].shape, added[0].strength),
+        (AreaLightShape::Quad, AreaLight::default().strength)
+    );
     let lit = picture(&harness);
     assert_ne!(lit, before);
     harness

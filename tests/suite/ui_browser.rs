@@ -9,10 +9,11 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::examples::still_life;
 use glossmith::store::{PRESETS, save_material};
 
 use super::cli_support::write_hdr;
-use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, wait};
+use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait};
 
 fn has(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
@@ -39,7 +40,7 @@ fn pictures_have_any_size_and_the_smallest_make_a_list() {
     let mut harness = editor_of(options());
     harness.run_steps(3);
     let [a, b] = ["Plastic blue", "Plastic red"].map(|name| place(&harness, name));
-    assert!((a.width() - 72.0).abs() < 1.0 && a.height() > a.width(), "{a:?}");
+    assert!((a.width() - 80.0).abs() < 1.0 && a.height() > a.width(), "{a:?}");
     assert!((a.top() - b.top()).abs() < 1.0, "side by side");
     let panel = harness.get_by_role_and_label(Role::TextInput, "Search presets").rect();
     for name in ["Amber", "Pearl", "Brushed steel", "Environment Furnace"] {
@@ -58,8 +59,8 @@ fn pictures_have_any_size_and_the_smallest_make_a_list() {
         }));
         harness.run_steps(3);
     };
-    slider(&mut harness, 120.0);
-    assert!((place(&harness, "Gold").width() - 120.0).abs() < 1.0);
+    slider(&mut harness, 256.0);
+    assert!((place(&harness, "Gold").width() - 256.0).abs() < 1.0);
     slider(&mut harness, 36.0);
     let [a, b] = ["Gold", "Copper"].map(|name| place(&harness, name));
     assert!(b.top() >= a.bottom() && a.width() > 150.0, "a list: {a:?}, {b:?}");
@@ -105,6 +106,73 @@ fn favourites_come_first_tags_are_found_and_both_are_kept() {
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert!(!has(&harness, "Gold"), "nothing is found by a tag that was taken away");
+}
+
+/// What is tagged in the browser is found by its tag in the palette, favourites first.
+#[test]
+fn the_palette_finds_by_the_browsers_tags() {
+    let mut harness = editor_of(options());
+    harness.run_steps(3);
+    for name in ["Amber", "Gold"] {
+        click(&mut harness, &format!("More of {name}"));
+        click(&mut harness, "Tags…");
+        let label = format!("Tags of {name}");
+        let field = harness.get_by_role_and_label(Role::TextInput, &label);
+        field.set_text_value_accesskit("jewel");
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+    }
+    click(&mut harness, "More of Gold");
+    click(&mut harness, "Add to favourites");
+    request(&mut harness, Action::Do(Command::Palette));
+    harness.event(egui::Event::Text("jewel".to_owned()));
+    harness.run_steps(3);
+    assert!(has(&harness, "Material Amber") && has(&harness, "Material Gold"));
+    assert!(place(&harness, "Material Gold").top() < place(&harness, "Material Amber").top());
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().materials[0].name, "Gold");
+}
+
+/// A preset chooses the slots that have it, and takes the place of the edited material wherever that is used.
+#[test]
+fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
+    let mut document = still_life();
+    (document.render.width, document.render.height, document.render.samples) = (48, 32, 1);
+    document.materials[2] = document.materials[0].clone();
+    let name = document.materials[0].name.clone();
+    let mut harness = editor_of(Options {
+        document: Some(document.clone()),
+        ..options()
+    });
+    settle(&mut harness);
+    click(&mut harness, "More of Ruby glass");
+    assert!(
+        harness
+            .get_by_label("Show where it is used (0)")
+            .accesskit_node()
+            .is_disabled()
+    );
+    click(&mut harness, &format!("Replace on all that use {name} (2)"));
+    settle(&mut harness);
+    let materials = harness.state().document().materials.clone();
+    for (slot, (now, before)) in std::iter::zip(&materials, &document.materials).enumerate() {
+        match slot {
+            0 | 2 => assert_eq!(now.name, "Ruby glass"),
+            _ => assert_eq!(now, before, "slot {slot}"),
+        }
+    }
+    undo(&mut harness);
+    assert_eq!(harness.state().document().materials, document.materials);
+    let redo = Action::Do(Command::Redo);
+    request(&mut harness, redo);
+    settle(&mut harness);
+    let last = materials.len() - 1;
+    request(&mut harness, Action::SelectSlot(last));
+    click(&mut harness, "More of Ruby glass");
+    click(&mut harness, "Show where it is used (2)");
+    assert!(harness.query_by_label("2 materials are edited together.").is_some());
 }
 
 /// Chooses a folder by the path field.

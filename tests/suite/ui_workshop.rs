@@ -283,6 +283,12 @@ fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
     see_label(&mut harness, "Checking samples against densities …");
     request(&mut harness, Action::Do(Command::Restart));
     wait(&mut harness, "a picture beside the check", App::is_settled);
+    see(&mut harness, "what is left of it", |harness| {
+        harness
+            .query_all_by_label_contains("against densities … ")
+            .next()
+            .is_some()
+    });
     harness.get_by_label("Stop").click_accesskit();
     see_label(&mut harness, "Stopped.");
     // The word comes a moment before the thread is free.

@@ -14,7 +14,7 @@ use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, param
 use crate::render::EngineChoice;
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
-use crate::scene::camera::framing_distance;
+use crate::scene::camera::{Projection, framing_distance};
 use crate::store::examples::{EXAMPLES, Example};
 
 /// How many times larger one step of magnification shows the image.
@@ -38,25 +38,21 @@ impl App {
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
             Action::ChooseLut => self.dialogs.ask(Purpose::OpenLut, String::new(), ctx),
+            Action::ChooseReference => self.dialogs.ask(Purpose::Reference, String::new(), ctx),
             Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),
             Action::CopyAs(material, format) => self.copy_as(*material, format),
-            Action::SelectSlot(slot) => {
-                self.shared.slot = slot;
-                self.shared.selection.is_made = true;
-                self.shared.selection.also.clear();
-                self.edits.seal();
+            Action::SelectSlot(slot) => self.select_slots(&[slot]),
+            Action::SelectSlots(slots) => {
+                self.shared.selection.objects.clear();
+                self.select_slots(&slots);
             }
             Action::Explain(pixel, sample) => self.explain(pixel, sample),
             Action::ChangeLibrary(change) => self.change_library(change),
             Action::ChangeSnapshots(change) => self.change_snapshots(change),
             Action::UseSnapshot(path) => self.use_snapshot(&path),
             Action::CompareWith(rival) => self.compare_with(rival),
-            Action::LookFrom(yaw_deg, pitch_deg) => {
-                let camera = &mut self.document.camera;
-                (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
-                self.edits.note("Look from a side", "");
-            }
+            Action::LookFrom(yaw_deg, pitch_deg) => self.look_from(yaw_deg, pitch_deg),
             Action::OpenExample(number) => self.open_example(number),
             Action::UseBookmark(number) => {
                 if let Some(bookmark) = self.document.bookmarks.get(number) {
@@ -167,6 +163,17 @@ impl App {
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
             }
+            Command::FrontView => self.look_along(0.0, 0.0),
+            Command::SideView => self.look_along(90.0, 0.0),
+            Command::TopView => self.look_along(0.0, 90.0),
+            Command::ToggleProjection => {
+                let projection = &mut self.document.camera.projection;
+                *projection = match *projection {
+                    Projection::Perspective => Projection::Orthographic,
+                    Projection::Orthographic => Projection::Perspective,
+                };
+                self.edits.note("Projection", "camera.projection");
+            }
             Command::Inspect => {
                 let look = &mut self.shared.look;
                 look.is_pinned = look.at.is_some() && !look.is_pinned;
@@ -265,6 +272,28 @@ impl App {
             Command::SaveToMyPresets => self.change_library(library::Change::Add),
             of_files => self.file_command(ctx, of_files),
         }
+    }
+
+    fn select_slots(&mut self, slots: &[usize]) {
+        let Some(first) = slots.first() else { return };
+        self.shared.slot = *first;
+        let selection = &mut self.shared.selection;
+        selection.is_made = true;
+        selection.also = slots[1..].iter().copied().collect();
+        self.edits.seal();
+    }
+
+    /// Turns the camera about its target.
+    fn look_from(&mut self, yaw_deg: f64, pitch_deg: f64) {
+        let camera = &mut self.document.camera;
+        (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
+        self.edits.note("Look from a side", "");
+    }
+
+    /// The same in parallel rays.
+    fn look_along(&mut self, yaw_deg: f64, pitch_deg: f64) {
+        self.document.camera.projection = Projection::Orthographic;
+        self.look_from(yaw_deg, pitch_deg);
     }
 
     /// Goes to another step of the history. Where that has another model, the slot is the one that was selected of it last.

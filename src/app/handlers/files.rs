@@ -11,7 +11,7 @@ use crate::app::services::watched::{self, Watched};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, MaterialSettings, Reference};
 use crate::import::endings::ending;
 use crate::import::holds_model;
 use crate::render::output::format_of;
@@ -319,6 +319,11 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenLut => self.use_lut(path),
+            Purpose::Reference => {
+                let before = self.document.view.reference.take().unwrap_or_default();
+                self.document.view.reference = Some(Reference { file: path, ..before });
+                self.edits.note("Choose a reference image", "");
+            }
             Purpose::Texture(target) => self.put_textures(&[(target, UserTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),

@@ -13,14 +13,20 @@ const HALF_CHARACTER: f64 = 0.0135;
 /// Least distances between two labels of an axis, points. What is not drawn in full is not drawn at all: egui's own labels
 /// fade as they come near each other, until they can't be read.
 const LABEL_SPACING: [f32; 2] = [36.0, 19.0];
+/// Powers of ten along an axis of which each gets a label.
+const POWERS_MAX: f64 = 6.5;
 /// The margin around what is drawn, as shares of it: the first and the last label stay within the chart.
 const MARGIN: [f32; 2] = [0.07, 0.07];
 
 /// A plot that stands still; what a number on either axis is called is up to the chart.
-pub(in crate::app) fn still<'a>(name: &str, height: f32, in_words: [fn(f64) -> String; 2]) -> Plot<'a> {
+pub(in crate::app) fn still<'a, F>(name: &str, height: f32, in_words: [F; 2]) -> Plot<'a>
+where
+    F: Fn(f64) -> String + Clone + 'a,
+{
     let formatter = |axis: usize| {
+        let in_words = in_words[axis].clone();
         move |mark: GridMark, range: &RangeInclusive<f64>| {
-            let label = in_words[axis](mark.value);
+            let label = in_words(mark.value);
             let length = if axis == 0 { label.chars().count() } else { 0 };
             let fits = is_within(mark.value, range, length);
             if fits { label } else { String::new() }
@@ -44,16 +50,13 @@ pub(in crate::app) fn still<'a>(name: &str, height: f32, in_words: [fn(f64) -> S
 
 /// A plot of logarithms to base 10 that stands still: seconds to the right, shares upwards; `axes` are the titles.
 pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
-    still(
-        name,
-        height,
-        [|x| duration(10.0_f64.powf(x)), |y| percent_short(10.0_f64.powf(y))],
-    )
-    .x_axis_label(axes[0])
-    .y_axis_label(axes[1])
-    .x_grid_spacer(decades)
-    .y_grid_spacer(decades)
-    .set_margin_fraction(margin.into())
+    let in_words: [fn(f64) -> String; 2] = [|x| duration(10.0_f64.powf(x)), |y| percent_short(10.0_f64.powf(y))];
+    still(name, height, in_words)
+        .x_axis_label(axes[0])
+        .y_axis_label(axes[1])
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .set_margin_fraction(margin.into())
 }
 
 /// A number on an axis.
@@ -63,6 +66,27 @@ pub(in crate::app) fn short(value: f64) -> String {
     } else {
         format!("{value:.0e}")
     }
+}
+
+/// The first round number that is not below this one: where an axis ends so that its last label is always seen.
+pub(in crate::app) fn rounded_up(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.max(1e-9).log10().floor());
+    let digits = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
+    let is_above = |digit: &f64| digit * power >= value * (1.0 - 1e-9);
+    digits.into_iter().find(is_above).unwrap_or(10.0) * power
+}
+
+/// A line for each power of ten of an axis that counts them from 0, to either side; for every other one where they are
+/// many.
+pub(in crate::app) fn powers(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let step = if high - low > POWERS_MAX { 2 } else { 1 };
+    let marks = (low.ceil() as i32..=high.floor() as i32).filter(|power| power % step == 0);
+    let mark = |power: i32| GridMark {
+        value: power.into(),
+        step_size: step.into(),
+    };
+    marks.map(mark).collect()
 }
 
 /// Whether a label of this many characters along its axis stays within the chart: other things are drawn beside it.
@@ -88,6 +112,24 @@ fn decades(input: GridInput) -> Vec<GridMark> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A curve that was drawn ends a little below 1 or above 2, and its axis where a label is seen.
+    #[test]
+    fn axes_end_at_round_numbers_that_are_labelled() {
+        for (top, end) in [
+            (0.93, 1.0),
+            (1.0, 1.0),
+            (1.02, 1.5),
+            (2.1, 3.0),
+            (0.062, 0.08),
+            (97.0, 100.0),
+        ] {
+            let rounded = rounded_up(top);
+            assert!((rounded - end).abs() < 1e-9 * end, "{top} to {rounded}");
+            let margin = f64::from(MARGIN[1]) * rounded;
+            assert!(is_within(rounded, &(-margin..=rounded + margin), 0), "{rounded}");
+        }
+    }
 
     #[test]
     fn labels_stay_within_their_chart() {

@@ -17,6 +17,8 @@ use crate::optics::vector::vec3;
 const LABEL_SHARE: f32 = 0.40;
 /// The least width of a label, points.
 const LABEL_MIN: f32 = 84.0;
+/// Width of a colour's swatch beside its code at least, points.
+const SWATCH_MIN: f32 = 26.0;
 /// Width of a colour's hexadecimal field, points.
 const HEX_WIDTH: f32 = 68.0;
 
@@ -91,7 +93,12 @@ fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
     let format = |color: Color32| TextFormat::simple(font.clone(), color);
     job.append(name.label, 0.0, format(ui.visuals().text_color()));
     if !name.symbol.is_empty() && name.symbol != name.label {
-        job.append(name.symbol, 6.0, format(ui.visuals().weak_text_color()));
+        let mut with_symbol = job.clone();
+        with_symbol.append(name.symbol, 6.0, format(ui.visuals().weak_text_color()));
+        // A part of a symbol says nothing.
+        if ui.painter().layout_job(with_symbol.clone()).size().x <= width {
+            job = with_symbol;
+        }
     }
     let layout = Layout::left_to_right(Align::Center);
     // Not a stop of the tab key: a press of a key on it would do nothing.
@@ -228,7 +235,10 @@ const PICKER_ROUNDING: f32 = 1e-5;
 /// A linear colour: a swatch that opens a picker, and its sRGB code to type.
 pub(in crate::app) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
     let spacing = ui.spacing().item_spacing.x;
-    let swatch_width = (ui.available_width() - HEX_WIDTH - spacing).max(30.0);
+    let beside_code = ui.available_width() - HEX_WIDTH - spacing;
+    // In a narrow panel there is no room for the code: the picker shows the numbers.
+    let has_code = beside_code >= SWATCH_MIN;
+    let swatch_width = if has_code { beside_code } else { ui.available_width() };
     // The picker goes over hue and saturation, which rounds, even when it is not touched, and reports that as a change.
     let mut picked = *linear;
     let swatch = ui
@@ -247,7 +257,7 @@ pub(in crate::app) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> R
         .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
     show_focus(ui, &swatch);
     let mut response = swatch.clone();
-    if hex_field(ui, name, linear) {
+    if has_code && hex_field(ui, name, linear) {
         response.mark_changed();
     }
     response

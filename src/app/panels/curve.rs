@@ -5,7 +5,7 @@ use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 
 use super::Panel;
 use crate::app::desk::Desk;
-use crate::app::kit::charts::{short, still};
+use crate::app::kit::charts::{rounded_up, short, still};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
@@ -163,7 +163,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32
         .include_x(0.0)
         .include_x(1.0)
         .include_y(0.0)
-        .include_y(top)
+        .include_y(rounded_up(top))
         .show(ui, |plot_ui| {
             plot_ui.line(Line::new("D(ξ)", PlotPoints::from(line)).color(accent).width(2.0));
             if let Some(points) = points {
@@ -347,10 +347,10 @@ fn distance_plot(ui: &mut Ui, curve: Curve, table: &[f32]) {
     let highest = density.iter().map(|[_, f]| *f).fold(1.0, f64::max).min(6.0);
     let shown = plot("distance", "D: distance from the mirror direction", plot_height(ui))
         .include_x(0.0)
-        .include_x(top)
+        .include_x(rounded_up(top))
         .include_y(0.0)
-        .include_y(highest)
-        .default_y_bounds(0.0, 1.06 * highest)
+        .include_y(rounded_up(highest))
+        .default_y_bounds(0.0, 1.06 * rounded_up(highest))
         .legend(egui_plot::Legend::default())
         .show(ui, |plot_ui| {
             let grey = visuals.weak_text_color();

@@ -12,6 +12,7 @@ pub mod log_failures;
 pub(super) mod look;
 pub(super) mod messages;
 pub(super) mod recent;
+pub(super) mod reference;
 pub(super) mod selection;
 pub(super) mod shelves;
 pub mod snapshots;

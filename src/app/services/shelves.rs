@@ -8,9 +8,13 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::services::environments::environment_label;
 use crate::app::services::library::Library;
+use crate::document::MaterialSettings;
 use crate::render::background::Background;
 use crate::render::thumbnails;
+use crate::scene::environment::EnvironmentSource;
+use crate::store::preset::command_line_name;
 use crate::store::shelf::{Contents, ItemKind, Shelf};
 
 /// From one look into the watched folders to the next, while they are seen.
@@ -30,10 +34,23 @@ pub(in crate::app) struct KeptShelves {
     pub(in crate::app) picture_side: f32,
 }
 
+/// The key of a shipped material.
+pub(in crate::app) fn preset_key(material: &MaterialSettings) -> String {
+    format!("preset:{}", command_line_name(&material.name))
+}
+
+/// The key of an environment.
+pub(in crate::app) fn environment_key(source: &EnvironmentSource) -> String {
+    match source {
+        EnvironmentSource::File(path) => path.display().to_string(),
+        _ => format!("environment:{}", environment_label(source).to_lowercase()),
+    }
+}
+
 /// The side of an image in a list.
 pub(in crate::app) const LIST: f32 = 36.0;
 /// The largest side of an image.
-pub(in crate::app) const SIDE_MAX: f32 = 160.0;
+pub(in crate::app) const SIDE_MAX: f32 = 256.0;
 
 impl Default for KeptShelves {
     fn default() -> Self {
@@ -41,7 +58,7 @@ impl Default for KeptShelves {
             favourites: BTreeSet::new(),
             tags: BTreeMap::new(),
             folders: Vec::new(),
-            picture_side: 72.0,
+            picture_side: 80.0,
         }
     }
 }

@@ -40,6 +40,7 @@ pub(in crate::app) enum Purpose {
     WatchFolder,
     Texture(TextureTarget),
     OpenLut,
+    Reference,
 }
 
 impl Purpose {
@@ -60,6 +61,7 @@ impl Purpose {
             Self::WatchFolder => "Watch a folder",
             Self::Texture(_) => "Choose a texture",
             Self::OpenLut => "Choose a table of colours",
+            Self::Reference => "Choose a reference image",
         }
     }
 
@@ -81,7 +83,7 @@ impl Purpose {
             Self::SaveLayers => ("OpenEXR images", vec!["exr"]),
             Self::SaveWindow => ("PNG images", vec!["png"]),
             Self::WatchFolder => ("Folders", Vec::new()),
-            Self::Texture(_) => ("Images", endings(PICTURE_KINDS)),
+            Self::Texture(_) | Self::Reference => ("Images", endings(PICTURE_KINDS)),
             Self::OpenLut => (FileKind::ColorTable.label(), FileKind::ColorTable.endings()),
         }
     }

@@ -11,7 +11,9 @@ use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
 
 /// Points that the side of an image takes.
-const PICTURE: f32 = 128.0;
+const PICTURE: f32 = 176.0;
+/// Width of the sheet, points: three of them beside each other.
+const SHEET: f32 = 580.0;
 /// What the images of a ball show.
 const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference"];
 
@@ -60,7 +62,7 @@ impl ExportSheet {
         let ready = self.ready.as_ref()?;
         let mut answer = None;
         let modal = egui::Modal::new(egui::Id::unique("export")).show(ctx, |ui| {
-            ui.set_width(560.0);
+            ui.set_width(SHEET);
             book::heading(ui, "Export", EXPORT);
             let report = &ready.prepared.report;
             ui.label(report.output.display().to_string());
@@ -125,6 +127,10 @@ fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[Text
     }
     if let Some(difference) = material.difference {
         ui.label(format!("The two balls differ by {:.1} %.", 100.0 * difference));
+        widgets::note(
+            ui,
+            "Difference: dark for none, yellow from half the mean brightness; noise is left out.",
+        );
     }
     if material.carries_exact_parameters {
         widgets::note(ui, "The exact parameters travel with it: opened here, nothing is lost.");

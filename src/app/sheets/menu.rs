@@ -10,7 +10,8 @@ use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::import;
-use crate::app::sheets::{palette, workspaces};
+use crate::app::sheets::palette::{self, Findable};
+use crate::app::sheets::workspaces;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
@@ -30,7 +31,7 @@ pub(in crate::app) enum Sheet {
         search: String,
         selected: usize,
         /// What can be used beside commands, with what uses it.
-        things: Vec<(String, Action)>,
+        things: Vec<Findable>,
     },
     Shortcuts,
     ModelFile,

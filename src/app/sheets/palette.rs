@@ -14,7 +14,29 @@ struct Entry {
     text: String,
     help: &'static str,
     keys: String,
+    is_favourite: bool,
     action: Action,
+}
+
+/// Something that can be used, and what it is found by.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::app) struct Findable {
+    pub(in crate::app) label: String,
+    /// Words beside those of the label.
+    pub(in crate::app) tags: String,
+    pub(in crate::app) is_favourite: bool,
+    pub(in crate::app) action: Action,
+}
+
+impl Findable {
+    pub(in crate::app) fn new(label: String, action: Action) -> Self {
+        Self {
+            label,
+            tags: String::new(),
+            is_favourite: false,
+            action,
+        }
+    }
 }
 
 /// The keys go to the palette with the next frame: what is typed right after it was asked for is not lost.
@@ -32,7 +54,7 @@ pub(in crate::app) fn show(
     search: &mut String,
     selected: &mut usize,
     document: &Document,
-    (edited, things): (&MaterialSettings, &[(String, Action)]),
+    (edited, things): (&MaterialSettings, &[Findable]),
     actions: &mut Vec<Action>,
 ) -> bool {
     ui.set_width(420.0);
@@ -92,18 +114,15 @@ fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Entry> {
         text: format!("{} {}", parameter.full_name(), parameter.key),
         help: parameter.help,
         keys: String::new(),
+        is_favourite: false,
         action: Action::Edit(parameter.key),
     })
 }
 
 /// What has all the words of the search, those first that have them in their names; commands, then parameters, then
-/// panels, then what can be used: materials, environments, views, files, workspaces.
-fn found(
-    ui: &Ui,
-    search: &str,
-    document: &Document,
-    (edited, things): (&MaterialSettings, &[(String, Action)]),
-) -> Vec<Entry> {
+/// panels, then what can be used: materials, environments, views, files, workspaces. Favourites of the browser stand before
+/// others, and are found by their tags as there.
+fn found(ui: &Ui, search: &str, document: &Document, (edited, things): (&MaterialSettings, &[Findable])) -> Vec<Entry> {
     let search = search.to_lowercase();
     let words: Vec<&str> = search.split_whitespace().collect();
     let commands = Command::ALL.iter().filter(|command| **command != Command::Palette);
@@ -115,6 +134,7 @@ fn found(
             .shortcut()
             .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
             .unwrap_or_default(),
+        is_favourite: false,
         action: Action::Do(*command),
     });
     // A texture's switch stands beside its image.
@@ -132,21 +152,23 @@ fn found(
         text: pane.command(),
         help: "",
         keys: String::new(),
+        is_favourite: false,
         action: Action::Reveal(pane),
     });
     let has_words = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word))
     };
-    let things = things.iter().map(|(label, action)| Entry {
-        label: label.clone(),
-        text: label.clone(),
+    let things = things.iter().map(|thing| Entry {
+        label: thing.label.clone(),
+        text: format!("{} {}", thing.label, thing.tags),
         help: "",
         keys: String::new(),
-        action: action.clone(),
+        is_favourite: thing.is_favourite,
+        action: thing.action.clone(),
     });
     let entries = commands.chain(parameters).chain(settings).chain(panes).chain(things);
     let mut found: Vec<Entry> = entries.filter(|entry| has_words(&entry.text)).collect();
-    found.sort_by_key(|entry| !has_words(&entry.label));
+    found.sort_by_key(|entry| (!has_words(&entry.label), !entry.is_favourite));
     found
 }

@@ -57,7 +57,7 @@ const MODELS: [(&str, ModelSource); 5] = [
     ("Shader ball", ModelSource::Shaderball),
 ];
 
-fn model_label(source: &ModelSource) -> String {
+pub(super) fn model_label(source: &ModelSource) -> String {
     let built_in = MODELS.iter().find(|(_, of)| of == source);
     match (built_in, source) {
         (Some((label, _)), _) => (*label).to_owned(),

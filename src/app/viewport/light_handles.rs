@@ -59,13 +59,24 @@ impl LightHandles {
             if is_chosen {
                 outline(&ui.painter_at(clip), &view, place, &light);
             }
+            let is_outside = view.seen_inside(light.shape().frame().middle).is_none();
+            let mut placed = handles(&light, &view, MARGIN);
+            let on_screen = |at: DVec2| place.min + vec2(at.x as f32, at.y as f32);
+            if is_chosen {
+                axes(&ui.painter_at(clip), &placed, on_screen);
+            }
             // The light's own mark last, over its other handles.
-            for (handle, at) in handles(&light, &view, MARGIN).into_iter().rev() {
-                let at = place.min + vec2(at.x as f32, at.y as f32);
+            placed.reverse();
+            for (handle, at) in placed {
+                let at = on_screen(at);
                 let is_mark = handle == LightHandle::Direction;
                 if (is_mark || is_chosen) && clip.expand(1.0).contains(at) {
                     let response = interact(ui, clip, index, handle, at);
-                    draw(&ui.painter_at(clip), ui, handle, at, &light, is_chosen, &response);
+                    let painter = ui.painter_at(clip);
+                    if is_outside {
+                        arrow(&painter, at, (at - place.center()).normalized());
+                    }
+                    draw(&painter, ui, handle, at, &light, is_chosen, &response);
                     self.react(ui, &response, (index, handle), &view, place, desk);
                 }
             }
@@ -155,10 +166,7 @@ impl Held {
 fn interact(ui: &Ui, clip: Rect, index: usize, handle: LightHandle, at: Pos2) -> Response {
     let rect = Rect::from_center_size(at, Vec2::splat(TARGET)).intersect(clip);
     let id = Id::unique(("light handle", index, handle.name()));
-    let name = match handle {
-        LightHandle::Direction => format!("Move area light {}", index + 1),
-        _ => format!("{} handle of area light {}", handle.label(), index + 1),
-    };
+    let name = handle.full_name(&format!("area light {}", index + 1));
     let response = ui.interact(rect, id, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
     let cursor = if response.dragged() {
@@ -208,6 +216,39 @@ fn line(painter: &Painter, points: Vec<Pos2>, color: Color32) {
         Stroke::new(3.0, Color32::from_black_alpha(110)),
     ));
     painter.add(Shape::line(points, Stroke::new(1.2, color)));
+}
+
+/// Points outwards beside the mark of a light that is not in the image.
+fn arrow(painter: &Painter, at: Pos2, outwards: Vec2) {
+    let tip = at + (MARK + 7.0) * outwards;
+    let foot = at + (MARK + 1.0) * outwards;
+    let half = 4.5 * outwards.rot90();
+    let shadow = Stroke::new(2.0, Color32::from_black_alpha(130));
+    painter.add(Shape::convex_polygon(
+        vec![tip, foot + half, foot - half],
+        Color32::WHITE,
+        shadow,
+    ));
+}
+
+/// The colour of an axis, as most programs have it.
+fn axis_color(handle: LightHandle) -> Option<Color32> {
+    match handle {
+        LightHandle::AlongX => Some(Color32::from_rgb(230, 80, 70)),
+        LightHandle::AlongY => Some(Color32::from_rgb(110, 190, 60)),
+        LightHandle::AlongZ => Some(Color32::from_rgb(80, 140, 240)),
+        _ => None,
+    }
+}
+
+/// Lines from the light to the handles of its axes.
+fn axes(painter: &Painter, placed: &[(LightHandle, DVec2)], on_screen: impl Fn(DVec2) -> Pos2) {
+    let mark = placed.iter().find(|(handle, _)| *handle == LightHandle::Direction);
+    for (handle, at) in placed {
+        if let (Some((_, from)), Some(color)) = (mark, axis_color(*handle)) {
+            line(painter, vec![on_screen(*from), on_screen(*at)], color);
+        }
+    }
 }
 
 /// The rim of the chosen light, the line to its target, and where a spot's cone ends there.
@@ -282,6 +323,15 @@ fn draw(
             let square = Rect::from_center_size(at, Vec2::splat(8.0));
             painter.rect(square, 1.0, Color32::from_gray(40), shadow, egui::StrokeKind::Middle);
             painter.rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
+        }
+        LightHandle::InPlane => {
+            let square = Rect::from_center_size(at, Vec2::splat(9.0));
+            painter.rect(square, 1.0, Color32::from_gray(90), shadow, egui::StrokeKind::Middle);
+            painter.rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
+        }
+        LightHandle::AlongX | LightHandle::AlongY | LightHandle::AlongZ => {
+            let color = axis_color(handle).filter(|_| !is_lit).unwrap_or(rim);
+            painter.circle(at, 5.0, color, shadow);
         }
         LightHandle::Turn => {
             painter.circle_stroke(at, 5.0, shadow);

@@ -10,6 +10,7 @@ mod header;
 mod hints;
 mod legend;
 mod light_handles;
+mod loading;
 mod look;
 mod magnifier;
 mod messages;
@@ -17,6 +18,7 @@ mod orbit;
 mod outline;
 mod picking;
 mod precision;
+mod reference;
 mod region;
 mod seen;
 
@@ -33,8 +35,9 @@ use super::actions::Action;
 use super::desk::{Desk, Resolution};
 use super::kit::theme;
 use super::services::compare::View;
+use crate::document::ReferencePlace;
 use crate::render::shown;
-use crate::render::worker::{Activity, Picture, Scene};
+use crate::render::worker::{Picture, Scene};
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -88,6 +91,8 @@ struct Shown {
     shows_pixels: bool,
     /// Some of it lets through what is behind.
     is_transparent: bool,
+    /// Behind it is a plate.
+    over_plate: bool,
 }
 
 impl Shown {
@@ -125,7 +130,7 @@ impl Shown {
             let size = [picture.width as usize, picture.height as usize];
             ColorImage::from_rgba_premultiplied(size, &picture.rgba)
         });
-        if self.is_transparent {
+        if self.is_transparent && !self.over_plate {
             checker(ui, clip.intersect(place));
         }
         self.show(ui, clip, place);
@@ -171,7 +176,10 @@ impl Viewport {
         let is_compared = desk.shared.compare.is_on;
         let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
         let compare_bar = Rect::from_min_size(bar.left_bottom(), vec2(whole.width(), below));
-        let area = Rect::from_min_max(compare_bar.left_bottom(), whole.max);
+        let (area, beside) = reference::split(Rect::from_min_max(compare_bar.left_bottom(), whole.max), desk);
+        if let Some(beside) = beside {
+            reference::beside(ui, beside, desk);
+        }
         self.area = Some(if is_compared {
             compare::area_of_a(area, desk.shared.compare.view)
         } else {
@@ -193,7 +201,9 @@ impl Viewport {
                 self.compared(ui, area, picture, desk)
             } else {
                 let place = self.magnified(ui, &response, area, picture, desk.shared.resolution);
+                self.picture.over_plate = reference::within(ui, area, place, ReferencePlace::Under, desk);
                 self.picture.paint(ui, area.intersect(place), place, picture, 0);
+                reference::within(ui, area, place, ReferencePlace::Over, desk);
                 if let Some(scene) = &desk.snapshot.scene
                     && desk.shared.shown == shown::Shown::Precision
                 {
@@ -237,8 +247,8 @@ impl Viewport {
             let stroke = egui::Stroke::new(1.0, theme::accent(is_dark));
             ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
         }
-        if picture.is_some() {
-            loading(ui, area, desk);
+        if let Some(picture) = &picture {
+            loading::show(ui, area, picture, desk);
         }
         messages::open_model(ui, area, desk);
         self.denoiser.show(ui, area, desk);
@@ -463,25 +473,6 @@ fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     let color = ui.visuals().text_color();
     ui.painter()
         .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
-}
-
-/// What is being loaded while the image before it stays.
-fn loading(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
-    let text = match &desk.snapshot.activity {
-        Activity::Loading(what) => format!("Loading {what} …"),
-        Activity::Starting => "Starting the engine …".to_owned(),
-        _ => return,
-    };
-    let corner = area.min + Vec2::splat(LOADING_MARGIN);
-    let builder = egui::UiBuilder::new()
-        .scope_id(egui::Id::unique("loading"))
-        .max_rect(Rect::from_min_max(corner, area.max))
-        .layout(egui::Layout::left_to_right(egui::Align::Min));
-    let mut inside = ui.new_child(builder);
-    egui::Frame::popup(inside.style()).show(&mut inside, |ui| {
-        ui.add(egui::Spinner::new().size(14.0));
-        ui.add(egui::Label::new(text).truncate())
-    });
 }
 
 /// What every screen shows of the image at `place`: actions, and within them titles (EBU R 95).

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::document::CameraSettings;
 use crate::job::Job;
+use crate::scene::camera::framing_distance;
 
 /// Degrees of a turn for a drag of one point.
 const DEG_PER_POINT: f64 = 0.35;
@@ -29,7 +30,9 @@ impl Orbit {
         let geometry = &job.geometry;
         let radius = geometry.world_units_per_unit;
         let target = camera.target.map_or(geometry.center_world, DVec3::from_array);
-        let distance = camera.distance.unwrap_or(job.settings.camera.focus_distance * radius);
+        let [width, height] = job.settings.image_size.map(f64::from);
+        let framing = framing_distance(camera.fov_deg, width / height.max(1.0));
+        let distance = camera.distance.unwrap_or(framing * radius);
         let mut orbit = Self {
             target,
             yaw_deg: camera.yaw_deg,

@@ -36,7 +36,8 @@ pub(super) fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
         slot: (slot < scene.model.slots.len()).then_some(slot),
         object: Some(geometry.object(hit.triangle as usize) as usize)
             .filter(|object| *object < scene.model.objects.len()),
-        depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
+        depth: (f64::from(hit.t) * direction.dot(camera.forward) - camera.parallel_from)
+            * geometry.world_units_per_unit,
         view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
     })
 }

@@ -306,7 +306,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             return;
         }
         let albedo = vertex.throughput * material_albedo(material, &point.surface, layers);
-        let depth = vertex.distance * vertex.direction.dot(self.camera.forward);
+        let depth = vertex.distance * vertex.direction.dot(self.camera.forward) - self.camera.parallel_from;
         let normal = material_normal(material, self.tables, &point.surface, layers);
         let (albedos, normals) = (albedo.to_each(), normal.to_each());
         let depths = depth.to_each();

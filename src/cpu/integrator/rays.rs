@@ -95,12 +95,17 @@ impl<T: Real> Integrator<'_, T> {
             let hit = paths.state.hits[index];
             distance += T::Scalar::from_f64(f64::from(hit.t));
             paths.state.distance[index] = distance;
-            let opacity = hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit);
+            let slot = self.geometry.slot(hit.triangle as usize);
+            let opacity = if bounce == 0 && slot >= self.settings.first_hidden_slot {
+                T::Scalar::zero()
+            } else {
+                hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit)
+            };
             if xi < opacity {
                 return true;
             }
             paths.output_at(index).record(|| Event::Passed {
-                slot: self.geometry.slot(hit.triangle as usize),
+                slot,
                 distance: hit.t,
                 opacity: single(opacity),
             });

@@ -395,6 +395,8 @@ pub static EFFECTS: &[Effect] = &[
         decide: |facts| {
             if facts.materials.iter().any(Material::has_holes) {
                 facts.needed_by(Material::has_holes, "is not opaque everywhere")
+            } else if facts.settings.first_hidden_slot != u32::MAX {
+                Decision::on("the camera looks through a hidden light")
             } else {
                 Decision::off("all materials are opaque")
             }
@@ -403,6 +405,9 @@ pub static EFFECTS: &[Effect] = &[
             for material in &mut document.materials {
                 material.textures.opacity = false;
                 material.opacity = 1.0;
+            }
+            for light in &mut document.lighting.area_lights {
+                light.is_hidden = false;
             }
         }),
     },

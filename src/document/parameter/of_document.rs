@@ -10,6 +10,7 @@ use crate::document::{
 };
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
+use crate::scene::camera::Projection;
 
 type Accessors = super::Accessors<Document>;
 
@@ -65,6 +66,8 @@ fn camera() -> Vec<Parameter<Document>> {
     vec![
         of("camera.fov", Camera, "Field of view", "Vertical field of view; small is a telephoto lens.", real(range::FOV_DEG, "°"), field!(Real camera.fov_deg))
             .named("Field of view").flag("fov").bar(5.0, 120.0).decimals(1),
+        of("camera.projection", Camera, "Projection", "Perspective as in an eye, or parallel rays as in a drawing.", choices::<Projection>(), choice!(camera.projection))
+            .named("Projection").flag("projection"),
         of("camera.yaw", Camera, "Yaw", "Turns the camera about the vertical axis. In the viewport: drag.", real(range::YAW_DEG, "°"), field!(Real camera.yaw_deg))
             .named("Yaw").bar(-180.0, 180.0).decimals(1),
         of("camera.pitch", Camera, "Pitch", "Height of the camera above the target's horizon. In the viewport: drag.", real(range::PITCH_DEG, "°"), field!(Real camera.pitch_deg))

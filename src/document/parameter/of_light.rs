@@ -38,6 +38,7 @@ fn all() -> Vec<Parameter<AreaLight>> {
         of("lighting.area_lights.color", "Colour", "Colour of the light.", Kind::Color, field!(Color color), |_| None),
         of("lighting.area_lights.strength", "Strength", "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it.", strength(), field!(Number strength), |_| None)
             .row([0.0, 100.0], 3),
+        of("lighting.area_lights.hidden_from_camera", "Hidden", "It shines, but the camera doesn't see it: only mirrors and glass show it.", Kind::Toggle, field!(Toggle is_hidden), |_| None),
     ]
 }
 

@@ -71,6 +71,20 @@ pub struct Axis {
     pub is_logarithmic: bool,
 }
 
+impl Axis {
+    /// The radius of a value around a point: counted from the first value, in powers of ten where it is logarithmic. What
+    /// is beyond the ends is at them.
+    pub fn radius(&self, value: f64) -> f64 {
+        let [first, last] = self.range;
+        let value = value.clamp(first, last.max(first));
+        if self.is_logarithmic {
+            (value / first).log10()
+        } else {
+            value - first
+        }
+    }
+}
+
 /// Lines over one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinePlot {
@@ -103,6 +117,12 @@ impl LinePlot {
         label
     }
 
+    /// The largest value of any line.
+    pub fn highest(&self) -> f64 {
+        let values = self.series.iter().flat_map(|series| &series.points);
+        values.map(|[_, y]| *y).fold(0.0, f64::max)
+    }
+
     /// The angle of the view, if it is the same for all.
     pub fn view_angle_deg(&self) -> Option<f64> {
         let first = self.series.first()?.view_angle_deg?;
@@ -127,11 +147,11 @@ pub struct Series {
 }
 
 impl Series {
-    /// The points of a polar plot as (right, up).
-    pub fn polar_points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    /// The points of a polar plot as (right, up), with radii along an axis.
+    pub fn polar_points<'a>(&'a self, radii: &'a Axis) -> impl Iterator<Item = [f64; 2]> + 'a {
         self.points.iter().map(|[angle_deg, value]| {
-            let angle_rad = angle_deg.to_radians();
-            [value * angle_rad.sin(), value * angle_rad.cos()]
+            let (angle_rad, radius) = (angle_deg.to_radians(), radii.radius(*value));
+            [radius * angle_rad.sin(), radius * angle_rad.cos()]
         })
     }
 }

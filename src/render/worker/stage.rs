@@ -1,4 +1,4 @@
-//! Resolutions of a submission: first a reduced one that is fast, then the full one.
+//! Resolutions of a submission: first a reduced one that is fast, then in steps up to the full one.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -6,6 +6,10 @@ use std::time::{Duration, Instant};
 use super::{Pace, Submission};
 use crate::document::Document;
 
+/// Divisors between the first image and the full resolution, each left out unless the next takes so long that waiting is
+/// felt.
+const STEPS: [u32; 2] = [4, 2];
+const STEP_FELT: Duration = Duration::from_millis(400);
 /// Time from the last change to the full resolution.
 const SETTLE: Duration = Duration::from_millis(150);
 /// Estimated time of a first sample below which no reduced image is needed. Set-up and the single sample delay the image to
@@ -22,7 +26,7 @@ const UNKNOWN_KERNEL: f64 = 0.3;
 /// Images with a smaller side are not reduced further: nothing could be recognised.
 const SIDE_MIN_PX: u32 = 96;
 
-/// A submission being shown: first at a reduced resolution, then in full.
+/// A submission being shown: first at a reduced resolution, in the end in full.
 #[derive(Clone, Debug)]
 pub(super) struct Stage {
     pub(super) submission: Submission,
@@ -30,6 +34,8 @@ pub(super) struct Stage {
     pub(super) reduction: u32,
     /// True once an image has been published.
     pub(super) is_shown: bool,
+    /// True once one of this resolution has.
+    pub(super) is_seen: bool,
     /// True if the full resolution failed: the reduced one stays.
     pub(super) is_final: bool,
 }
@@ -37,17 +43,11 @@ pub(super) struct Stage {
 impl Stage {
     /// The first stage of a submission for an engine of a given speed in pixel samples per second; 0 is unknown.
     pub(super) fn first(submission: Submission, samples_per_second: f64) -> Self {
-        let speed = if samples_per_second > 0.0 {
-            samples_per_second
-        } else {
-            FIRST_GUESS
-        };
         let render = &submission.document.render;
-        let pixels = f64::from(render.width) * f64::from(render.height);
         let most = REDUCTIONS
             .into_iter()
             .take_while(|n| *n == 1 || render.width.min(render.height) / n >= SIDE_MIN_PX);
-        let is_quick = |n: u32| pixels / f64::from(n * n) / speed <= FIRST_IMAGE_TARGET.as_secs_f64();
+        let is_quick = |n: u32| first_sample(&submission, n, samples_per_second) <= FIRST_IMAGE_TARGET;
         let mut reduction = 1;
         for candidate in most {
             reduction = candidate;
@@ -59,7 +59,19 @@ impl Stage {
             submission,
             reduction,
             is_shown: false,
+            is_seen: false,
             is_final: false,
+        }
+    }
+
+    /// The next stage of the same submission: as large as is there without a wait that is felt.
+    pub(super) fn next(&self, samples_per_second: f64) -> Self {
+        let is_slow = |n: u32| first_sample(&self.submission, n, samples_per_second) > STEP_FELT;
+        let steps = STEPS.into_iter().filter(|n| *n < self.reduction);
+        Self {
+            reduction: steps.into_iter().find(|n| is_slow(n / 2)).unwrap_or(1),
+            is_seen: false,
+            ..self.clone()
         }
     }
 
@@ -79,18 +91,18 @@ impl Stage {
         Arc::new(document)
     }
 
-    /// Whether the full resolution is due: at once after the first image, or after a pause if more changes are expected.
+    /// Whether the next resolution is due: at once after the image, or after a pause if more changes are expected.
     pub(super) fn is_settled(&self) -> bool {
         let has_rested = match self.submission.pace {
             Pace::Moving => self.submission.at.elapsed() >= SETTLE,
             Pace::Still => true,
         };
-        self.reduction > 1 && self.is_shown && !self.is_final && has_rested
+        self.reduction > 1 && self.is_seen && !self.is_final && has_rested
     }
 
     /// Time until [`Stage::is_settled`] may become true, if it can.
     pub(super) fn rest_left(&self) -> Option<Duration> {
-        (self.reduction > 1 && self.is_shown && !self.is_final)
+        (self.reduction > 1 && self.is_seen && !self.is_final)
             .then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
     }
 
@@ -106,19 +118,35 @@ impl Stage {
     }
 }
 
+/// Estimated time of a sample of every pixel at a reduction, at a speed in pixel samples per second; 0 is unknown.
+fn first_sample(submission: &Submission, reduction: u32, samples_per_second: f64) -> Duration {
+    let speed = if samples_per_second > 0.0 {
+        samples_per_second
+    } else {
+        FIRST_GUESS
+    };
+    let render = &submission.document.render;
+    let pixels = f64::from(render.width) * f64::from(render.height) / f64::from(reduction * reduction);
+    Duration::from_secs_f64(pixels / speed)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn reductions(samples_per_second: f64) -> [u32; 2] {
+    fn submission(side: u32) -> Submission {
         let mut document = Document::default();
-        (document.render.width, document.render.height) = (512, 512);
-        let submission = Submission {
+        (document.render.width, document.render.height) = (side, side);
+        Submission {
             document: Arc::new(document),
             revision: 1,
             pace: Pace::Still,
             at: Instant::now(),
-        };
+        }
+    }
+
+    fn reductions(samples_per_second: f64) -> [u32; 2] {
+        let submission = submission(512);
         let known = Stage::first(submission.clone(), samples_per_second);
         [known, Stage::cautious(submission, samples_per_second)].map(|stage| stage.reduction)
     }
@@ -130,5 +158,26 @@ mod tests {
         assert_eq!(reductions(2.5e6), [3, 4]);
         // Not so small that nothing can be recognised.
         assert_eq!(reductions(1e5), [4, 4]);
+    }
+
+    /// Steps are between the first image and the full one where each is worth its while, and none where all is quick.
+    #[test]
+    fn slow_pictures_come_in_steps() {
+        let steps = |samples_per_second: f64| {
+            let mut stage = Stage::first(submission(1024), samples_per_second);
+            let mut steps = vec![stage.reduction];
+            while stage.reduction > 1 {
+                (stage.is_shown, stage.is_seen) = (true, true);
+                stage = stage.next(samples_per_second);
+                assert!(stage.is_shown && !stage.is_seen, "nothing of this size was seen yet");
+                assert!(!stage.is_settled(), "the next size waits for this one");
+                steps.push(stage.reduction);
+            }
+            steps
+        };
+        assert_eq!(steps(1e5), [8, 4, 2, 1]);
+        assert_eq!(steps(1e6), [8, 2, 1]);
+        assert_eq!(steps(4e6), [4, 1]);
+        assert_eq!(steps(1e8), [1]);
     }
 }

@@ -437,6 +437,7 @@ fn settings() -> Settings {
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,
         camera_medium: None,
+        first_hidden_slot: u32::MAX,
         roulette_floor: 1.0,
         rounds_surfaces: false,
         light_choice: SCENE.light_choice(),

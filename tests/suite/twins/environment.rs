@@ -135,7 +135,7 @@ fn random_camera(rng: &mut Rng, lens_radius: f32) -> Camera<f32> {
 }
 
 /// A camera, a place in a picture, two numbers for the lens.
-fn camera_inputs(rng: &mut Rng, lens_radius: f32) -> Vec<Value> {
+fn camera_inputs(rng: &mut Rng, [lens_radius, parallel_from]: [f32; 2]) -> Vec<Value> {
     let c = random_camera(rng, lens_radius);
     let size = [1 + rng.below(4096), 1 + rng.below(4096)];
     let place = size.map(|size| rng.range(0.0, size as f32));
@@ -147,6 +147,7 @@ fn camera_inputs(rng: &mut Rng, lens_radius: f32) -> Vec<Value> {
         c.right,
         c.filter_kind,
         c.up,
+        parallel_from,
         place[0],
         place[1],
         size[0] as u32,
@@ -180,8 +181,8 @@ fn cameras_agree() {
             .group("Gaussian", filter(PixelFilter::Gaussian)),
             Case::new(
                 "camera_ray",
-                "origin lens_radius forward focus_distance right filter_kind up x y width height a b",
-                "let camera = Camera(origin, lens_radius, forward, focus_distance, right, filter_kind, up, 0u); \
+                "origin lens_radius forward focus_distance right filter_kind up parallel_from x y width height a b",
+                "let camera = Camera(origin, lens_radius, forward, focus_distance, right, filter_kind, up, parallel_from); \
                  let ray = camera_ray(camera, vec2f(x, y), vec2u(width, height), vec2f(a, b));",
                 twin!(|row| {
                     let camera = Camera {
@@ -192,7 +193,7 @@ fn cameras_agree() {
                         right: row.vector(),
                         filter_kind: row.bits(),
                         up: row.vector(),
-                        reserved: 0,
+                        parallel_from: row.number(),
                     };
                     let (place, size) = (row.numbers(), [row.bits(), row.bits()]);
                     for v in camera_ray(&camera, place, size, row.numbers()) {
@@ -202,10 +203,14 @@ fn cameras_agree() {
             )
             .output("ray.origin", UNIT)
             .output("ray.direction", UNIT)
-            .group("pinhole", |rng, _| camera_inputs(rng, 0.0))
+            .group("pinhole", |rng, _| camera_inputs(rng, [0.0; 2]))
+            .group("parallel", |rng, _| {
+                let radius = rng.range(-0.3, 0.3);
+                camera_inputs(rng, [radius.max(0.0), 2.0])
+            })
             .group("lens", |rng, _| {
                 let radius = rng.range(0.01, 0.3);
-                camera_inputs(rng, radius)
+                camera_inputs(rng, [radius, 0.0])
             }),
         ],
     );

@@ -1,6 +1,7 @@
 //! Camera, view and render settings.
 
 mod photographic;
+mod reference;
 mod region;
 
 use egui::Ui;
@@ -61,6 +62,7 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.add(egui::Label::new(name).truncate())
             .on_hover_text(file.display().to_string())
     });
+    widgets::comes_and_goes(ui, |ui| reference::show(ui, desk));
 }
 
 fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -89,7 +91,8 @@ fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     }
     let at_target = desk.scene().map_or(1.0, |scene| {
-        scene.job.settings.camera.focus_distance * scene.job.geometry.world_units_per_unit
+        let camera = scene.job.settings.camera;
+        (camera.focus_distance - camera.parallel_from) * scene.job.geometry.world_units_per_unit
     });
     let style = NumberStyle {
         range: range::DISTANCE,

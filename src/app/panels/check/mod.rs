@@ -5,6 +5,7 @@ mod hard_cases;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use egui::Ui;
 
@@ -15,6 +16,7 @@ use super::Panel;
 use crate::app::desk::Desk;
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
+use crate::app::kit::words::time_left;
 use crate::app::study::engine;
 use crate::render::background::Background;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run, summaries};
@@ -23,7 +25,8 @@ use crate::render::priority::work_apart;
 /// How a run stands.
 #[derive(Clone)]
 enum Status {
-    Checking(String),
+    /// What is checked, and the share that is done.
+    Checking(String, f64),
     Done(Vec<Check>),
     Stopped,
     Failed(String),
@@ -34,6 +37,8 @@ enum Status {
 pub(super) struct CheckPanel {
     worker: Option<Background<CheckOptions, Status>>,
     stop: Arc<AtomicBool>,
+    /// When it was started.
+    begun: Option<Instant>,
     thorough: bool,
     hard: HardState,
     benchmark: BenchmarkState,
@@ -73,6 +78,7 @@ impl Panel for CheckPanel {
         match row.inner {
             Pressed::Start => {
                 state.stop.store(false, Ordering::Relaxed);
+                state.begun = Some(Instant::now());
                 let thorough = state.thorough;
                 worker.ask(CheckOptions { engine, thorough });
             }
@@ -83,8 +89,12 @@ impl Panel for CheckPanel {
         widgets::comes_and_goes(ui, |ui| match worker.latest() {
             None => {}
             _ if is_stopped => widgets::note(ui, "Stopped."),
-            Some(Status::Checking(_)) if !worker.is_busy() => {}
-            Some(Status::Checking(group)) => widgets::note(ui, format!("Checking {group} …")),
+            Some(Status::Checking(..)) if !worker.is_busy() => {}
+            Some(Status::Checking(group, share)) => {
+                let seconds = state.begun.map_or(0.0, |begun| begun.elapsed().as_secs_f64());
+                let left = time_left(share, seconds).map_or_else(String::new, |left| format!(" {left}"));
+                widgets::note(ui, format!("Checking {group} …{left}"));
+            }
             Some(Status::Stopped) => widgets::note(ui, "Stopped."),
             Some(Status::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
@@ -107,7 +117,7 @@ fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Sta
     let (ctx, stop) = (ui.ctx().clone(), stop.clone());
     let work = move |options, desk: &crate::render::background::Responder<'_, CheckOptions, Status>| {
         work_apart();
-        let progress = |group: &str| desk.publish(Status::Checking(group.to_owned()));
+        let progress = |group: &str, share: f64| desk.publish(Status::Checking(group.to_owned(), share));
         desk.publish(match run(options, &stop, progress) {
             Ok(Some(checks)) => Status::Done(checks),
             Ok(None) => Status::Stopped,

@@ -6,6 +6,8 @@ use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
+use crate::document::light_handle::View;
+use crate::document::light_move::put_in_view;
 use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
@@ -90,7 +92,7 @@ fn add(ui: &mut Ui, desk: &mut Desk<'_>, lights: &mut Vec<AreaLight>) {
             for (word, name, made, help) in KINDS {
                 let button = ui.button(format!("+ {word}")).on_hover_text(help);
                 if button.clicked() && !is_full {
-                    lights.push(made());
+                    lights.push(in_view(desk, made(), lights.len()));
                     desk.shared.selection.light = Some(lights.len() - 1);
                     desk.edits.note(name, "");
                 }
@@ -98,6 +100,24 @@ fn add(ui: &mut Ui, desk: &mut Desk<'_>, lights: &mut Vec<AreaLight>) {
             }
         });
     });
+}
+
+/// Width and height of a new light that is in the image, bounding radii.
+const SIDE_IN_VIEW: f64 = 0.4;
+
+/// A new light where it is seen; a sun stays where it is.
+fn in_view(desk: &Desk<'_>, mut light: AreaLight, number: usize) -> AreaLight {
+    if let Some(scene) = desk.scene().filter(|_| !light.is_sun()) {
+        let view = View {
+            camera: scene.job.settings.camera,
+            size: glam::DVec2::ONE,
+        };
+        put_in_view(&mut light, &view, number);
+        if !light.is_spot() {
+            (light.width, light.height) = (SIDE_IN_VIEW, SIDE_IN_VIEW);
+        }
+    }
+    light
 }
 
 /// The only one of several lights that shines.

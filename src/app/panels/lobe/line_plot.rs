@@ -1,11 +1,17 @@
 //! Line plots of lobes in the window: the data that the command line writes as files.
 
 use egui::{Color32, Ui};
-use egui_plot::{Line, LineStyle, PlotPoints};
+use egui_plot::{Line, LineStyle, Plot, PlotPoints};
 
-use crate::app::kit::charts::{short, still};
+use crate::app::kit::charts::{powers, short, still};
+use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::plot::series_color;
+
+/// Powers of ten that a logarithmic polar plot shows, at least.
+const POLAR_POWERS: f64 = 4.0;
+/// Values at which a polar plot may be cut off.
+const CUTS: [f64; 2] = [1e-3, 1e9];
 
 /// Where a value lies on an axis.
 fn place(axis: &Axis, value: f64) -> f64 {
@@ -21,40 +27,135 @@ pub(super) fn plot_height(width: f32) -> f32 {
     (0.8 * width).clamp(160.0, 420.0)
 }
 
-/// Shows a line plot over the width there is.
-pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
-    let width = ui.available_width();
+/// How the radii of a polar plot are shown: a narrow lobe is a needle otherwise.
+#[derive(Default)]
+pub(super) struct Radii {
+    is_logarithmic: bool,
+    /// The largest value that is shown; `None` for the lobes' own.
+    cut: Option<f64>,
+}
+
+impl Radii {
+    /// The axis of a plot's radii.
+    fn axis(&self, plot: &LinePlot) -> Axis {
+        let top = self.cut.unwrap_or(plot.y.range[1]).max(CUTS[0]);
+        let low = 10.0_f64.powf(top.log10().ceil() - POLAR_POWERS);
+        Axis {
+            range: [if self.is_logarithmic { low } else { 0.0 }, top],
+            is_logarithmic: self.is_logarithmic,
+            ..plot.y.clone()
+        }
+    }
+
+    /// The rows that change it.
+    pub(super) fn rows(&mut self, ui: &mut Ui, plot: &LinePlot) {
+        let help = "Radii count powers of ten: the foot of a narrow lobe is seen beside its peak.";
+        let name = Name::new("Logarithmic radius", "Logarithmic", help);
+        let response = widgets::row(ui, name, |ui| ui.checkbox(&mut self.is_logarithmic, ""));
+        if response.reset {
+            self.is_logarithmic = false;
+        }
+        let top = plot.y.range[1].clamp(CUTS[0], CUTS[1]);
+        let mut cut = self.cut.unwrap_or(top);
+        let style = NumberStyle {
+            range: CUTS[0]..=CUTS[1],
+            bar: None,
+            unit: " 1/sr",
+            speed: 0.01 * cut,
+            decimals: 3,
+        };
+        let help = "What is larger is cut off there. Follows the lobes' peak until it is changed.";
+        let name = Name::new("Radius up to", "Shown up to", help);
+        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut cut, &style));
+        if response.changed {
+            self.cut = Some(cut);
+        }
+        if response.reset {
+            self.cut = None;
+        }
+        widgets::comes_and_goes(ui, |ui| {
+            if self.cut.is_some_and(|cut| cut < plot.highest()) {
+                widgets::note(
+                    ui,
+                    format!("The peak is {} 1/sr; the rest is cut off.", short(plot.highest())),
+                );
+            }
+        });
+    }
+}
+
+/// Shows a line plot over the width there is; radii of a polar one as `radii` says.
+pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot, radii: &Radii) {
+    let height = plot_height(ui.available_width());
+    if plot.is_polar {
+        let axis = radii.axis(plot);
+        let lines = plot.series.iter().map(|series| series.polar_points(&axis).collect());
+        draw(ui, polar(id, height, &axis), plot, lines.collect());
+        let [low, high] = axis.range.map(short);
+        ui.weak(format!("{}: {low} to {high}", axis.label));
+    } else {
+        let on_axes = |[x, y]: &[f64; 2]| [place(&plot.x, *x), place(&plot.y, *y)];
+        let lines = plot
+            .series
+            .iter()
+            .map(|series| series.points.iter().map(on_axes).collect());
+        draw(ui, cartesian(id, height, plot), plot, lines.collect());
+        ui.weak(&plot.y.label);
+    }
+    key(ui, plot);
+}
+
+/// An empty plot around a point.
+fn polar<'a>(id: &str, height: f32, axis: &Axis) -> Plot<'a> {
+    let (low, is_logarithmic) = (axis.range[0], axis.is_logarithmic);
+    let in_words = move |radius: f64| match is_logarithmic {
+        true => short(low * 10.0_f64.powf(radius.abs())),
+        false => short(radius.abs()),
+    };
+    let top = axis.radius(axis.range[1]);
+    let shown = still(id, height, [in_words, in_words])
+        .x_axis_label(axis.label.clone())
+        .data_aspect(1.0)
+        .include_y(0.0)
+        .include_y(top)
+        .include_x(-top)
+        .include_x(top);
+    if axis.is_logarithmic {
+        shown.x_grid_spacer(powers).y_grid_spacer(powers)
+    } else {
+        shown
+    }
+}
+
+/// An empty plot over two axes.
+fn cartesian<'a>(id: &str, height: f32, plot: &LinePlot) -> Plot<'a> {
     let upwards: fn(f64) -> String = if plot.y.is_logarithmic {
         |y| short(10.0_f64.powf(y))
     } else {
         short
     };
-    let mut shown = still(id, plot_height(width), [short, upwards]).x_axis_label(if plot.is_polar {
-        plot.y.label.clone()
-    } else {
-        plot.x.label.clone()
-    });
-    let [top, bottom] = [plot.y.range[1], plot.y.range[0]].map(|value| place(&plot.y, value));
-    shown = if plot.is_polar {
-        shown
-            .data_aspect(1.0)
-            .include_y(0.0)
-            .include_y(top)
-            .include_x(-top)
-            .include_x(top)
-    } else {
-        let [first, last] = plot.x.range;
-        shown.include_y(bottom).include_y(top).include_x(first).include_x(last)
-    };
+    let across: fn(f64) -> String = short;
+    let [bottom, top] = plot.y.range.map(|value| place(&plot.y, value));
+    let [first, last] = plot.x.range;
+    still(id, height, [across, upwards])
+        .x_axis_label(plot.x.label.clone())
+        .include_y(bottom)
+        .include_y(top)
+        .include_x(first)
+        .include_x(last)
+}
+
+/// Draws the series, whose points are `lines`.
+fn draw(ui: &mut Ui, shown: Plot<'_>, plot: &LinePlot, lines: Vec<Vec<[f64; 2]>>) {
     let response = shown.show(ui, |plot_ui| {
-        for (is_first, series) in series(plot) {
+        for ((is_first, series), points) in series(plot).zip(lines) {
             let style = if is_first {
                 LineStyle::Solid
             } else {
                 LineStyle::dashed_dense()
             };
             plot_ui.line(
-                Line::new(plot.label(series), PlotPoints::from(points(plot, series)))
+                Line::new(plot.label(series), PlotPoints::from(points))
                     .color(color(series.group))
                     .width(2.0)
                     .style(style),
@@ -62,7 +163,6 @@ pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
         }
     });
     response.response.accessible_name(plot.title.clone());
-    key(ui, plot);
 }
 
 /// The series, and whether each is the first of its group, which is solid; the others are dashed.
@@ -74,9 +174,6 @@ fn series(plot: &LinePlot) -> impl Iterator<Item = (bool, &Series)> {
 
 /// What the lines are, below the plot: over it they would hide narrow lobes.
 fn key(ui: &mut Ui, plot: &LinePlot) {
-    if !plot.is_polar {
-        ui.weak(&plot.y.label);
-    }
     for (is_first, series) in series(plot) {
         ui.horizontal(|ui| {
             let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 12.0), egui::Sense::hover());
@@ -90,14 +187,6 @@ fn key(ui: &mut Ui, plot: &LinePlot) {
             ui.add(egui::Label::new(plot.label(series)).truncate());
         });
     }
-}
-
-fn points(plot: &LinePlot, series: &Series) -> Vec<[f64; 2]> {
-    if plot.is_polar {
-        return series.polar_points().collect();
-    }
-    let on_axes = |[x, y]: &[f64; 2]| [place(&plot.x, *x), place(&plot.y, *y)];
-    series.points.iter().map(on_axes).collect()
 }
 
 fn color(group: usize) -> Color32 {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use super::line_plot::line_plot;
+use super::line_plot::{Radii, line_plot};
 use crate::analysis::fit::Merl;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
@@ -116,7 +116,7 @@ fn result(ui: &mut Ui, desk: &mut Desk<'_>, matched: &Matched, is_current: bool)
         }
     });
     ui.weak(format!("{}, view {}°", found.target, found.view_angle_deg));
-    line_plot(ui, "match look", &matched.plot);
+    line_plot(ui, "match look", &matched.plot, &Radii::default());
     let help = if is_current {
         "Gives the selected material this lobe. Undo takes it back."
     } else {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
 
-use line_plot::{line_plot, plot_height};
+use line_plot::{Radii, line_plot, plot_height};
 use matching::MatchState;
 
 use super::Panel;
@@ -45,6 +45,7 @@ pub(super) struct LobePanel {
     kind: Option<ViewKind>,
     other: Other,
     other_roughness: Option<f32>,
+    radii: Radii,
     pictures: Vec<TextureHandle>,
     pictured: Option<Arc<Answer>>,
     matching: MatchState,
@@ -209,7 +210,14 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
         ui.multiply_opacity(OLD_OPACITY);
     }
     match &answer.shown {
-        Shown::Lines(plot) => line_plot(ui, "lobe view", plot),
+        Shown::Lines(plot) => {
+            line_plot(ui, "lobe view", plot, &state.radii);
+            widgets::comes_and_goes(ui, |ui| {
+                if plot.is_polar {
+                    state.radii.rows(ui, plot);
+                }
+            });
+        }
         Shown::Pictures(images) => {
             if !state
                 .pictured

@@ -8,15 +8,15 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::tile::{self, Layout, Tile};
 use crate::app::kit::widgets;
+use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::environments::environment_label;
 use crate::app::services::library::Change;
-use crate::app::services::shelves::KeptShelves;
+use crate::app::services::shelves::{KeptShelves, environment_key, preset_key};
 use crate::document::MaterialSettings;
 use crate::scene::environment::{BUILT_IN, EnvironmentSource};
 use crate::store::PRESETS;
 use crate::store::exchange::FORMATS;
-use crate::store::preset::command_line_name;
 use crate::store::shelf::{Contents, Item, ItemKind};
 
 /// The groups of the shipped materials, from the top.
@@ -87,12 +87,8 @@ impl Entry {
 
     fn environment(source: EnvironmentSource, picture: Option<&TextureHandle>) -> Self {
         let label = environment_label(&source);
-        let key = match &source {
-            EnvironmentSource::File(path) => path.display().to_string(),
-            _ => format!("environment:{}", label.to_lowercase()),
-        };
         Self {
-            key,
+            key: environment_key(&source),
             // The panel of the light calls it by its name alone.
             full_name: format!("Environment {label}"),
             name: label,
@@ -205,6 +201,7 @@ impl Entry {
                 desk.actions
                     .push(Action::CompareWith(Rival::Material(material.clone())));
             }
+            usage(ui, desk, material);
             ui.separator();
             taking_along(ui, material, desk.actions);
         }
@@ -221,6 +218,34 @@ impl Entry {
         if ui.button("Delete").clicked() {
             desk.actions.push(Action::ChangeLibrary(Change::Remove(path.clone())));
         }
+    }
+}
+
+/// Where a material is used in the scene, and using it everywhere in place of the one that is edited.
+fn usage(ui: &mut Ui, desk: &mut Desk<'_>, material: &MaterialSettings) {
+    let users = desk.slots_where(|used| used.name == material.name);
+    let show = egui::Button::new(format!("Show where it is used ({})", users.len()));
+    let show = ui.add_enabled(!users.is_empty(), show);
+    let show =
+        show.on_hover_text("Chooses the materials of the scene that have its name, and outlines their surfaces.");
+    if show
+        .on_disabled_hover_text("No material of the scene has its name.")
+        .clicked()
+    {
+        desk.actions.push(Action::SelectSlots(users));
+        desk.actions.push(Action::Reveal(Pane::Scene));
+    }
+    let edited = desk.material();
+    let alike = desk.slots_where(|used| *used == edited);
+    let replace = egui::Button::new(format!("Replace on all that use {} ({})", edited.name, alike.len()));
+    let replace = ui.add_enabled(alike.len() > 1, replace);
+    let replace = replace.on_hover_text("Gives this material to all slots that have the one that is edited.");
+    if replace
+        .on_disabled_hover_text("No other slot has the material that is edited.")
+        .clicked()
+    {
+        desk.actions.push(Action::SelectSlots(alike));
+        desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
     }
 }
 
@@ -269,8 +294,11 @@ pub(super) fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
 fn shipped(desk: &Desk<'_>) -> Vec<Group> {
     let mut groups = KINDS.map(|title| Group::new(title, Vec::new()));
     for (index, material) in PRESETS.iter().enumerate() {
-        let key = format!("preset:{}", command_line_name(&material.name));
-        let entry = Entry::material(key, material, desk.shared.library.shipped_picture(index));
+        let entry = Entry::material(
+            preset_key(material),
+            material,
+            desk.shared.library.shipped_picture(index),
+        );
         groups[kind_of(material)].entries.push(entry);
     }
     groups.into()

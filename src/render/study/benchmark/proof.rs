@@ -32,7 +32,7 @@ pub(super) fn proofs(
             engine: place.choice(),
             thorough: false,
         };
-        Ok(check::run(options, stop, |_| {})?)
+        Ok(check::run(options, stop, |_, _| {})?)
     })?;
     match found {
         Some(checks) => {

@@ -372,10 +372,11 @@ impl State<'_> {
         Ok(())
     }
 
-    /// Proceeds from the reduced resolution to the full one.
+    /// Proceeds from a reduced resolution to the next.
     fn settle(&mut self) {
-        let Some(mut stage) = self.stage.clone() else { return };
-        stage.reduction = 1;
+        let Some(stage) = self.stage.as_ref().map(|stage| stage.next(self.samples_per_second)) else {
+            return;
+        };
         if !self.begin(stage)
             && let Some(small) = &mut self.stage
         {
@@ -529,6 +530,7 @@ mod tests {
         state.stage = Some(Stage {
             reduction: 4,
             is_shown: true,
+            is_seen: true,
             ..Stage::first(submission, 0.0)
         });
         for _ in 0..5 {

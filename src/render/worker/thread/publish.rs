@@ -98,7 +98,7 @@ impl State<'_> {
         self.serial += 1;
         let map = made.as_ref().map(|map| (wanted, map.scale));
         let rgba = made.map_or_else(|| shown(&image, &view), |map| map.rgba);
-        stage.is_shown = true;
+        (stage.is_shown, stage.is_seen) = (true, true);
         if self.snapshot.first_picture.is_none() {
             self.snapshot.first_picture = Some(stage.submission.at.elapsed());
         }
