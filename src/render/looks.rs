@@ -6,7 +6,7 @@ use std::time::Duration;
 use image::RgbImage;
 
 use super::EngineChoice;
-use super::attendant::Attendant;
+use super::step_denoiser::StepDenoiser;
 use super::denoise::Library;
 use super::display::display;
 use super::error::SessionError;
@@ -129,7 +129,7 @@ fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render
     let document = ball(material, SIDE, SAMPLES, denoise_if_possible());
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {}
-    let image = match Attendant::new(&document).finish(session)? {
+    let image = match StepDenoiser::new(&document).finish(session)? {
         Some(denoised) => denoised.image,
         None => Arc::new(session.image()?),
     };
