@@ -11,6 +11,7 @@ use std::time::Duration;
 use super::background::{Background, Responder};
 use super::display::display;
 use super::looks::{ball, denoise_if_possible};
+use super::step_denoiser::StepDenoiser;
 use super::{EngineChoice, Session, SessionError, picture_cache};
 use crate::document::{Document, MaterialSettings};
 use crate::scene::ModelSource;
