@@ -5,6 +5,8 @@
 mod analytic;
 #[path = "suite/analytic_bodies.rs"]
 mod analytic_bodies;
+#[path = "suite/analytic_lobes.rs"]
+mod analytic_lobes;
 #[path = "suite/analytic_media.rs"]
 mod analytic_media;
 #[path = "suite/analytic_scenes.rs"]
@@ -295,10 +297,10 @@ mod xdotool_session;
 mod firefly;
 #[path = "suite/fuzz.rs"]
 mod fuzz;
-#[path = "suite/fuzz_layer.rs"]
-mod fuzz_layer;
 #[path = "suite/fuzz_documents.rs"]
 mod fuzz_documents;
+#[path = "suite/fuzz_layer.rs"]
+mod fuzz_layer;
 #[path = "suite/gpu_pictures.rs"]
 mod gpu_pictures;
 #[path = "suite/hard.rs"]

@@ -8,7 +8,9 @@
 
 use super::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup};
 use super::frame::frame_from_normal;
-use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted, half_vector_cosine};
+use super::fresnel::{
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted, half_vector_cosine,
+};
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
 use super::random::{Sequence, random_pair, random_state};
@@ -131,7 +133,9 @@ fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samp
 
 /// Energy of the reflecting lobe under a Fresnel factor of the half vector's cosine.
 fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor: impl Fn(f64) -> f64) -> f64 {
-    mean_weight(&material.shape(&[]), cosine, samples, |wo, wi| factor(half_vector_cosine(wo, wi)))
+    mean_weight(&material.shape(&[]), cosine, samples, |wo, wi| {
+        factor(half_vector_cosine(wo, wi))
+    })
 }
 
 /// Mean of a lobe's weights times a factor of both directions, over all azimuths of the view.

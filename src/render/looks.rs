@@ -6,11 +6,11 @@ use std::time::Duration;
 use image::RgbImage;
 
 use super::EngineChoice;
-use super::step_denoiser::StepDenoiser;
 use super::denoise::Library;
 use super::display::display;
 use super::error::SessionError;
 use super::session::Session;
+use super::step_denoiser::StepDenoiser;
 use crate::analysis::halves::Halves;
 use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
 use crate::job::film::{Film, Image};

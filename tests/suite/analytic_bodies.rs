@@ -10,7 +10,8 @@ use glossmith::optics::lobe::Lobe;
 use glossmith::scene::mesh::Mesh;
 use glossmith::scene::shapes::sphere;
 
-use crate::analytic_scenes::{BY_LIGHT, CLEAR, Case, MATT, MIS, add_box, add_rectangle, lobe_case};
+use crate::analytic_lobes::lobe_case;
+use crate::analytic_scenes::{BY_LIGHT, CLEAR, Case, MATT, MIS, add_box, add_rectangle};
 
 /// Every case.
 pub fn bodies() -> Vec<Case> {

@@ -91,7 +91,10 @@ fn white_stacks_of_rough_ggx_keep_all_light() {
         // Tables over the roughness are linear between few nodes.
         (&["specular.roughness=0.62", "base.metalness=0.5"], 6e-3),
         (&["specular.roughness=0.6", "transmission.weight=0.5"], 4e-3),
-        (&["specular.roughness=0.7", "transmission.weight=0", "base.metalness=0.4"], 6e-3),
+        (
+            &["specular.roughness=0.7", "transmission.weight=0", "base.metalness=0.4"],
+            6e-3,
+        ),
     ];
     for engine in ENGINES {
         for (assignments, tolerance) in cases {
@@ -100,7 +103,12 @@ fn white_stacks_of_rough_ggx_keep_all_light() {
             for side in sides {
                 for (albedo, cosine) in albedos(&material, engine, *side).iter().zip(COSINES) {
                     let sum = albedo.reflected[1] + albedo.transmitted[1];
-                    assert_albedo(sum, 1.0, tolerance, &format!("{engine:?}, {assignments:?}, {}", side * cosine));
+                    assert_albedo(
+                        sum,
+                        1.0,
+                        tolerance,
+                        &format!("{engine:?}, {assignments:?}, {}", side * cosine),
+                    );
                 }
             }
         }

@@ -13,7 +13,6 @@ use glossmith::app::layout::Pane;
 use glossmith::app::workspaces::MEASURE;
 use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{AreaLight, AreaLightShape, Document};
-use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
@@ -318,13 +317,10 @@ fn a_lobe_is_chosen_from_its_menu_and_what_does_not_apply_goes() {
     assert!(harness.query_by_label("Specular curve").is_some());
     harness.get_by_role_and_label(Role::ComboBox, "Specular lobe").click();
     harness.run_steps(2);
-    let label = glossmith::optics::lobe::Lobe::Ggx.label();
+    let label = Lobe::Ggx.label();
     harness.get_by_role_and_label(Role::Button, label).click();
     settle(&mut harness);
-    assert_eq!(
-        harness.state().document().materials[0].lobe,
-        glossmith::optics::lobe::Lobe::Ggx
-    );
+    assert_eq!(harness.state().document().materials[0].lobe, Lobe::Ggx);
     assert!(harness.query_by_label("Specular curve").is_none(), "GGX has no curve");
 }
 
@@ -580,28 +576,4 @@ fn the_window_paints_the_renderers_pixels() {
     let difference = painted.iter().zip(expected).map(|(a, b)| a.abs_diff(*b)).max();
     assert!(difference <= Some(3), "painted {painted:?}, rendered {expected:?}");
     assert!(expected[0] > 2 * expected[1], "the background is red");
-}
-
-#[test]
-fn a_look_is_matched_used_and_undone() {
-    let mut harness = editor();
-    harness.state_mut().reveal(Pane::Lobe);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Compare the lobe")
-        .click();
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "GGX").click();
-    harness.run_steps(2);
-    // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
-    harness.get_by_label("Match look").click_accesskit();
-    see_label(&mut harness, "Use it");
-    let before = harness.state().document().clone();
-    harness.get_by_label("Use it").click_accesskit();
-    settle(&mut harness);
-    let material = &harness.state().document().materials[0];
-    assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
-    assert_ne!(material.custom_curve, before.materials[0].custom_curve);
-    undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
 }

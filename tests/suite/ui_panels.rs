@@ -19,7 +19,7 @@ use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
 use super::ui::{
     Editor, assert_same_controls, controls, drag, editor, editor_of, editor_with, options, picture, request, see,
-    settle, undo, wait,
+    see_label, settle, undo, wait,
 };
 use super::worker::small_document;
 
@@ -513,4 +513,28 @@ fn showing_an_f_number_is_no_edit() {
     harness.run_steps(10);
     harness.get_by_role_and_label(Role::SpinButton, "f-number");
     assert_eq!(*harness.state().document(), document);
+}
+
+#[test]
+fn a_look_is_matched_used_and_undone() {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Lobe);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Compare the lobe")
+        .click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "GGX").click();
+    harness.run_steps(2);
+    // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
+    harness.get_by_label("Match look").click_accesskit();
+    see_label(&mut harness, "Use it");
+    let before = harness.state().document().clone();
+    harness.get_by_label("Use it").click_accesskit();
+    settle(&mut harness);
+    let material = &harness.state().document().materials[0];
+    assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
+    assert_ne!(material.custom_curve, before.materials[0].custom_curve);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
 }

@@ -11,12 +11,12 @@ use clap::Args;
 use self::directions::{Pairs, unit_direction};
 use super::answer::{Answer, file_names};
 use super::{names, parse};
+use crate::console::message;
 use crate::document::parameter::assign;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
 use crate::render::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
 use crate::render::{EngineChoice, Precision};
-use crate::console::message;
 use crate::store::exchange::{self, ReadOptions};
 use crate::store::replace::save_by;
 
@@ -165,7 +165,14 @@ fn write_values(arguments: &EvaluateArguments, evaluator: &Evaluator) -> anyhow:
 
 fn write_pairs(file: &mut impl Write, pairs: &Pairs, values: &[Evaluation]) -> io::Result<()> {
     writeln!(file, "{},r,g,b,density", pairs.header)?;
-    for (row, Evaluation { value: [r, g, b], density }) in pairs.rows.iter().zip(values) {
+    for (
+        row,
+        Evaluation {
+            value: [r, g, b],
+            density,
+        },
+    ) in pairs.rows.iter().zip(values)
+    {
         writeln!(file, "{row},{r},{g},{b},{density}")?;
     }
     Ok(())
