@@ -10,11 +10,12 @@ use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
 
-const ENGINES: [(EngineChoice, Precision); 3] = [
+const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
     (EngineChoice::Cpu, Precision::Double),
-    (EngineChoice::Gpu, Precision::Single),
 ];
+/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
+const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
 /// Albedos of the fits at these cosines, by roughness (review of the physics, part 3.3).
 const COSINES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 const ALBEDOS: [(f64, [f64; 4]); 3] = [
@@ -57,6 +58,25 @@ fn fuzz_over_black_has_the_albedo_of_the_fits() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn the_gpu_has_the_same_fuzz() {
+    let material = fuzzy(0.0, 0.5, &["coat.weight=0.5", "coat.roughness=0.4"]);
+    let [exact, found] = [ENGINES[1], GPU].map(|(engine, precision)| {
+        let evaluator = Evaluator::open(&material, engine, precision).unwrap();
+        let albedos = COSINES.map(|cosine| evaluator.albedo(cosine, 1 << 12, 1).unwrap().reflected[0]);
+        let directions = [[0.6, 0.0, 0.8], [-0.6, 0.48, 0.64], [0.0, 0.96, 0.28]].map(Vec3::from_f64);
+        let pairs = directions.map(|wi| [directions[0], wi]);
+        (albedos, evaluator.evaluate(&pairs).unwrap())
+    });
+    for (exact, found) in std::iter::zip(exact.0, found.0) {
+        assert!((exact - found).abs() < 1e-4, "albedo {found} for {exact}");
+    }
+    for (exact, found) in std::iter::zip(exact.1, found.1) {
+        let apart = (exact.value[0] - found.value[0]).abs() + (exact.density - found.density).abs();
+        assert!(apart < 1e-3 * exact.density, "{found:?} for {exact:?}");
     }
 }
 

