@@ -132,7 +132,12 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
     }
     material.name = name.to_owned();
     let renamed = add(root(path), &material)?;
-    remove(path)?;
+    // Not kept, so that what was removed before can still be restored.
+    let discarded = match own_folder(path) {
+        Some(folder) => fs::remove_dir_all(folder),
+        None => fs::remove_file(path),
+    };
+    discarded.map_err(cannot_write(path))?;
     Ok(renamed)
 }
 

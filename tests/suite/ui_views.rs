@@ -11,7 +11,7 @@ use glossmith::document::{AreaLight, CameraSettings};
 use glossmith::scene::ModelSource;
 use glossmith::scene::camera::Projection;
 
-use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, request, see, settle, undo, wait};
+use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, see, settle, undo};
 use super::worker::small_document;
 
 fn camera(harness: &Editor) -> CameraSettings {
@@ -203,8 +203,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     harness.get_by_role_and_label(Role::Button, "Open").click();
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
-        let shown = harness.query_by_label(&name).map(|picture| picture.rect());
-        shown
+        harness.query_by_label(&name).map(|picture| picture.rect())
     };
     see(&mut harness, "it under the render", |harness| {
         named(harness, "under").is_some()
@@ -257,11 +256,16 @@ fn an_image_of_another_model_says_what_will_come() {
             .any(|text| harness.query_all_by_label_contains(text).next().is_some())
     };
     assert!(!says(&harness));
-    request(&mut harness, Action::UseModel(ModelSource::Plane));
-    wait(&mut harness, "the plane", |app| {
-        app.document().model == ModelSource::Plane
-    });
-    assert!(says(&harness), "the image is still that of the other model");
+    harness.state_mut().request(Action::UseModel(ModelSource::Plane));
+    let is_plane = |harness: &Editor| harness.state().document().model == ModelSource::Plane;
+    let mut was_said = false;
+    see(&mut harness, "the plane", |harness| is_plane(harness) || says(harness));
+    while !(is_plane(&harness) && harness.state().is_settled()) {
+        was_said |= is_plane(&harness) && says(&harness);
+        std::thread::sleep(std::time::Duration::from_millis(3));
+        harness.step();
+    }
+    assert!(was_said, "the image was that of the other model");
     settle(&mut harness);
     assert!(!says(&harness));
 }
