@@ -123,7 +123,8 @@ fn every_folder_has_its_place_in_the_order() {
     for entry in fs::read_dir(src).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
-        let is_known = MAY_USE.iter().any(|(folder, _)| *folder == name) || ["lib", "main", "engine"].contains(&name);
+        let is_known = MAY_USE.iter().any(|(folder, _)| *folder == name)
+            || ["lib", "main", "book_pages", "engine"].contains(&name);
         assert!(is_known, "src/{name} has no place in the order of the folders");
     }
 }

@@ -1,5 +1,5 @@
 //! Pictures of every panel with something in it, at two sizes and in both themes, for docs/PANELS.md;
-//! `UPDATE_DOCS=1 cargo test ui_pages` makes them anew.
+//! `UPDATE_DOCS=1 cargo test ui_pages` makes them again.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -26,7 +26,7 @@ const PAGES: [(&str, &[Pane]); 5] = [
     ("error", &[Pane::Presets, Pane::Race, Pane::Log, Pane::Convergence]),
 ];
 /// Width and height of the window, pixels.
-const SIZES: [[u32; 2]; 2] = [[1366, 768], [1920, 1080]];
+const SIZES: [[u32; 2]; 2] = [[1920, 1080], [1366, 768]];
 const THEMES: [&str; 2] = ["dark", "light"];
 /// Of 100.
 const JPEG_QUALITY: u8 = 88;
@@ -113,12 +113,15 @@ fn write(harness: &mut Editor, to: &Path) {
 }
 
 fn make_all() {
+    // Its name is seen in the pictures.
+    let folder = Path::new("target/panels");
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).expect("a folder");
+    // The work takes minutes: it is done once.
+    let mut harness = worked_in(folder, SIZES[0]);
     for size in SIZES {
-        // Its name is seen in the pictures.
-        let folder = Path::new("target/panels");
-        let _ = std::fs::remove_dir_all(folder);
-        std::fs::create_dir_all(folder).expect("a folder");
-        let mut harness = worked_in(folder, size);
+        harness.set_size(size.map(|side| side as f32).into());
+        settle(&mut harness);
         for theme in THEMES {
             for (page, panes) in PAGES {
                 for pane in panes {

@@ -84,8 +84,11 @@ fn take(harness: &mut Editor, name: &str) {
 }
 
 fn take_all() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = window(folder.path());
+    // Its name is seen in a screenshot.
+    let folder = Path::new("target/windows");
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).expect("a folder");
+    let mut harness = window(folder);
     reveal(
         &mut harness,
         &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve],
@@ -110,7 +113,7 @@ fn take_all() {
     request(&mut harness, Action::Do(Command::Compare));
     settle(&mut harness);
     request(&mut harness, Action::Do(Command::Export));
-    type_path(&mut harness, &folder.path().join("car-paint.mtlx"), "Save");
+    type_path(&mut harness, &folder.join("car-paint.mtlx"), "Save");
     see_label(&mut harness, "Write the file");
     take(&mut harness, "window-export");
 }
