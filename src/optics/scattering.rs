@@ -6,6 +6,8 @@
 //! reflects all light. At a clear interface reflection and refraction are divided by the energy that both keep together.
 //! The base below a dielectric takes what its lobe loses, so that needs no factor.
 
+use rayon::prelude::*;
+
 use super::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup};
 use super::frame::frame_from_normal;
 use super::fresnel::{
@@ -91,8 +93,8 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     let is_rough = material.has_rough_tables == 1;
     let steps = if is_rough { ROUGHNESS_NODES } else { 1 };
     let offset = material.transmission_roughness - material.roughness;
-    let mut table = Vec::new();
-    for step in 0..steps {
+    let energies = |index: usize| {
+        let (step, node) = (index / ALBEDO_NODES, index % ALBEDO_NODES);
         let roughness = match is_rough {
             true => step as f64 / (ROUGHNESS_NODES - 1) as f64,
             false => material.roughness,
@@ -102,21 +104,21 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
             transmission_roughness: (roughness + offset).clamp(0.0, 1.0),
             ..*material
         };
-        for node in 0..ALBEDO_NODES {
-            let place = node as f64 / (ALBEDO_NODES - 1) as f64;
-            // At exactly grazing the microfacet lobes are 0/0.
-            let cosine = (place * place).max(1e-4);
-            let mut energies = [reflected_energy(&material, cosine, samples, |_| 1.0), 1.0, 1.0];
-            if material.transmits() {
-                for (energy, is_inside) in energies[1..].iter_mut().zip([false, true]) {
-                    *energy = interface_energy(&material, is_inside, cosine, samples);
-                }
+        let place = node as f64 / (ALBEDO_NODES - 1) as f64;
+        // At exactly grazing the microfacet lobes are 0/0.
+        let cosine = (place * place).max(1e-4);
+        let mut energies = [reflected_energy(&material, cosine, samples, |_| 1.0), 1.0, 1.0, 0.0];
+        if material.transmits() {
+            for (energy, is_inside) in energies[1..].iter_mut().zip([false, true]) {
+                *energy = interface_energy(&material, is_inside, cosine, samples);
             }
-            table.extend(energies.map(|energy| energy as f32));
-            table.push(0.0);
         }
-    }
-    table
+        energies.map(|energy| energy as f32)
+    };
+    (0..steps * ALBEDO_NODES)
+        .into_par_iter()
+        .flat_map_iter(energies)
+        .collect()
 }
 
 /// Energy that reflection and refraction of a clear interface keep together.

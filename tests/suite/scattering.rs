@@ -64,7 +64,12 @@ fn a_white_metal_reflects_all_light_at_every_roughness() {
 
 #[test]
 fn the_gpu_keeps_all_light_too() {
-    let metal = ["base.color=1,1,1", "base.metalness=1", "specular.fresnel=schlick", "specular.roughness=0.8"];
+    let metal = [
+        "base.color=1,1,1",
+        "base.metalness=1",
+        "specular.fresnel=schlick",
+        "specular.roughness=0.8",
+    ];
     let clear = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0.6"];
     for assignments in [&metal[..], &clear] {
         for (albedo, cosine) in albedos(&material(assignments), GPU, 1.0).iter().zip(COSINES) {
