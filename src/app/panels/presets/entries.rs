@@ -234,6 +234,7 @@ fn usage(ui: &mut Ui, desk: &mut Desk<'_>, material: &MaterialSettings) {
     {
         desk.actions.push(Action::SelectSlots(users));
         desk.actions.push(Action::Reveal(Pane::Scene));
+        ui.close();
     }
     let edited = desk.material();
     let alike = desk.slots_where(|used| *used == edited);
@@ -246,6 +247,7 @@ fn usage(ui: &mut Ui, desk: &mut Desk<'_>, material: &MaterialSettings) {
     {
         desk.actions.push(Action::SelectSlots(alike));
         desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
+        ui.close();
     }
 }
 
