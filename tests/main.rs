@@ -291,10 +291,10 @@ mod xdotool_session;
 mod firefly;
 #[path = "suite/fuzz.rs"]
 mod fuzz;
-#[path = "suite/fuzz_layer.rs"]
-mod fuzz_layer;
 #[path = "suite/fuzz_documents.rs"]
 mod fuzz_documents;
+#[path = "suite/fuzz_layer.rs"]
+mod fuzz_layer;
 #[path = "suite/gpu_pictures.rs"]
 mod gpu_pictures;
 #[path = "suite/hard.rs"]

@@ -8,7 +8,9 @@
 
 use super::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup};
 use super::frame::frame_from_normal;
-use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted, half_vector_cosine};
+use super::fresnel::{
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted, half_vector_cosine,
+};
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
 use super::random::{Sequence, random_pair, random_state};
@@ -131,10 +133,15 @@ fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samp
 
 /// Energy of the reflecting lobe under a Fresnel factor of the half vector's cosine.
 fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor: impl Fn(f64) -> f64) -> f64 {
-    mean_weight(&material.shape(&[]), cosine, samples, |wo, wi| factor(half_vector_cosine(wo, wi)))
+    mean_weight(&material.shape(&[]), cosine, samples, |wo, wi| {
+        factor(half_vector_cosine(wo, wi))
+    })
 }
 
-/// Mean of a lobe's weights times a factor of both directions, over all azimuths of the view.
+/// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
+const STRETCHED_SAMPLES: u32 = 16;
+
+/// Mean of a lobe's weights times a factor of both directions; of a stretched one over all azimuths of the view.
 fn mean_weight(
     shape: &LobeShape<'_, f64>,
     cosine: f64,
@@ -144,12 +151,23 @@ fn mean_weight(
     let normal = vec3(0.0, 0.0, 1.0);
     let frame = frame_from_normal(normal);
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let is_stretched = shape.anisotropy != 0.0;
+    let samples = if is_stretched {
+        STRETCHED_SAMPLES * samples
+    } else {
+        samples
+    };
     let mut sum = 0.0;
     for sample in 0..samples {
         let state = random_state(0, 0, 0, sample, Sequence::Sobol);
         let [a, b] = random_pair::<f64>(state, 0);
         let [c, turn] = random_pair::<f64>(state, 1);
-        let (across, along) = (std::f64::consts::TAU * turn).sin_cos();
+        let azimuth = if is_stretched {
+            std::f64::consts::TAU * turn
+        } else {
+            0.0
+        };
+        let (across, along) = azimuth.sin_cos();
         let wo = vec3(sine * along, sine * across, cosine);
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         if drawn.weight > 0.0 {

@@ -532,7 +532,12 @@ fn lobes() -> Vec<Case> {
 
 /// White metals of GGX, whose facets scatter until all light is reflected.
 fn white_metals(sin: f64, cos: f64) -> impl Iterator<Item = Case> {
-    let pairs = [(Lobe::Ggx, 0.3), (Lobe::Ggx, 1.0), (Lobe::Ggx2018, 0.8), (Lobe::GgxNdf, 0.5)];
+    let pairs = [
+        (Lobe::Ggx, 0.3),
+        (Lobe::Ggx, 1.0),
+        (Lobe::Ggx2018, 0.8),
+        (Lobe::GgxNdf, 0.5),
+    ];
     pairs.into_iter().map(move |(lobe, roughness)| {
         let assignments = [
             &format!("specular.lobe={}", lobe.name()),
@@ -541,9 +546,13 @@ fn white_metals(sin: f64, cos: f64) -> impl Iterator<Item = Case> {
             "base.color=1,1,1",
             "base.metalness=1",
         ];
-        Case::new(format!("white metal of {} {roughness}", lobe.name()), &[&assignments], [1.0; 3])
-            .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
-            .by(MIS, 1024)
+        Case::new(
+            format!("white metal of {} {roughness}", lobe.name()),
+            &[&assignments],
+            [1.0; 3],
+        )
+        .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
+        .by(MIS, 1024)
     })
 }
 

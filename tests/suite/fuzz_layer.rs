@@ -52,7 +52,10 @@ fn fuzz_over_black_has_the_albedo_of_the_fits() {
                 let [red, green, blue] = evaluator.albedo(*cosine, 1 << 12, 1).unwrap().reflected;
                 let what = format!("{engine:?}, {roughness}, {cosine}: {red} for {expected}");
                 assert!((red - expected).abs() < 1e-4, "{what}");
-                assert!((green - 0.5 * red).abs() < 1e-5 && blue == 0.0, "{what}, {green}, {blue}");
+                assert!(
+                    (green - 0.5 * red).abs() < 1e-5 && blue == 0.0,
+                    "{what}, {green}, {blue}"
+                );
             }
         }
     }
@@ -167,7 +170,10 @@ fn samples_follow_their_density() {
         (0.15, &[][..]),
         (0.5, &[]),
         (1.0, &[]),
-        (0.5, &["base.color=1,1,1", "specular.weight=1", "specular.roughness=0.4"]),
+        (
+            0.5,
+            &["base.color=1,1,1", "specular.weight=1", "specular.roughness=0.4"],
+        ),
     ] {
         let of = |roughness: f64| {
             let (materials, tables) = compile(&[fuzzy(0.0, roughness, more)]);
@@ -199,7 +205,10 @@ fn both_ends_of_fuzz_are_finite() {
             let evaluator = Evaluator::open(&material, engine, precision).unwrap();
             for cosine in [1.0, 0.3, 1e-3] {
                 let found = evaluator.albedo(cosine, 1 << 12, 1).unwrap().reflected[0];
-                assert!((found - 1.0).abs() < 1e-2, "{engine:?}, {weight}, {roughness}, {cosine}: {found}");
+                assert!(
+                    (found - 1.0).abs() < 1e-2,
+                    "{engine:?}, {weight}, {roughness}, {cosine}: {found}"
+                );
             }
             let grazing = Vec3::from_f64([1.0, 0.0, 1e-7]);
             let values = evaluator.evaluate(&[[grazing, grazing]]).unwrap()[0];

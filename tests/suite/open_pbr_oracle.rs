@@ -43,7 +43,9 @@ fn material(place: &Workplace, inputs: &str, is_single: bool) -> MaterialSetting
         lobe: ImportLobe::Ggx,
         ..ReadOptions::default()
     };
-    let mut found = find(place.path("surface.mtlx").to_str().unwrap(), options).unwrap().value;
+    let mut found = find(place.path("surface.mtlx").to_str().unwrap(), options)
+        .unwrap()
+        .value;
     if is_single {
         assign(&mut found, "specular.multiple_scattering=off").unwrap();
     }

@@ -12,7 +12,9 @@ use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
-use glossmith::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use glossmith::optics::material::{
+    COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+};
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;

@@ -36,7 +36,10 @@ fn single_scattering_has_its_closed_albedo() {
     for (roughness, expected) in [(1.0, [0.77652, 0.84036, 0.94721]), (0.5, [0.87420, 0.91014, 0.97029])] {
         for (cosine, expected) in COSINES.iter().zip(expected) {
             let found = single_albedo(*cosine, roughness);
-            assert!((found - expected).abs() < 1e-5, "{roughness}, {cosine}: {found} for {expected}");
+            assert!(
+                (found - expected).abs() < 1e-5,
+                "{roughness}, {cosine}: {found} for {expected}"
+            );
         }
     }
     // Without multiple scattering a black surface's factor is that of single scattering alone.
@@ -89,7 +92,12 @@ fn values_are_those_of_the_model_and_the_same_both_ways() {
         let value = |pair: usize| PI * found[pair].value[0] / f64::from(pairs[pair][1].z);
         assert!((value(0) - 1.6198).abs() < 2e-4, "{engine:?}: {}", value(0));
         assert!((value(1) - 0.2221).abs() < 2e-4, "{engine:?}: {}", value(1));
-        assert!((value(2) - value(3)).abs() < 1e-5, "{engine:?}: {} and {}", value(2), value(3));
+        assert!(
+            (value(2) - value(3)).abs() < 1e-5,
+            "{engine:?}: {} and {}",
+            value(2),
+            value(3)
+        );
         // Drawn as Lambert's base.
         assert!((found[2].density - f64::from(aside.z) / PI).abs() < 1e-6, "{engine:?}");
     }
@@ -101,11 +109,16 @@ fn white_stacks_over_a_rough_base_keep_all_light() {
     let cases: [(&[&str], f64); 3] = [
         (&["specular.weight=1", "specular.roughness=0.4"], 1.0),
         (&["coat.weight=1", "coat.roughness=0.3"], 1.0),
-        (&["specular.weight=1", "transmission.weight=0.5", "specular.roughness=0.3"], -1.0),
+        (
+            &["specular.weight=1", "transmission.weight=0.5", "specular.roughness=0.3"],
+            -1.0,
+        ),
     ];
     for (assignments, side) in cases {
         let mut material = matt(1.0, 1.0);
-        assignments.iter().for_each(|assignment| assign(&mut material, assignment).unwrap());
+        assignments
+            .iter()
+            .for_each(|assignment| assign(&mut material, assignment).unwrap());
         for (engine, precision) in ENGINES {
             let evaluator = Evaluator::open(&material, engine, precision).unwrap();
             for cosine in COSINES {

@@ -64,7 +64,12 @@ fn a_white_metal_reflects_all_light_at_every_roughness() {
 
 #[test]
 fn the_gpu_keeps_all_light_too() {
-    let metal = ["base.color=1,1,1", "base.metalness=1", "specular.fresnel=schlick", "specular.roughness=0.8"];
+    let metal = [
+        "base.color=1,1,1",
+        "base.metalness=1",
+        "specular.fresnel=schlick",
+        "specular.roughness=0.8",
+    ];
     let clear = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0.6"];
     for assignments in [&metal[..], &clear] {
         for (albedo, cosine) in albedos(&material(assignments), GPU, 1.0).iter().zip(COSINES) {
@@ -104,7 +109,10 @@ fn white_stacks_of_rough_ggx_keep_all_light() {
         // Tables over the roughness are linear between few nodes.
         (&["specular.roughness=0.62", "base.metalness=0.5"], 6e-3),
         (&["specular.roughness=0.6", "transmission.weight=0.5"], 4e-3),
-        (&["specular.roughness=0.7", "transmission.weight=0", "base.metalness=0.4"], 6e-3),
+        (
+            &["specular.roughness=0.7", "transmission.weight=0", "base.metalness=0.4"],
+            6e-3,
+        ),
     ];
     for engine in ENGINES {
         for (assignments, tolerance) in cases {
@@ -113,7 +121,12 @@ fn white_stacks_of_rough_ggx_keep_all_light() {
             for side in sides {
                 for (albedo, cosine) in albedos(&material, engine, *side).iter().zip(COSINES) {
                     let sum = albedo.reflected[1] + albedo.transmitted[1];
-                    assert_albedo(sum, 1.0, tolerance, &format!("{engine:?}, {assignments:?}, {}", side * cosine));
+                    assert_albedo(
+                        sum,
+                        1.0,
+                        tolerance,
+                        &format!("{engine:?}, {assignments:?}, {}", side * cosine),
+                    );
                 }
             }
         }

@@ -25,7 +25,13 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "asks the plan's constants, which the CPU engine does not have: it looks at the values themselves",
-        &["compensates", "has_vertex_flag", "looks_up_textures", "planned", "transmits_anywhere"],
+        &[
+            "compensates",
+            "has_vertex_flag",
+            "looks_up_textures",
+            "planned",
+            "transmits_anywhere",
+        ],
     ),
     (
         "is a method of numbers in Rust (src/optics/elementary.rs)",

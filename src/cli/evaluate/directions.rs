@@ -28,7 +28,8 @@ impl Pairs {
     /// Names the file, the line and what is wrong with it.
     pub(super) fn read(path: &Path) -> anyhow::Result<Self> {
         let name = path.display();
-        let text = std::fs::read_to_string(path).with_context(|| format!("{name}: the table cannot be read as text"))?;
+        let text =
+            std::fs::read_to_string(path).with_context(|| format!("{name}: the table cannot be read as text"))?;
         let lines = (1..).zip(text.lines().map(str::trim));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
         let (_, header) = lines.next().with_context(|| format!("{name}: the table is empty"))?;
@@ -54,7 +55,11 @@ impl Pairs {
         for (number, line) in lines {
             let cells: Vec<&str> = line.split(',').collect();
             if cells.len() != columns.len() {
-                bail!("{name}, line {number}: {} cells, but there are {} columns", cells.len(), columns.len());
+                bail!(
+                    "{name}, line {number}: {} cells, but there are {} columns",
+                    cells.len(),
+                    columns.len()
+                );
             }
             let mut angles = [0.0; 4];
             for (angle, place) in angles.iter_mut().zip(places) {
@@ -82,7 +87,10 @@ impl Pairs {
             for height in 0..heights {
                 for turn in 0..2 * steps {
                     let theta_deg = |index: u32| step_deg * (f64::from(index) + 0.5);
-                    let pair = [[theta_deg(view), 0.0], [theta_deg(height), 2.0 * step_deg * f64::from(turn)]];
+                    let pair = [
+                        [theta_deg(view), 0.0],
+                        [theta_deg(height), 2.0 * step_deg * f64::from(turn)],
+                    ];
                     let [[theta_o, phi_o], [theta_i, phi_i]] = pair;
                     pairs.rows.push(format!("{theta_o},{phi_o},{theta_i},{phi_i}"));
                     pairs.angles_deg.push(pair);

@@ -165,7 +165,14 @@ fn write_values(arguments: &EvaluateArguments, evaluator: &Evaluator) -> anyhow:
 
 fn write_pairs(file: &mut impl Write, pairs: &Pairs, values: &[Evaluation]) -> io::Result<()> {
     writeln!(file, "{},r,g,b,density", pairs.header)?;
-    for (row, Evaluation { value: [r, g, b], density }) in pairs.rows.iter().zip(values) {
+    for (
+        row,
+        Evaluation {
+            value: [r, g, b],
+            density,
+        },
+    ) in pairs.rows.iter().zip(values)
+    {
         writeln!(file, "{row},{r},{g},{b},{density}")?;
     }
     Ok(())

@@ -7,7 +7,9 @@ use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{
+    COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+};
 use crate::optics::vector::Vec3;
 
 /// Every effect, in the order of [`EffectId::ALL`].
@@ -380,12 +382,7 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::BoxProjection,
         label: "Box projection",
         help: "Images that lie on a surface as on a box, without texture coordinates.",
-        decide: |facts| {
-            facts.needed_by(
-                |m| m.has_flag(HAS_BOX),
-                "has a texture that lies on it as on a box",
-            )
-        },
+        decide: |facts| facts.needed_by(|m| m.has_flag(HAS_BOX), "has a texture that lies on it as on a box"),
         remove: Some(|document| each_material(document, MaterialSettings::without_boxes)),
     },
     Effect {

@@ -94,8 +94,8 @@ fn call(surface: &Surface, exact: &str) -> String {
         ("Emission Strength", strongest.to_string()),
     ];
     // Blender has it since 4.3.
-    let of_base = (surface.diffuse_roughness > 0.0)
-        .then(|| ("Diffuse Roughness", surface.diffuse_roughness.to_string()));
+    let of_base =
+        (surface.diffuse_roughness > 0.0).then(|| ("Diffuse Roughness", surface.diffuse_roughness.to_string()));
     let lines: Vec<String> = inputs
         .into_iter()
         .chain(of_base)

@@ -460,7 +460,9 @@ impl Surface {
             (ior, of_dielectric) = (weighted_ior(ior, weight), 1.0);
         }
         let dielectric = match takes.law {
-            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * of_dielectric),
+            Law::Exact => {
+                Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * of_dielectric)
+            }
             Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * of_dielectric,
         };
         dielectric.mix(metal, f64::from(self.metalness))

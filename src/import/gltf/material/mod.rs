@@ -18,8 +18,8 @@ pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, DiffuseRoughness, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension,
-    kept, unreadable,
+    Anisotropy, Clearcoat, DiffuseRoughness, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume,
+    extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
