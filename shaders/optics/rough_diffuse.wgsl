@@ -1,12 +1,12 @@
 // Rough diffuse reflection that keeps its energy. Twin of src/optics/rough_diffuse.rs.
 #import "optics/numeric"
 
-const HEAD_ON: f32 = 0.28779341;
-const MEAN: f32 = 0.07248821;
-const GRAZING_COSINE: f32 = 1e-4;
+const HEAD_ON: f32 = 0.2877934092108062;
+const MEAN: f32 = 0.07248821245692394;
+const ROUGH_COSINE_MIN: f32 = 1e-4;
 
 fn rough_diffuse(albedo: vec3f, roughness: f32, cosines: vec2f, between: f32) -> vec3f {
-    let c = clamp(cosines, vec2f(GRAZING_COSINE), vec2f(1.0));
+    let c = clamp(cosines, vec2f(ROUGH_COSINE_MIN), vec2f(1.0));
     let head_on = 1.0 / (1.0 + roughness * HEAD_ON);
     var across = between - c.x * c.y;
     across = select(across, across / max(c.x, c.y), across > 0.0);

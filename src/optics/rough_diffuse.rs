@@ -12,14 +12,14 @@ pub const HEAD_ON: f64 = 0.5 - 2.0 * FRAC_1_PI / 3.0;
 /// What it gives to the mean over all views.
 pub const MEAN: f64 = 2.0 / 3.0 - 28.0 * FRAC_1_PI / 15.0;
 /// The least cosine at which directions are compared.
-pub const GRAZING_COSINE: f64 = 1e-4;
+pub const ROUGH_COSINE_MIN: f64 = 1e-4;
 
 /// The value over that of Lambert's model with the same albedo, linear RGB: from the cosines of both directions to the normal
 /// and the cosine between them. 1 at roughness 0.
 #[inline(always)]
 pub fn rough_diffuse<T: Real>(albedo: Vec3<T>, roughness: T, cosines: [T; 2], between: T) -> Vec3<T> {
     let (zero, one) = (T::zero(), T::one());
-    let [cosine_o, cosine_i] = cosines.map(|cosine| cosine.clamp(T::from_f64(GRAZING_COSINE), one));
+    let [cosine_o, cosine_i] = cosines.map(|cosine| cosine.clamp(T::from_f64(ROUGH_COSINE_MIN), one));
     let head_on = one / (one + roughness * T::from_f64(HEAD_ON));
     let across = between - cosine_o * cosine_i;
     let across = T::select(zero.less(across), across / cosine_o.max(cosine_i), across);

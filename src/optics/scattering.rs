@@ -148,7 +148,10 @@ const STEPS: [f64; 4] = [
     0.732_050_807_568_877_2,
 ];
 
-/// Mean of a lobe's weights times a factor of both directions, over all azimuths of the view.
+/// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
+const STRETCHED_SAMPLES: u32 = 4;
+
+/// Mean of a lobe's weights times a factor of both directions; of a stretched one over all azimuths of the view.
 fn mean_weight(
     shape: &LobeShape<'_, f64>,
     cosine: f64,
@@ -158,10 +161,21 @@ fn mean_weight(
     let normal = vec3(0.0, 0.0, 1.0);
     let frame = frame_from_normal(normal);
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let is_stretched = shape.anisotropy != 0.0;
+    let samples = if is_stretched {
+        STRETCHED_SAMPLES * samples
+    } else {
+        samples
+    };
     let mut sum = 0.0;
     for sample in 0..samples {
         let [a, b, c, turn] = STEPS.map(|step| ((f64::from(sample) + 0.5) * step).fract());
-        let (across, along) = (std::f64::consts::TAU * turn).sin_cos();
+        let azimuth = if is_stretched {
+            std::f64::consts::TAU * turn
+        } else {
+            0.0
+        };
+        let (across, along) = azimuth.sin_cos();
         let wo = vec3(sine * along, sine * across, cosine);
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         if drawn.weight > 0.0 {

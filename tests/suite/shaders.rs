@@ -260,7 +260,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("BASE_EDGE", BASE_EDGE),
         ("HEAD_ON", rough_diffuse::HEAD_ON),
         ("MEAN", rough_diffuse::MEAN),
-        ("GRAZING_COSINE", rough_diffuse::GRAZING_COSINE),
+        ("ROUGH_COSINE_MIN", rough_diffuse::ROUGH_COSINE_MIN),
         ("VERTEX_BASE", f64::from(material::VERTEX_BASE)),
         ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
         ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),
