@@ -103,6 +103,8 @@ fn mitsuba_renders_what_we_render() {
         lobe: Lobe::Ggx,
         roughness: 0.5,
         fresnel: glossmith::optics::fresnel::Fresnel::Conductor,
+        // Mitsuba's facets scatter once.
+        multiple_scattering: false,
         ..MaterialSettings::default()
     };
     let matt = MaterialSettings::diffuse("matt", [0.8, 0.4, 0.2]);

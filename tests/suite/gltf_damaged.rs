@@ -361,6 +361,21 @@ fn unreadable_numbers_of_a_gltf_file_cost_themselves_alone() {
             assert!(places.iter().any(|told| *told == place), "{number}: {:?}", model.report);
         }
     }
+    // One of several nodes, and the only mesh of a file.
+    let text = document.to_string().replace("777", "0.5");
+    let two = text.replacen(r#""nodes":[0]"#, r#""nodes":[0,NaN]"#, 1);
+    let model = folder.load("two.gltf", two.as_bytes()).expect("loads");
+    assert_eq!(model.mesh.triangles.len(), 2, "{:?}", model.report);
+    let none = text.replacen(r#""POSITION":0"#, r#""POSITION":x"#, 1);
+    assert_ne!(text, none);
+    let refusal = folder.load("none.gltf", none.as_bytes());
+    refused(
+        refusal,
+        &[
+            "a number that cannot be read",
+            "/meshes/0/primitives/0/attributes/POSITION",
+        ],
+    );
     // Members of the whole file of another type.
     for (member, value) in [
         ("scene", json!("hello")),

@@ -163,6 +163,19 @@ fn unreadable_lines_of_an_obj_file_cost_themselves_alone() {
         assert!(model.report.of(Fate::Ignored).any(is_told), "{to}: {:?}", model.report);
         assert!(model.mesh.uvs.iter().any(|uv| uv.x == 1.0), "{to}");
     }
+    for (from, to, fate, words) in [
+        ("vn 0 0 1", "vn 0 0 nan", Fate::Approximated, "normals without a length"),
+        (
+            "vt 1 0",
+            "vt 1e999 0",
+            Fate::Ignored,
+            "texture coordinates that are not finite",
+        ),
+    ] {
+        let model = folder.load("odd.obj", good.replace(from, to).as_bytes()).expect(to);
+        says(&model, fate, words);
+        assert!(model.mesh.uvs.iter().all(|uv| uv.is_finite()), "{to}");
+    }
     // Infinite numbers can be read: their triangles are told.
     let model = folder.load("far.obj", good.replace("v 2 0 0", "v 2 0 1e999").as_bytes());
     says(&model.expect("loads"), Fate::Ignored, "a corner that is not finite");

@@ -77,7 +77,7 @@ fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report:
         .flat_map(|fate| report.of(fate));
     let has_triangles = nodes.iter().any(|node| primitive::has_triangles(document, node.mesh));
     let blamed: Vec<String> = blamed
-        .filter(|entry| has_triangles || entry.fate == Fate::Missing)
+        .filter(|entry| has_triangles || entry.fate == Fate::Missing || entry.what.contains("that cannot be read"))
         .filter(|entry| !entry.what.starts_with("points and lines"))
         .take(3)
         .map(|entry| entry.line())

@@ -1,5 +1,7 @@
 //! Numbers that JSON or single precision cannot hold: each costs its own value.
 
+use std::fmt::Display;
+
 use serde_json::Value as Json;
 
 use crate::scene::report::{Fate, ImportReport};
@@ -59,43 +61,65 @@ fn word(bytes: &[u8]) -> String {
     }
 }
 
+/// Lists of nodes, which can do without one of them.
+const LISTS: [&str; 2] = ["/nodes", "/children"];
+
 /// Removes the values whose numbers single precision cannot hold, and reports the way to each. Returns whether that is so of
 /// the value itself.
 pub(super) fn drop_unreadable(value: &mut Json, pointer: &mut String, report: &mut ImportReport) -> bool {
-    let is_beyond = |value: &Json| value.as_f64().is_some_and(|number| (number as f32).is_infinite());
-    let mut within = |key: &dyn std::fmt::Display, value: &mut Json, pointer: &mut String| {
-        if !value.is_array() && !value.is_object() {
-            return is_beyond(value);
-        }
-        let length = pointer.len();
-        pointer.push_str(&format!("/{key}"));
-        let is_unreadable = drop_unreadable(value, pointer, report);
-        pointer.truncate(length);
-        is_unreadable
-    };
     match value {
+        Json::Array(values) if LISTS.iter().any(|list| pointer.ends_with(list)) => {
+            let mut place = 0;
+            values.retain_mut(|value| {
+                let is_unreadable = is_unreadable(&place, value, pointer, report);
+                if is_unreadable {
+                    note(report, &place, pointer);
+                }
+                place += 1;
+                !is_unreadable
+            });
+            false
+        }
         Json::Array(values) => {
-            let unreadable = values.iter_mut().enumerate();
-            let unreadable = unreadable.filter_map(|(place, value)| within(&place, value, pointer).then_some(()));
-            unreadable.count() > 0
+            let mut is_any = false;
+            for (place, value) in values.iter_mut().enumerate() {
+                is_any |= is_unreadable(&place, value, pointer, report);
+            }
+            is_any
         }
         Json::Object(values) => {
-            let mut names = Vec::new();
             values.retain(|key, value| {
-                let is_unreadable = within(key, value, pointer);
+                let is_unreadable = is_unreadable(key, value, pointer, report);
                 if is_unreadable {
-                    names.push(format!("{pointer}/{key}"));
+                    note(report, key, pointer);
                 }
                 !is_unreadable
             });
-            for name in names {
-                let what = "a number that cannot be read, its default instead; export the model again";
-                report.note(Fate::Ignored, what, &name);
-            }
             false
         }
         other => is_beyond(other),
     }
+}
+
+/// Whether the value at a key of an array or object is unreadable.
+fn is_unreadable(key: &dyn Display, value: &mut Json, pointer: &mut String, report: &mut ImportReport) -> bool {
+    if !value.is_array() && !value.is_object() {
+        return is_beyond(value);
+    }
+    let length = pointer.len();
+    pointer.push_str(&format!("/{key}"));
+    let is_unreadable = drop_unreadable(value, pointer, report);
+    pointer.truncate(length);
+    is_unreadable
+}
+
+fn note(report: &mut ImportReport, key: &dyn Display, pointer: &str) {
+    let what = "a number that cannot be read, its default instead; export the model again";
+    report.note(Fate::Ignored, what, &format!("{pointer}/{key}"));
+}
+
+fn is_beyond(value: &Json) -> bool {
+    value.as_f64().is_some_and(|number| (number as f32).is_infinite())
 }
 
 #[cfg(test)]
@@ -114,10 +138,12 @@ mod tests {
 
     #[test]
     fn the_way_to_each_value_is_told() {
-        let mut value = serde_json::json!({"a": [{"b": [1, 1e300, 2], "c": 1e39, "d": 3.4028235e38}], "e": [1e40]});
+        let mut value = serde_json::json!({
+            "a": [{"b": [1, 1e300, 2], "c": 1e39, "d": 3.4028235e38}], "e": [1e40], "nodes": [1e300, 7],
+        });
         let mut report = ImportReport::default();
         assert!(!drop_unreadable(&mut value, &mut String::new(), &mut report));
-        assert_eq!(value, serde_json::json!({"a": [{"d": 3.4028235e38}]}));
-        assert_eq!(report.entries[0].names, ["/a/0/b", "/a/0/c", "/e"]);
+        assert_eq!(value, serde_json::json!({"a": [{"d": 3.4028235e38}], "nodes": [7]}));
+        assert_eq!(report.entries[0].names, ["/a/0/b", "/a/0/c", "/e", "/nodes/0"]);
     }
 }

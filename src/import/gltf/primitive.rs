@@ -265,6 +265,13 @@ impl Reader<'_> {
     /// A set of texture coordinates, if used and present.
     fn uvs(&self, set: Option<u32>, count: usize, report: &mut ImportReport) -> Option<Vec<Vec2>> {
         let uvs: Option<Vec<[f32; 2]>> = self.optional(&Semantic::TexCoords(set?), count, report);
+        let broken = uvs.iter().flatten().filter(|[u, v]| !(u.is_finite() && v.is_finite()));
+        report.count(
+            Fate::Ignored,
+            "texture coordinates that are not finite",
+            self.name,
+            broken.count(),
+        );
         uvs.map(|uvs| uvs.into_iter().map(finite_uv).collect())
     }
 

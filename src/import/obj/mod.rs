@@ -22,7 +22,6 @@ use crate::files::Files;
 use crate::model_error::ModelError;
 use crate::panics::contained;
 use crate::picture::{Encoded, Wanted};
-use crate::scene::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
@@ -58,7 +57,10 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
             .step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
         let normal_texture = slots.slots[slot as usize].normal_texture;
-        let read = read_part(&part.mesh, slot, normal_texture, &files.import.loading);
+        let mut read = read_part(&part.mesh, slot);
+        repair(&mut read, &part.name, &mut report);
+        let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
+        read.make_tangents(texture_from_uv, normal_texture.is_some(), &files.import.loading);
         if !read.colors.is_empty() {
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
@@ -133,7 +135,7 @@ fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -
 }
 
 /// The triangles of one part.
-fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>, loading: &Loading) -> Mesh {
+fn read_part(source: &tobj::Mesh, slot: u32) -> Mesh {
     let positions = source.positions.as_chunks::<3>().0;
     let count = positions.len();
     let normals = source.normals.as_chunks::<3>().0;
@@ -171,11 +173,20 @@ fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>,
     }
     if normals.len() == count {
         mesh.normals = normals.iter().map(|normal| Vec3::from_array(*normal)).collect();
-        mesh.repair_normals();
     }
-    let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
-    mesh.make_tangents(texture_from_uv, normal_texture.is_some(), loading);
     mesh
+}
+
+/// Replaces texture coordinates and normals that are no finite numbers.
+fn repair(mesh: &mut Mesh, name: &str, report: &mut ImportReport) {
+    let broken = mesh.uvs.iter_mut().filter(|uv| !uv.is_finite());
+    let uvs = broken.map(|uv| *uv = Vec2::ZERO).count();
+    report.count(Fate::Ignored, "texture coordinates that are not finite", name, uvs);
+    if mesh.normals.iter().any(|normal| *normal != Vec3::ZERO) {
+        let normals = mesh.repair_normals();
+        let what = "normals without a length, taken from triangles";
+        report.count(Fate::Approximated, what, name, normals);
+    }
 }
 
 /// Texture coordinates as they are.

@@ -14,6 +14,7 @@ const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
     absorption: false,
     fuzz: false,
+    scattering: true,
     weighs_metal: false,
     ..Takes::OPEN_PBR
 };

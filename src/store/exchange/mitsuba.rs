@@ -50,6 +50,7 @@ impl Kind {
             eta_and_k: self == Self::Conductor,
             diffuse_roughness: false,
             fuzz: false,
+            scattering: false,
             weighs_index: false,
             edge_tint: false,
             specular: self == Self::Glass,

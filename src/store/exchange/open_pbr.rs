@@ -48,6 +48,7 @@ impl Takes {
         coat: true,
         coat_details: true,
         fuzz: true,
+        scattering: true,
         transmission: true,
         absorption: true,
         textures: false,

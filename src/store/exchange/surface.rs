@@ -102,6 +102,8 @@ pub struct Takes {
     pub coat_details: bool,
     /// Fuzz.
     pub fuzz: bool,
+    /// What facets scatter more than once.
+    pub scattering: bool,
     /// Refraction.
     pub transmission: bool,
     /// Absorption inside.
@@ -513,6 +515,14 @@ impl Surface {
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
+        let scatters_again =
+            material.lobe.traits().loses_light && material.multiple_scattering && material.metalness > 0.0;
+        layer(
+            scatters_again && !takes.scattering,
+            false,
+            "multiple scattering between facets",
+            "rough metals are darker there",
+        );
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
         let is_textured = material.uses_of_model() != TextureUse::default();

@@ -29,6 +29,7 @@ const TAKES: Takes = Takes {
     eta_and_k: false,
     diffuse_roughness: true,
     fuzz: false,
+    scattering: true,
     edge_tint: false,
     specular: true,
     weighs_index: false,

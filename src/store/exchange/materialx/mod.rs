@@ -34,6 +34,7 @@ pub struct MaterialX {
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     fuzz: false,
+    scattering: true,
     weighs_index: false,
     widths: standard_widths,
     weighs_metal: false,
