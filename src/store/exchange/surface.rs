@@ -515,14 +515,9 @@ impl Surface {
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
-        let scatters_again =
-            material.lobe.traits().loses_light && material.multiple_scattering && material.metalness > 0.0;
-        layer(
-            scatters_again && !takes.scattering,
-            false,
-            "multiple scattering between facets",
-            "rough metals are darker there",
-        );
+        let loses_light = material.lobe.traits().loses_light && material.metalness > 0.0;
+        let dims = loses_light && material.multiple_scattering && !takes.scattering;
+        layer(dims, false, "multiple scattering between facets", none);
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
         let is_textured = material.uses_of_model() != TextureUse::default();
