@@ -7,14 +7,15 @@ use glam::DVec3;
 use super::import::ROUGHNESS_MAX;
 use super::{AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, ImportLobe, MaterialSettings, range};
 use crate::scene::camera::right_and_up;
+use crate::scene::camera::Projection;
 use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
 /// Diameter of the balls and discs that stand for lights of no size, bounding radii.
 const LIGHT_SIDE: f64 = 0.02;
 /// The farthest that a light is put from the model, bounding radii.
 const FARTHEST: f64 = 900.0;
-/// The field of view that stands for parallel lines of sight, degrees.
-const PARALLEL_FOV_DEG: f64 = 1.0;
+/// The field of view that an orthographic camera gets, degrees: its place follows from it.
+const PARALLEL_FOV_DEG: f64 = 30.0;
 
 /// The materials of a model's slots.
 pub fn materials_of(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
@@ -155,11 +156,11 @@ fn bookmark(camera: &ModelCamera, model: &Model) -> Bookmark {
     let along = forward.dot(DVec3::from_array(model.center) - position);
     let target = position + forward * if along > 0.0 { along } else { model.radius };
     let (narrowest, widest) = (*range::FOV_DEG.start(), *range::FOV_DEG.end());
-    let fov_deg = match camera.lens {
-        ModelLens::Perspective(fov_deg) => fov_deg.clamp(narrowest, widest),
+    let (fov_deg, projection) = match camera.lens {
+        ModelLens::Perspective(fov_deg) => (fov_deg.clamp(narrowest, widest), Projection::Perspective),
         ModelLens::Orthographic(height) => {
             position = target - forward * (0.5 * height / (0.5 * PARALLEL_FOV_DEG.to_radians()).tan());
-            PARALLEL_FOV_DEG
+            (PARALLEL_FOV_DEG, Projection::Orthographic)
         }
     };
     // From the upright camera's up to the file's, clockwise.
@@ -172,6 +173,7 @@ fn bookmark(camera: &ModelCamera, model: &Model) -> Bookmark {
             target: Some(target.to_array()),
             position: Some(position.to_array()),
             fov_deg,
+            projection,
             roll_deg: if roll_deg.abs() < 1e-4 { 0.0 } else { roll_deg },
             ..CameraSettings::default()
         },

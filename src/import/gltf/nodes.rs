@@ -209,13 +209,6 @@ fn camera_at(camera: &json::Camera, name: &str, world_from_node: DMat4) -> Optio
 
 /// Reports camera properties that a bookmark cannot store.
 fn note_camera(camera: &json::Camera, seen: &ModelCamera, report: &mut ImportReport) {
-    if let ModelLens::Orthographic(_) = seen.lens {
-        report.note(
-            Fate::Approximated,
-            "an orthographic camera, as a narrow one from far away",
-            &seen.name,
-        );
-    }
     let perspective = camera.perspective.as_ref();
     if perspective.is_some_and(|perspective| perspective.aspect_ratio.is_some()) {
         report.note(
