@@ -125,7 +125,7 @@ fn densities_add_up_to_one_and_values_to_the_albedo() {
             let [reflected, transmitted] = ["R_g", "T_g"].map(|column| albedos.column(column)[index]);
             let what = format!("{material}, {side}, view {view}");
             // Facets that send light into the surface draw directions that are lost: their density is not in the sum.
-            assert!((0.6..1.01).contains(&total), "{what}: density {total}");
+            assert!((0.6..1.04).contains(&total), "{what}: density {total}");
             if !material.contains("ggx") {
                 // The geometric lobe has a peak that the grid does not resolve.
                 assert!((total - 1.0).abs() < 0.04, "{what}: density {total}");
