@@ -279,7 +279,7 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
             Check::new("samples", describe(case), "p", value, limit)
         })
     };
-    // A few for each thread at a time: the stops between them cost little, and tell how far it is.
+    // A few for each thread at a time: the stops between them cost little, and show what is left.
     let part = CASES_PER_THREAD * rayon::current_num_threads();
     let mut checks = Vec::with_capacity(cases.len());
     for (cases, clouds) in cases.chunks(part).zip(clouds.chunks(part)) {

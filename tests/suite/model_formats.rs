@@ -277,6 +277,7 @@ fn unreadable_numbers_of_a_ply_file_cost_themselves_alone() {
     assert_eq!(whole.mesh.triangles.len(), 2);
     for (from, to, left) in [
         ("0 1 0 9 8 9", "0 x 0 9 8 9", 1),
+        ("0 1 0 9 8 9", "0 nan .0 9 8 9", 1),
         ("0 1 0 9 8 9", "0 1", 1),
         ("0 1 0 9 8 9", "0 1 0 red 8 9", 2),
         ("0 1 0 9 8 9", "0 1 0 9 8 9 7", 2),

@@ -126,7 +126,7 @@ fn peaks_of_refraction_have_the_oracle_s_values() {
 #[test]
 fn albedos_are_the_oracle_s() {
     let place = Workplace::new();
-    let mut worst = (0.0_f64, "");
+    let (mut worst, mut faults) = ((0.0_f64, ""), Vec::new());
     for (name, inputs, cells) in rows("albedo") {
         let material = material(&place, inputs, false);
         let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
@@ -156,8 +156,11 @@ fn albedos_are_the_oracle_s() {
         for (value, expected) in all.zip(&numbers[1..]) {
             let off = (value - expected).abs();
             worst = if off > worst.0 { (off, name) } else { worst };
-            assert!(off < tolerance, "albedo of {name} at {cells:?}: {value} for {expected}");
+            if off >= tolerance {
+                faults.push(format!("{name} at {cells:?}: {value} for {expected}"));
+            }
         }
     }
     println!("albedos: {} off at most, {}", worst.0, worst.1);
+    assert!(faults.is_empty(), "{faults:#?}");
 }

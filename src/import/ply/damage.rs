@@ -7,7 +7,7 @@ use crate::scene::report::{Fate, ImportReport};
 /// The last line of a header.
 const HEADER_END: &str = "end_header";
 
-/// The file with a readable row for every element. Unreadable coordinates become NaN, whose triangles are dropped; of an
+/// The file with a readable row for every element. Unreadable coordinates become infinite, and their triangles are dropped; of an
 /// unreadable list nothing is left. Elements after the file's end are reported as missing.
 pub(super) fn mended(bytes: &[u8], header: &Header, report: &mut ImportReport) -> Vec<u8> {
     let text = String::from_utf8_lossy(bytes);
@@ -48,26 +48,26 @@ pub(super) fn mended(bytes: &[u8], header: &Header, report: &mut ImportReport) -
 fn row(element: &ElementDef, line: &str) -> (String, bool) {
     let mut words = line.split_whitespace();
     let mut is_whole = true;
-    let mut row: Vec<&str> = Vec::new();
+    let mut row: Vec<String> = Vec::new();
     for property in element.properties.values() {
         match &property.data_type {
             PropertyType::Scalar(kind) => {
-                let word = words.next().filter(|word| is_number(kind, word));
-                is_whole &= word.is_some();
-                row.push(word.unwrap_or(substitute(kind)));
+                let number = words.next().and_then(|word| number(kind, word));
+                is_whole &= number.is_some();
+                row.push(number.unwrap_or_else(|| substitute(kind).to_owned()));
             }
             PropertyType::List(_, kind) => {
-                let count = words.next();
-                let length = count.and_then(|count| count.parse::<usize>().ok());
+                let length = words.next().and_then(|count| count.parse::<usize>().ok());
                 let items: Vec<&str> = words.by_ref().take(length.unwrap_or(0)).collect();
-                match count {
-                    Some(count) if length == Some(items.len()) && items.iter().all(|item| is_number(kind, item)) => {
-                        row.push(count);
-                        row.extend(items);
+                let numbers: Option<Vec<String>> = items.iter().map(|item| number(kind, item)).collect();
+                match numbers {
+                    Some(numbers) if length == Some(numbers.len()) => {
+                        row.push(numbers.len().to_string());
+                        row.extend(numbers);
                     }
                     _ => {
                         is_whole = false;
-                        row.push("0");
+                        row.push("0".to_owned());
                     }
                 }
             }
@@ -76,22 +76,30 @@ fn row(element: &ElementDef, line: &str) -> (String, bool) {
     (row.join(" "), is_whole && words.next().is_none())
 }
 
-fn is_number(kind: &ScalarType, word: &str) -> bool {
+/// A word as the crate reads it, which knows neither `.5` nor `nan`; `None` if it is no number of its kind.
+fn number(kind: &ScalarType, word: &str) -> Option<String> {
+    let of_integer = |range: std::ops::RangeInclusive<i64>| {
+        let value = word.parse::<i64>().ok().filter(|value| range.contains(value));
+        value.map(|value| value.to_string())
+    };
     match kind {
-        ScalarType::Float | ScalarType::Double => word.parse::<f64>().is_ok(),
-        ScalarType::Char => word.parse::<i8>().is_ok(),
-        ScalarType::UChar => word.parse::<u8>().is_ok(),
-        ScalarType::Short => word.parse::<i16>().is_ok(),
-        ScalarType::UShort => word.parse::<u16>().is_ok(),
-        ScalarType::Int => word.parse::<i32>().is_ok(),
-        ScalarType::UInt => word.parse::<u32>().is_ok(),
+        ScalarType::Float | ScalarType::Double => {
+            let value = word.parse::<f64>().ok().filter(|value| value.is_finite());
+            value.map(|value| format!("{value:e}"))
+        }
+        ScalarType::Char => of_integer(-128..=127),
+        ScalarType::UChar => of_integer(0..=255),
+        ScalarType::Short => of_integer(-32_768..=32_767),
+        ScalarType::UShort => of_integer(0..=65_535),
+        ScalarType::Int => of_integer(i64::from(i32::MIN)..=i64::from(i32::MAX)),
+        ScalarType::UInt => of_integer(0..=i64::from(u32::MAX)),
     }
 }
 
 /// What stands in place of an unreadable number.
 fn substitute(kind: &ScalarType) -> &'static str {
     match kind {
-        ScalarType::Float | ScalarType::Double => "nan",
+        ScalarType::Float | ScalarType::Double => "1e999",
         _ => "0",
     }
 }
