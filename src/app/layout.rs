@@ -22,7 +22,7 @@ const RIGHT_SHARE: f32 = 0.25;
 /// To either side of a tab's title, points.
 const TAB_SPACING: f32 = 7.0;
 /// Width of the button of the manual behind the tabs, and of that for more of them, points.
-const HELP_WIDTH: f32 = 36.0;
+const HELP_WIDTH: f32 = 24.0;
 const MORE_WIDTH: f32 = 34.0;
 
 /// Panels in which the look is made: those that are open in *Look*.

@@ -275,7 +275,7 @@ fn check_growth(name: &str, bytes: &[u8]) -> Result<(), String> {
     let [growth, floor] = GROWTH;
     match header(name, bytes) {
         Some(header) if header.texels() > growth * bytes.len() as u64 + floor => {
-            Err("its file is far too small for it".to_owned())
+            Err("the file is too small for the size in its header".to_owned())
         }
         _ => Ok(()),
     }
