@@ -126,8 +126,15 @@ struct Render {
 }
 
 fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render, SessionError> {
-    let document = ball(material, SIDE, SAMPLES, denoise_if_possible());
-    session.submit(&document)?;
+    let mut document = ball(material, SIDE, SAMPLES, denoise_if_possible());
+    match session.submit(&document) {
+        // The denoiser needs most of the memory.
+        Err(SessionError::TooLarge(_)) => {
+            document.view.denoise = Denoise::Off;
+            session.submit(&document)?;
+        }
+        other => other?,
+    }
     while !session.step(STEP)?.is_done {}
     let image = match StepDenoiser::new(&document).finish(session)? {
         Some(denoised) => denoised.image,
