@@ -53,16 +53,22 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
     Ok(entries)
 }
 
-/// The material that is a file, or the one in a folder that has its name.
+/// The material that is a file, or the one in a folder for one.
 fn materials_at(path: &Path) -> Option<PathBuf> {
     let is_json = |ending: &std::ffi::OsStr| ending.eq_ignore_ascii_case("json");
     if path.extension().is_some_and(is_json) {
         return Some(path.to_owned());
     }
-    let name = path.file_name()?;
-    let is_hidden = name.to_string_lossy().starts_with('.');
-    let within = path.join(Path::new(name).with_extension("json"));
-    (!is_hidden && within.is_file()).then_some(within)
+    let within = file_within(path)?;
+    within.is_file().then_some(within)
+}
+
+/// The file in a folder for one material, which has its name.
+fn file_within(home: &Path) -> Option<PathBuf> {
+    let is_home = home.extension().is_some_and(|ending| ending == HOME);
+    let mut name = home.file_stem()?.to_owned();
+    name.push(".json");
+    is_home.then(|| home.join(name))
 }
 
 /// Adds a material in a file named after it; no other file is replaced. One with images gets a folder, with copies of them.
@@ -78,10 +84,10 @@ pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileEr
         save_material(&path, material)?;
         return Ok(path);
     }
-    let home = free_path(folder, &stem, "");
+    let home = free_path(folder, &stem, HOME);
     fs::create_dir_all(&home).map_err(cannot_write(&home))?;
     let material = with_copies(material, &home)?;
-    let path = home.join(home.file_name().unwrap_or_default()).with_extension("json");
+    let path = file_within(&home).unwrap_or(home);
     save_material(&path, &material)?;
     Ok(path)
 }
@@ -110,10 +116,10 @@ fn with_copies(material: &MaterialSettings, home: &Path) -> Result<MaterialSetti
     Ok(material)
 }
 
-/// The folder of a material that has one of its own.
+/// The folder of a material that has one of its own. Its ending tells it from a folder of many that has a material's name.
 fn own_folder(path: &Path) -> Option<&Path> {
     let folder = path.parent()?;
-    (folder.file_name()? == path.file_stem()?).then_some(folder)
+    (file_within(folder)? == path).then_some(folder)
 }
 
 /// The folder that a material is in, its own left aside.
@@ -130,14 +136,20 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
     if material.name == name {
         return Ok(path.to_owned());
     }
-    material.name = name.to_owned();
-    let renamed = add(root(path), &material)?;
-    // Not kept, so that what was removed before can still be restored.
-    let discarded = match own_folder(path) {
-        Some(folder) => fs::remove_dir_all(folder),
-        None => fs::remove_file(path),
+    let Some(folder) = own_folder(path) else {
+        material.name = name.to_owned();
+        let renamed = add(root(path), &material)?;
+        // Not kept, so that what was removed before can still be restored.
+        fs::remove_file(path).map_err(cannot_write(path))?;
+        return Ok(renamed);
     };
-    discarded.map_err(cannot_write(path))?;
+    // Moved, so that it keeps all that is in it.
+    let home = free_path(root(path), &file_stem(name), HOME);
+    let renamed = moved_home(folder, path, &home)?;
+    // Its images are beside it in the new place.
+    let mut material = load_material(&renamed)?.value;
+    material.name = name.to_owned();
+    save_material(&renamed, &material)?;
     Ok(renamed)
 }
 
@@ -166,6 +178,9 @@ enum Kept {
     /// Its folder, hidden beside the others until the next one is removed.
     Folder(PathBuf),
 }
+
+/// Ending of a folder for one material and its images. No material's file is called so.
+const HOME: &str = "material";
 
 /// The folder in which the one that was removed last is kept.
 const REMOVED: &str = ".removed";
@@ -218,23 +233,27 @@ pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
     let folder = root(&removed.path);
     match &removed.kept {
         Kept::Bytes(bytes) => {
-            let path = free_path(folder, &stem, "json");
+            let ending = removed.path.extension().unwrap_or_default().to_string_lossy();
+            let path = free_path(folder, &stem, &ending);
             save_atomically(&path, bytes)?;
             Ok(path)
         }
         Kept::Folder(kept) => {
-            let home = free_path(folder, &stem, "");
-            fs::rename(kept, &home).map_err(cannot_write(&home))?;
-            let name = home.file_name().unwrap_or_default().to_owned();
-            let [before, path] =
-                [removed.path.file_name().unwrap_or_default(), name.as_os_str()].map(|name| home.join(name));
-            let path = path.with_extension("json");
-            if before != path {
-                fs::rename(&before, &path).map_err(cannot_write(&path))?;
-            }
-            Ok(path)
+            let home = free_path(folder, &stem, HOME);
+            moved_home(kept, &removed.path, &home)
         }
     }
+}
+
+/// Moves a folder for one material, whose file was `path`, and gives that the folder's name.
+fn moved_home(folder: &Path, path: &Path, home: &Path) -> Result<PathBuf, FileError> {
+    fs::rename(folder, home).map_err(cannot_write(home))?;
+    let moved = file_within(home).unwrap_or_else(|| home.to_owned());
+    let before = home.join(path.file_name().unwrap_or_default());
+    if before != moved {
+        fs::rename(&before, &moved).map_err(cannot_write(&moved))?;
+    }
+    Ok(moved)
 }
 
 /// A material's name as that of a file, with what is allowed everywhere.
@@ -294,6 +313,11 @@ mod tests {
         remove(&renamed).expect("removed");
         assert_eq!(list(&folder).expect("listed").len(), 3);
         assert!(remove(&renamed).is_err() && rename(&renamed, "Beta").is_err());
+        // One with the name of the folder of all.
+        material.name = "Materials".to_owned();
+        let path = add(&folder, &material).expect("added");
+        rename(&path, "Alpha 2").expect("renamed");
+        assert_eq!(list(&folder).expect("listed").len(), 4);
     }
 
     /// A material with images is a folder of its own, which holds all that it needs and comes back whole.
@@ -322,7 +346,7 @@ mod tests {
             );
         }
         let path = add(&folder, &material).expect("added");
-        assert_eq!(path, folder.join("oak-floor/oak-floor.json"));
+        assert_eq!(path, folder.join("oak-floor.material/oak-floor.json"));
         // Nothing of it lies elsewhere but what was gone before.
         fs::remove_dir_all(place.path().join("a")).expect("removed");
         let load = |path: &Path| load_material(path).expect("a material").value;
@@ -337,8 +361,13 @@ mod tests {
             !fs::read_to_string(&path).expect("text").contains("/b/"),
             "by a name beside it"
         );
+        fs::write(path.with_file_name("notes.txt"), "mine").expect("written");
         let renamed = rename(&path, "Floor").expect("renamed");
-        assert_eq!(renamed, folder.join("floor/floor.json"));
+        assert!(
+            renamed.with_file_name("notes.txt").is_file(),
+            "what else is there moves along"
+        );
+        assert_eq!(renamed, folder.join("floor.material/floor.json"));
         assert_eq!(has_all(&renamed), whole);
         let copy = duplicate(&renamed).expect("copied");
         assert_eq!(has_all(&copy), whole);
@@ -359,7 +388,7 @@ mod tests {
             .and_then(|path| rename(&path, "Floor"))
             .expect("added");
         let restored = restore(&removed).expect("restored");
-        assert_eq!(restored, folder.join("floor 2/floor 2.json"));
+        assert_eq!(restored, folder.join("floor 2.material/floor 2.json"));
         assert_eq!(has_all(&restored), whole);
         assert_eq!(names(&folder), ["Floor", "Floor", "Floor copy"]);
     }

@@ -145,7 +145,10 @@ fn albedos_are_the_oracle_s() {
             let gloss = Evaluator::open(&gloss, EngineChoice::Cpu, Precision::Single).unwrap();
             let kept = gloss.albedo(numbers[0], 1 << 14, 1).unwrap().reflected[0];
             let closed = kept + 0.8 * (1.0 - kept);
-            assert!((found.reflected[0] - closed).abs() < 2e-3, "{cells:?}: {found:?} for {closed}");
+            assert!(
+                (found.reflected[0] - closed).abs() < 2e-3,
+                "{cells:?}: {found:?} for {closed}"
+            );
             continue;
         }
         let is_glass = name.starts_with("trans");
