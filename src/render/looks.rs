@@ -131,10 +131,10 @@ fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render
         // The denoiser needs most of the memory.
         Err(SessionError::TooLarge(_)) => {
             document.view.denoise = Denoise::Off;
-            session.submit(&document)?;
+            session.submit(&document)?
         }
         other => other?,
-    }
+    };
     while !session.step(STEP)?.is_done {}
     let image = match StepDenoiser::new(&document).finish(session)? {
         Some(denoised) => denoised.image,
