@@ -116,7 +116,7 @@ fn with_copies(material: &MaterialSettings, home: &Path) -> Result<MaterialSetti
     Ok(material)
 }
 
-/// The folder of a material that has one of its own. Its ending tells it from a folder of many that has a material's name.
+/// The folder of a material that has one of its own. Its ending sets it apart from the folder of all, which may have a material's name.
 fn own_folder(path: &Path) -> Option<&Path> {
     let folder = path.parent()?;
     (file_within(folder)? == path).then_some(folder)
