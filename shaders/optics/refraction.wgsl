@@ -51,7 +51,8 @@ fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     var weight = smith_g1_over_cosine(alpha, wi_local) * abs(wi_local.z);
     if facets(shape.lobe) == FACETS_ALL {
         let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
-        let height = dot(frame.normal, h);
+        // As the density has it, rounded alike: near the horizon the product with it would keep the difference.
+        let height = facet(frame, wo, mirrored_about(wo, h)).h.z;
         let ratio = max(dot(wo, h), 0.0) / max(height, 1e-6);
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
         weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, height > 0.0);

@@ -7,7 +7,7 @@
 
 use super::frame::{Frame, local_from_world};
 use super::lobe::{Facets, LobeShape};
-use super::microfacet::{isotropic_alpha, microfacet_alpha, smith_g1_over_cosine};
+use super::microfacet::{facet, isotropic_alpha, microfacet_alpha, smith_g1_over_cosine};
 use super::numeric::normalize_or;
 use super::real::Real;
 use super::vector::Vec3;
@@ -91,7 +91,8 @@ pub fn facet_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec
     let mut weight = smith_g1_over_cosine(alpha, wi_local) * wi_local.z.abs();
     if shape.lobe.facets() == Facets::All {
         let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
-        let height = frame.normal.dot(h);
+        // As the density has it, rounded alike: near the horizon the product with it would keep the difference.
+        let height = facet(frame, wo, wo.mirrored_about(h)).h.z;
         let ratio = wo.dot(h).max(T::zero()) / height.max(T::from_f64(1e-6));
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
         let ratio = T::select(T::zero().less(height), ratio, T::zero());

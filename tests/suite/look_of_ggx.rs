@@ -154,6 +154,10 @@ fn stripe(engine: EngineChoice, model: &ModelSource, lobe: ImportLobe) -> [f64; 
         materials: materials_of(&opened, lobe),
         ..document(model.clone(), Default::default(), &[])
     };
+    // The width is that of single scattering.
+    for material in &mut seen.materials {
+        material.multiple_scattering = false;
+    }
     seen.ground = false;
     seen.lighting.strength = 0.0;
     (seen.camera.yaw_deg, seen.camera.pitch_deg) = (0.0, 0.0);
