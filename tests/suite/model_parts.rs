@@ -169,7 +169,7 @@ fn loading_ends_soon_wherever_it_is_called_off() {
             (is_done, ended.saturating_duration_since(called_off))
         });
         assert!(
-            is_done || late < Duration::from_millis(700),
+            is_done || late < Duration::from_secs(2),
             "called off after {wait_ms} ms, at {}: {late:?} late",
             loading.doing()
         );
