@@ -43,19 +43,18 @@ fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec
     return select(0.0, value, dot(frame.normal, wi) < 0.0 && is_seen && behind > 0.0);
 }
 
-fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f, mirrored: vec3f) -> f32 {
     var alpha = isotropic_alpha(shape);
     if is_anisotropic(shape.lobe) { alpha = microfacet_alpha(shape); }
     let wo_local = local_from_world(frame, wo);
     let wi_local = local_from_world(frame, wi);
     var weight = smith_g1_over_cosine(alpha, wi_local) * abs(wi_local.z);
     if facets(shape.lobe) == FACETS_ALL {
-        let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
-        // As the density has it, rounded alike: near the horizon the product with it would keep the difference.
-        let height = facet(frame, wo, mirrored_about(wo, h)).h.z;
-        let ratio = max(dot(wo, h), 0.0) / max(height, 1e-6);
+        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
+        let of_mirrored = facet(frame, wo, mirrored);
+        let ratio = of_mirrored.cosine / max(of_mirrored.h.z, 1e-6);
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
-        weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, height > 0.0);
+        weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, of_mirrored.h.z > 0.0);
     }
     return select(0.0, weight, wi_local.z < 0.0 && wo_local.z > 0.0);
 }

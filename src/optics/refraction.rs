@@ -79,9 +79,15 @@ pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>,
 
 /// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
 /// directions, separately as they are on different sides, over that of the sampled normals. 0 if `wi` is not below the
-/// shading normal's horizon.
+/// shading normal's horizon. `mirrored`: where the facet reflects `wo` to.
 #[inline(always)]
-pub fn facet_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+pub fn facet_weight<T: Real>(
+    shape: &LobeShape<'_, T>,
+    frame: &Frame<T>,
+    wo: Vec3<T>,
+    wi: Vec3<T>,
+    mirrored: Vec3<T>,
+) -> T {
     let alpha = if shape.lobe.is_anisotropic() {
         microfacet_alpha(shape)
     } else {
@@ -90,12 +96,11 @@ pub fn facet_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec
     let (wo_local, wi_local) = (local_from_world(frame, wo), local_from_world(frame, wi));
     let mut weight = smith_g1_over_cosine(alpha, wi_local) * wi_local.z.abs();
     if shape.lobe.facets() == Facets::All {
-        let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
-        // As the density has it, rounded alike: near the horizon the product with it would keep the difference.
-        let height = facet(frame, wo, wo.mirrored_about(h)).h.z;
-        let ratio = wo.dot(h).max(T::zero()) / height.max(T::from_f64(1e-6));
+        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
+        let facet = facet(frame, wo, mirrored);
+        let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
-        let ratio = T::select(T::zero().less(height), ratio, T::zero());
+        let ratio = T::select(T::zero().less(facet.h.z), ratio, T::zero());
         weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
     }
     let is_behind = wi_local.z.less(T::zero()) & T::zero().less(wo_local.z);

@@ -32,7 +32,7 @@ fn material(assignments: &[&str]) -> MaterialSettings {
 
 fn albedos(material: &MaterialSettings, (engine, precision): (EngineChoice, Precision), side: f64) -> [Albedo; 6] {
     let evaluator = Evaluator::open(material, engine, precision).unwrap();
-    COSINES.map(|cosine| evaluator.albedo(side * cosine, 1 << 14, 1).unwrap())
+    COSINES.map(|cosine| evaluator.albedo(side * cosine, 1 << 16, 1).unwrap())
 }
 
 #[track_caller]

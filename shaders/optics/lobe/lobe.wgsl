@@ -98,9 +98,10 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
     var raw = raw_sample(seen, view.frame, view.wo, xi);
     var weight = 0.0;
     if refracts_at_facets(shape) {
-        let behind = facet_refracted(wo, raw, shape.eta);
+        let mirrored = raw;
+        let behind = facet_refracted(wo, mirrored, shape.eta);
         raw = behind.wi;
-        weight = select(facet_weight(shape, frame, wo, raw), 0.0, behind.is_total);
+        weight = select(facet_weight(shape, frame, wo, raw, mirrored), 0.0, behind.is_total);
     } else {
         weight = raw_weight(seen, view.frame, view.wo, raw);
         if is_hemispherical(shape.lobe) {
@@ -153,7 +154,7 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
     let seen = seen_lobe(shape, view);
     let density = raw_density(seen, view.frame, view.wo, mirrored) * factor;
     if at_facets {
-        return vec2f(density * facet_weight(shape, view.frame, view.wo, wi), density);
+        return vec2f(density * facet_weight(shape, view.frame, view.wo, wi, mirrored), density);
     }
     return vec2f(density * raw_weight(seen, view.frame, view.wo, wi), density);
 }

@@ -406,9 +406,10 @@ pub fn lobe_sample<T: Real>(
             let seen = view.seen_lobe(shape);
             let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
             let weight = if refracts_at_facets(shape) {
-                let facet = facet_refracted(wo, raw, shape.eta);
+                let (mirrored, facet) = (raw, facet_refracted(wo, raw, shape.eta));
                 raw = facet.wi;
-                T::select(facet.is_total, T::zero(), facet_weight(shape, frame, wo, raw))
+                let weight = facet_weight(shape, frame, wo, raw, mirrored);
+                T::select(facet.is_total, T::zero(), weight)
             } else {
                 let weight = raw_weight(&seen, &view.frame, view.wo, raw);
                 let is_lost = !T::zero().less(view.frame.normal.dot(raw));
@@ -479,7 +480,7 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
             factor * raw_density(shape, frame, *wo, mirrored),
             T::zero(),
         );
-        return [density * facet_weight(shape, frame, *wo, wi), density];
+        return [density * facet_weight(shape, frame, *wo, wi, mirrored), density];
     }
     let is_above = T::zero().less(frame.normal.dot(wi)) | T::Mask::splat(!shape.lobe.is_hemispherical());
     if !is_above.any() {

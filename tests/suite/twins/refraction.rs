@@ -2,6 +2,7 @@
 
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Lobe, lobe_sample, lobe_view};
+use glossmith::optics::numeric::normalize_or;
 use glossmith::optics::real::Mask;
 use glossmith::optics::refraction::{
     facet_density_factor, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosines,
@@ -107,14 +108,19 @@ fn refraction_agrees() {
                     let wi = row.vector();
                     let along = refracting_normal(wo, wi, shape.eta);
                     row.put(facet_density_factor(&frame, wo, wi, shape.eta, along));
-                    row.put(facet_weight(&shape, &frame, wo, wi));
+                    let mirrored = wo.mirrored_about(normalize_or(along, frame.normal));
+                    row.put(facet_weight(&shape, &frame, wo, wi, mirrored));
                 }),
             )
             .output(
                 "facet_density_factor(frame, wo, wi, eta, refracting_normal(wo, wi, eta))",
                 DENSITY,
             )
-            .output("facet_weight(shape, frame, wo, wi)", WEIGHT),
+            .output(
+                "facet_weight(shape, frame, wo, wi, \
+                 mirrored_about(wo, normalize_or(refracting_normal(wo, wi, eta), frame.normal)))",
+                WEIGHT,
+            ),
             Case::new(
                 "lobe_view",
                 shape_and_view!(""),
