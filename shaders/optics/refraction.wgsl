@@ -33,6 +33,10 @@ fn refracting_cosines(wo: vec3f, wi: vec3f, eta: f32) -> vec2f {
 
 // Factor from the density of the facet's mirror direction of `wo` to the density of `wi`. 0 if no facet refracts one to the
 // other, or if `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
+fn facet_mirror(frame: Frame, wo: vec3f, wi: vec3f, eta: f32) -> vec3f {
+    return mirrored_about(wo, normalize_or(refracting_normal(wo, wi, eta), frame.normal));
+}
+
 fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec3f) -> f32 {
     let square = max(dot(along, along), 1e-30);
     let h = along / sqrt(square);

@@ -62,6 +62,12 @@ pub fn refracting_cosines<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> [T; 2] {
     [wo.dot(h).clamp(zero, one), (-wi.dot(h)).clamp(zero, one)]
 }
 
+/// The direction that the facet which refracts `wo` to `wi` reflects `wo` to.
+#[inline(always)]
+pub fn facet_mirror<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>, eta: T) -> Vec3<T> {
+    wo.mirrored_about(normalize_or(refracting_normal(wo, wi, eta), frame.normal))
+}
+
 /// Factor from the density of a facet's mirror direction of `wo` to that of the refracted `wi`, per steradian: dωh/dωi =
 /// eta² |wi·h|/(wo·h + eta wi·h)² over dωh/dω of the mirrored one, 1/(4 wo·h). 0 if no facet refracts one to the other, and
 /// if `wi` is not below the shading normal's horizon: such samples are lost. `along`: that facet's [`refracting_normal`].
@@ -79,7 +85,7 @@ pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>,
 
 /// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
 /// directions, separately as they are on different sides, over that of the sampled normals. 0 if `wi` is not below the
-/// shading normal's horizon. `mirrored`: where the facet reflects `wo` to.
+/// shading normal's horizon. `mirrored`: [`facet_mirror`].
 #[inline(always)]
 pub fn facet_weight<T: Real>(
     shape: &LobeShape<'_, T>,

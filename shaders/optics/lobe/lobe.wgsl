@@ -98,9 +98,9 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
     var raw = raw_sample(seen, view.frame, view.wo, xi);
     var weight = 0.0;
     if refracts_at_facets(shape) {
-        let mirrored = raw;
-        let behind = facet_refracted(wo, mirrored, shape.eta);
+        let behind = facet_refracted(wo, raw, shape.eta);
         raw = behind.wi;
+        let mirrored = facet_mirror(frame, wo, raw, shape.eta);
         weight = select(facet_weight(shape, frame, wo, raw, mirrored), 0.0, behind.is_total);
     } else {
         weight = raw_weight(seen, view.frame, view.wo, raw);
@@ -143,7 +143,7 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
     let at_facets = refracts_at_facets(shape);
     if at_facets {
         let along = refracting_normal(view.wo, wi, shape.eta);
-        mirrored = mirrored_about(view.wo, normalize_or(along, view.frame.normal));
+        mirrored = facet_mirror(view.frame, view.wo, wi, shape.eta);
         factor = facet_density_factor(view.frame, view.wo, wi, shape.eta, along);
         if !(factor > 0.0) {
             return vec2f(0.0);

@@ -10,9 +10,10 @@ pub mod model;
 
 use super::curve::Curve;
 use super::frame::Frame;
-use super::numeric::normalize_or;
 use super::real::{Mask, Real};
-use super::refraction::{facet_density_factor, facet_refracted, facet_weight, refracted, refracting_normal};
+use super::refraction::{
+    facet_density_factor, facet_mirror, facet_refracted, facet_weight, refracted, refracting_normal,
+};
 use super::vector::Vec3;
 use crate::named::named;
 
@@ -406,8 +407,10 @@ pub fn lobe_sample<T: Real>(
             let seen = view.seen_lobe(shape);
             let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
             let weight = if refracts_at_facets(shape) {
-                let (mirrored, facet) = (raw, facet_refracted(wo, raw, shape.eta));
+                let facet = facet_refracted(wo, raw, shape.eta);
                 raw = facet.wi;
+                // Not the sampled one, so that the weight is exactly evaluate over density.
+                let mirrored = facet_mirror(frame, wo, raw, shape.eta);
                 let weight = facet_weight(shape, frame, wo, raw, mirrored);
                 T::select(facet.is_total, T::zero(), weight)
             } else {
@@ -473,7 +476,7 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
     let LobeView { frame, wo, .. } = view;
     if refracts_at_facets(shape) {
         let along = refracting_normal(*wo, wi, shape.eta);
-        let mirrored = wo.mirrored_about(normalize_or(along, frame.normal));
+        let mirrored = facet_mirror(frame, *wo, wi, shape.eta);
         let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
         let density = T::select(
             T::zero().less(factor),

@@ -2,10 +2,9 @@
 
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Lobe, lobe_sample, lobe_view};
-use glossmith::optics::numeric::normalize_or;
 use glossmith::optics::real::Mask;
 use glossmith::optics::refraction::{
-    facet_density_factor, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosines,
+    facet_density_factor, facet_mirror, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosines,
     refracting_normal,
 };
 use glossmith::optics::vector::Vec3;
@@ -100,7 +99,7 @@ fn refraction_agrees() {
             .output("refracting_cosines(wo, wi, eta).y", Output::Number(1.0))
             .group("", |rng, _| inputs![rng.direction(), rng.direction(), random_eta(rng)]),
             of_facets(
-                "facet_density_factor, facet_weight",
+                "facet_mirror, facet_density_factor, facet_weight",
                 SHAPE_AND_VIEW,
                 twin!(|row| {
                     let shape = read_shape(row);
@@ -108,7 +107,7 @@ fn refraction_agrees() {
                     let wi = row.vector();
                     let along = refracting_normal(wo, wi, shape.eta);
                     row.put(facet_density_factor(&frame, wo, wi, shape.eta, along));
-                    let mirrored = wo.mirrored_about(normalize_or(along, frame.normal));
+                    let mirrored = facet_mirror(&frame, wo, wi, shape.eta);
                     row.put(facet_weight(&shape, &frame, wo, wi, mirrored));
                 }),
             )
@@ -117,8 +116,7 @@ fn refraction_agrees() {
                 DENSITY,
             )
             .output(
-                "facet_weight(shape, frame, wo, wi, \
-                 mirrored_about(wo, normalize_or(refracting_normal(wo, wi, eta), frame.normal)))",
+                "facet_weight(shape, frame, wo, wi, facet_mirror(frame, wo, wi, eta))",
                 WEIGHT,
             ),
             Case::new(
