@@ -22,12 +22,12 @@ use crate::app::services::snapshots::Snapshots;
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
-use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
+use crate::study::references::ReferenceCache;
 
 /// What panels work on.
 pub(super) struct Desk<'a> {

@@ -32,6 +32,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "study",
+        &[
+            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
+            "store", "render",
+        ],
+    ),
+    (
         "cli",
         &[
             "named",
@@ -47,13 +54,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "matching",
             "store",
             "render",
+            "study",
         ],
     ),
     (
         "app",
         &[
             "named", "panics", "optics", "scene", "import", "job", "analysis", "plot", "document", "matching", "store",
-            "render",
+            "render", "study",
         ],
     ),
 ];

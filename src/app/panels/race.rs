@@ -17,8 +17,8 @@ use crate::app::study::{StudyWorker, engine, small_document};
 use crate::document::ViewSettings;
 use crate::job::plan::Plan;
 use crate::render::display::display;
-use crate::render::study::race::{Race, RaceOptions, Runner, race};
-use crate::render::study::technique::{GROUPS, Technique};
+use crate::study::race::{Race, RaceOptions, Runner, race};
+use crate::study::technique::{GROUPS, Technique};
 
 /// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;

@@ -12,13 +12,13 @@ use crate::gpu::GpuError;
 use crate::import::environment;
 use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
-use crate::render::engine::{EngineChoice, EngineInfo};
-use crate::render::error::SessionError;
+use crate::render::Session;
+use crate::render::SessionError;
 use crate::render::output::{self, OutputError, Rendered};
-use crate::render::probe::Prober;
-use crate::render::session::Session;
+use crate::render::{EngineChoice, EngineInfo};
 use crate::scene::ModelSource;
 use crate::scene::environment::{Environment, EnvironmentSource};
+use crate::study::probe::Prober;
 
 /// Time between two checks for a stop.
 pub(super) const SLICE: Duration = Duration::from_millis(100);
