@@ -10,6 +10,7 @@ mod desk;
 mod handlers;
 mod kit;
 pub mod layout;
+mod lights;
 mod pane;
 mod panels;
 mod services;

@@ -178,7 +178,7 @@ fn every_dependency_is_used() {
 
 /// The parts of the window, each after those that it may use.
 const LAYERS_OF_APP: &[&[&str]] = &[
-    &["kit"],
+    &["kit", "lights"],
     &["services"],
     &["pane"],
     &["actions"],

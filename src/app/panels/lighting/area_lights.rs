@@ -6,8 +6,7 @@ use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
-use crate::document::light_handle::View;
-use crate::document::light_move::put_in_view;
+use crate::app::lights::{View, put_in_view};
 use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
