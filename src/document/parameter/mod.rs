@@ -194,37 +194,22 @@ pub struct Parameter<T: 'static = MaterialSettings> {
 
 /// Why a parameter cannot be set.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ParameterError {
     /// Text that is no assignment.
     #[error("{text}: write KEY=VALUE, such as specular.roughness=0.3")]
-    NoAssignment {
-        /// The text.
-        text: String,
-    },
+    NoAssignment { text: String },
     /// No parameter of that name.
     #[error("no parameter is called {key}; {hint}")]
-    UnknownKey {
-        /// The name.
-        key: String,
-        /// The nearest name, or all of them.
-        hint: String,
-    },
+    UnknownKey { key: String, hint: String },
     /// A parameter of a texture that is not there.
     #[error("{key}: there is no such texture; put one there first: --texture {target}=FILE")]
-    NoTexture {
-        /// Key of the parameter that it textures.
-        key: &'static str,
-        /// Name of the parameter that it textures.
-        target: &'static str,
-    },
+    NoTexture { key: &'static str, target: &'static str },
     /// A value that the parameter does not take.
     #[error("{key} does not take {value}; {expected}")]
     Invalid {
-        /// The parameter.
         key: &'static str,
-        /// The value as it was given.
         value: String,
-        /// What it takes.
         expected: String,
     },
 }

@@ -25,6 +25,7 @@ pub(super) const SLICE: Duration = Duration::from_millis(100);
 
 /// Why a case can't be run.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum HardError {
     /// Error of the engine or its input.
     #[error(transparent)]
@@ -34,12 +35,7 @@ pub enum HardError {
     Output(#[from] OutputError),
     /// A file or folder for a case could not be written.
     #[error("{}: cannot be written: {source}; make room in the system's temporary folder", path.display())]
-    Folder {
-        /// Which.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Folder { path: PathBuf, source: io::Error },
     /// The run was stopped.
     #[error("stopped")]
     Stopped,
