@@ -1,6 +1,6 @@
 //! From materials as edited to materials as the integrators read them.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
@@ -16,6 +16,7 @@ use crate::optics::material::{
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
+use crate::panics::lock;
 use crate::scene::texture::{SlotTextures, TextureTarget};
 
 /// Samples of each node of an albedo table.
@@ -279,7 +280,7 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
 }
 
 fn remembered(key: TableKey) -> Arc<[f32]> {
-    let memory = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    let memory = || lock(&TABLES);
     let known = memory()
         .iter()
         .find(|(of, _)| *of == key)

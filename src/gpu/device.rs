@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use pollster::block_on;
 
 use super::traversal::Traversal;
+use crate::panics::lock;
 
 /// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -287,11 +288,6 @@ impl GpuDevice {
             .map_err(|error| GpuError::Refused(error.to_string()))?;
         Ok(bytemuck::pod_collect_to_vec(&view))
     }
-}
-
-/// Locks the errors, poisoned or not: they stay consistent, as every write is a single assignment.
-fn lock(failures: &Mutex<Failures>) -> MutexGuard<'_, Failures> {
-    failures.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Whether an adapter is software, which runs on the CPU.
