@@ -281,13 +281,7 @@ impl Desk<'_> {
 
     /// The row of the angle that the plots of lobes and their samples share.
     pub(super) fn view_angle_row(&mut self, ui: &mut Ui) {
-        let style = NumberStyle {
-            range: 0.0..=89.9,
-            bar: Some([0.0, 89.9]),
-            unit: "°",
-            speed: 0.5,
-            decimals: 1,
-        };
+        let style = NumberStyle::plain(0.0..=89.9, "°", 0.5, 1).with_bar([0.0, 89.9]);
         let name = Name {
             full: "Samples view angle",
             label: "View angle",

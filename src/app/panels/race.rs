@@ -133,13 +133,7 @@ fn choices(ui: &mut Ui, state: &mut RacePanel) {
             }
         }
     }
-    let style = NumberStyle {
-        range: 0.01..=600.0,
-        bar: None,
-        unit: " s",
-        speed: 0.1,
-        decimals: 2,
-    };
+    let style = NumberStyle::plain(0.01..=600.0, " s", 0.1, 2);
     let name = Name::new(
         "Time per technique",
         "Time per technique",
