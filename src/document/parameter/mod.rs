@@ -2,6 +2,7 @@
 //! [`PARAMETERS`], those of the rest of a document in [`SETTINGS`].
 
 mod accessors;
+mod line;
 mod of_document;
 mod of_light;
 mod of_material;
@@ -323,44 +324,6 @@ fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
 type Accessors<T> = (fn(&T) -> Value, fn(&mut T, Value));
 
 impl<T> Parameter<T> {
-    /// A parameter in no group, which always has an effect.
-    fn plain(
-        key: &'static str,
-        label: &'static str,
-        help: &'static str,
-        kind: Kind,
-        stage: Stage,
-        (get, set): Accessors<T>,
-    ) -> Self {
-        Self {
-            key,
-            group: "",
-            label,
-            name: "",
-            flag: None,
-            symbol: "",
-            help,
-            kind,
-            row: RowStyle {
-                bar: None,
-                step: 0.01,
-                decimals: 3,
-                is_percent: false,
-            },
-            stage,
-            applies: |_| true,
-            idle: |_| None,
-            get,
-            set,
-        }
-    }
-
-    /// The same with a bar that spans these.
-    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
-        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
-        self
-    }
-
     /// What it is called in the whole window, for the history, the palette, screen readers and tests.
     pub fn full_name(&self) -> String {
         match self.name {
