@@ -15,10 +15,9 @@ use super::signals::Signals;
 use super::waiting::Waiting;
 use crate::console::message;
 use crate::document::{Denoise, Document};
-use crate::render::StepDenoiser;
 use crate::render::denoise::Denoised;
 use crate::render::output::{self, Format, Rendered};
-use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
+use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, to_end};
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;

@@ -6,8 +6,7 @@ use glam::DVec3;
 
 use super::import::ROUGHNESS_MAX;
 use super::{AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, ImportLobe, MaterialSettings, range};
-use crate::scene::camera::Projection;
-use crate::scene::camera::right_and_up;
+use crate::scene::camera::{Projection, right_and_up};
 use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
 /// Diameter of the balls and discs that stand for lights of no size, bounding radii.

@@ -11,8 +11,7 @@ use super::gain_map;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
-use crate::picture::decode_image;
-use crate::picture::float_tiff;
+use crate::picture::{decode_image, float_tiff};
 use crate::scene::environment::EnvironmentEncoding;
 
 /// Decoding of integer values.

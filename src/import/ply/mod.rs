@@ -13,10 +13,9 @@ use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessR
 use crate::model_error::ModelError;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::vec3;
-use crate::scene::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{Model, Slot};
+use crate::scene::{Loading, Model, Slot};
 
 #[derive(Clone, Copy)]
 struct Vertex {

@@ -1,8 +1,7 @@
 //! The checks and the hard cases, as far as the time allows.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use super::report::{EngineReport, Proof};
