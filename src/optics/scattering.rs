@@ -15,6 +15,7 @@ use super::fresnel::{
 };
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
+use super::random::even_point;
 use super::real::Real;
 use super::refraction::refracting_cosines;
 use super::vector::{Vec3, vec3};
@@ -139,15 +140,6 @@ fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor:
     })
 }
 
-/// Steps of a sequence that covers the unit square evenly, and of two further numbers. At 8192 samples its error is a tenth
-/// of the Sobol sequence's. Source: Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018).
-const STEPS: [f64; 4] = [
-    0.754_877_666_246_692_7,
-    0.569_840_290_998_053_2,
-    0.414_213_562_373_095_1,
-    0.732_050_807_568_877_2,
-];
-
 /// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
 const STRETCHED_SAMPLES: u32 = 4;
 
@@ -169,7 +161,7 @@ fn mean_weight(
     };
     let mut sum = 0.0;
     for sample in 0..samples {
-        let [a, b, c, turn] = STEPS.map(|step| ((f64::from(sample) + 0.5) * step).fract());
+        let [a, b, c, turn] = even_point(sample);
         let azimuth = if is_stretched {
             std::f64::consts::TAU * turn
         } else {
