@@ -12,6 +12,7 @@ pub mod history;
 pub mod import;
 pub mod light_handle;
 pub mod light_move;
+mod look_words;
 pub mod material;
 mod material_textures;
 mod metal_colors;
