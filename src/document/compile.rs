@@ -1,6 +1,6 @@
 //! From materials as edited to materials as the integrators read them.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
@@ -16,6 +16,7 @@ use crate::optics::material::{
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
+use crate::panics::lock;
 use crate::scene::texture::{SlotTextures, TextureTarget};
 
 /// Samples of each node of an albedo table.
@@ -51,17 +52,21 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
 
 /// The plain numbers of a material, its tables still to be made.
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
-    let looked_up = |is_on: bool, texture: u32| if is_on { texture } else { NO_TEXTURE };
+    use TextureTarget as On;
     let uses = settings.textures;
+    let looked_up = |target| match settings.uses_texture(target) {
+        true => slot.record(target),
+        false => NO_TEXTURE,
+    };
     // Textures of one value are multiplied in here.
-    let factor = |is_on: bool, constant: Option<f32>| constant.filter(|_| is_on).unwrap_or(1.0);
-    let color = slot.constant_base_color.filter(|_| uses.color);
-    let color = color.map_or(Vec3::splat(1.0), Vec3::from_f32);
-    let of_texture = slot.constant_roughness.filter(|_| uses.roughness);
-    let roughness = of_texture.map_or(settings.roughness, |share| textured_roughness(settings, share));
-    let metalness = settings.metalness * factor(uses.roughness, slot.constant_metalness);
+    let constant = |target| slot.constant(target).filter(|_| settings.uses_texture(target));
+    let factor = |target| constant(target).map_or(1.0, |[value, ..]| value);
+    let color = constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
+    let roughness =
+        constant(On::Roughness).map_or(settings.roughness, |[share, ..]| textured_roughness(settings, share));
+    let metalness = settings.metalness * factor(On::Metalness);
     let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
-    let emission_texture = looked_up(uses.emission, slot.emission);
+    let emission_texture = looked_up(On::Emission);
     let mut mean_emission = emission;
     if uses.emission {
         mean_emission = emission * Vec3::from_f32(slot.mean_emission);
@@ -96,20 +101,20 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
-        opacity: settings.opacity * factor(uses.opacity, slot.constant_opacity),
+        opacity: settings.opacity * factor(On::Opacity),
         coat_color: Vec3::from_f32(settings.coat_color),
-        coat_weight: settings.coat_weight * factor(uses.coat, slot.constant_coat),
+        coat_weight: settings.coat_weight * factor(On::Coat),
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
         coat_table: 0,
         light_luminance: mean_emission.luminance(),
         textures: [
-            looked_up(uses.color, slot.base_color),
-            looked_up(uses.roughness, slot.roughness),
-            looked_up(uses.normal, slot.normal),
+            looked_up(On::BaseColor),
+            looked_up(On::Roughness),
+            looked_up(On::Normal),
             emission_texture,
         ],
-        opacity_texture: looked_up(uses.opacity, slot.opacity),
+        opacity_texture: looked_up(On::Opacity),
         alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
         has_rough_tables: 0,
@@ -118,8 +123,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         spot_scale: 0.0,
         spot_offset: 1.0,
-        metalness_texture: looked_up(uses.roughness, slot.metalness),
-        coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
+        metalness_texture: looked_up(On::Metalness),
+        coat_texture: if settings.coat_weight > 0.0 {
+            looked_up(On::Coat)
+        } else {
+            NO_TEXTURE
+        },
         diffuse_roughness: settings.diffuse_roughness,
         fuzz_color: Vec3::from_f32(settings.fuzz_color),
         fuzz_weight: settings.fuzz_weight,
@@ -271,7 +280,7 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
 }
 
 fn remembered(key: TableKey) -> Arc<[f32]> {
-    let memory = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    let memory = || lock(&TABLES);
     let known = memory()
         .iter()
         .find(|(of, _)| *of == key)

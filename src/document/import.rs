@@ -9,6 +9,7 @@ use crate::named::named;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::MATCHED_NODES;
 use crate::optics::table::table_lookup;
+use crate::scene::texture::TextureTarget;
 use crate::scene::{AlphaMode, Slot};
 
 named! {
@@ -73,12 +74,12 @@ impl MaterialSettings {
         };
         lobe.of_slot(slot).apply(&mut material);
         material.textures = TextureUse {
-            color: slot.base_color_texture.is_some() || (slot.has_vertex_colors && !slot.is_unlit),
-            roughness: slot.metallic_roughness_texture.is_some(),
-            normal: slot.normal_texture.is_some(),
-            emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
+            color: slot.texture(TextureTarget::BaseColor).is_some() || (slot.has_vertex_colors && !slot.is_unlit),
+            roughness: slot.texture(TextureTarget::Roughness).is_some(),
+            normal: slot.texture(TextureTarget::Normal).is_some(),
+            emission: slot.texture(TextureTarget::Emission).is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
-            coat: slot.coat_texture.is_some(),
+            coat: slot.texture(TextureTarget::Coat).is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {

@@ -10,8 +10,6 @@ pub mod effect;
 mod ground;
 pub mod history;
 pub mod import;
-pub mod light_handle;
-pub mod light_move;
 mod look_words;
 pub mod material;
 mod material_textures;

@@ -23,6 +23,7 @@ pub mod random;
 pub mod real;
 pub mod refraction;
 pub mod rough_diffuse;
+mod scalar;
 pub mod scattering;
 pub mod table;
 pub mod tone;

@@ -10,6 +10,7 @@ use glossmith::optics::random::Sequence;
 use glossmith::render::Assets;
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use glossmith::scene::mesh::Mesh;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
 use crate::analytic_bodies::bodies;
@@ -529,7 +530,7 @@ fn tilts() -> Vec<Case> {
         rgba8: [codes[0], codes[1], codes[2], 255].repeat(4),
         rgba16: Vec::new(),
     }];
-    model.slots[0].normal_texture = Some(TextureRef {
+    *model.slots[0].texture_mut(TextureTarget::Normal) = Some(TextureRef {
         texture: 0,
         uv_set: 0,
         texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],

@@ -5,6 +5,7 @@ use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::store::exchange::report::Outcome;
 use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
 use glossmith::store::{save_document, save_material};
@@ -242,25 +243,26 @@ fn textures_travel_in_gltf() {
         [document.model.clone(), ModelSource::File(place.path("scene.glb"))].map(|source| load(&source).unwrap());
     assert_eq!(after.textures.len(), before.textures.len());
     let [old, new] = [&before, &after].map(|model| &model.slots[0]);
-    let pixels = |model: &glossmith::scene::Model, place: &Option<glossmith::scene::TextureRef>| {
-        let picture = &model.textures[place.as_ref().expect("a texture").texture];
+    let pixels = |model: &glossmith::scene::Model, target| {
+        let place = model.slots[0].texture(target).expect("a texture");
+        let picture = &model.textures[place.texture];
         (picture.width, picture.height, picture.rgba8.clone())
     };
-    let of_both = [
-        (&old.base_color_texture, &new.base_color_texture),
-        (&old.metallic_roughness_texture, &new.metallic_roughness_texture),
-        (&old.normal_texture, &new.normal_texture),
-        (&old.emissive_texture, &new.emissive_texture),
+    let maps = [
+        TextureTarget::BaseColor,
+        TextureTarget::Roughness,
+        TextureTarget::Normal,
+        TextureTarget::Emission,
     ];
-    for (old, new) in of_both {
-        assert_eq!(pixels(&before, old), pixels(&after, new));
+    for target in maps {
+        assert_eq!(pixels(&before, target), pixels(&after, target));
     }
     assert_eq!((old.alpha_mode, old.alpha_cutoff), (new.alpha_mode, new.alpha_cutoff));
     assert_eq!(old.normal_scale, new.normal_scale);
     assert!((0.0..=1.0).contains(&new.roughness), "{}", new.roughness);
     // What a file has one number for is that of the texture's mean.
     let mean = {
-        let (width, height, rgba8) = pixels(&before, &old.metallic_roughness_texture);
+        let (width, height, rgba8) = pixels(&before, TextureTarget::Roughness);
         let greens = rgba8.chunks(4).map(|texel| f32::from(texel[1]));
         greens.sum::<f32>() / (255 * width * height) as f32
     };

@@ -8,9 +8,9 @@ use std::fmt::Write as _;
 
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
 use glossmith::optics::vector::Vec3;
-use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::store::exchange::{ReadOptions, find};
+use glossmith::study::evaluate::Evaluator;
 
 use crate::cli_support::Workplace;
 

@@ -23,9 +23,10 @@ use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
+pub use super::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};
 pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
-pub use user::{TextureChannel, TextureProjection, TextureSpace, TextureTarget, UserTexture};
+pub use user::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 pub use uses::TextureAssignment;
 
 /// Wrap mode: repeat.

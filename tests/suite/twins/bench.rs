@@ -24,6 +24,7 @@ use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
 use glossmith::scene::{Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -197,8 +198,8 @@ fn pictures(rng: &mut Rng) -> Model {
         };
         let mut slot = Slot::neutral("pictures");
         match number % 4 {
-            3 => slot.base_color_texture = Some(reference),
-            _ => slot.normal_texture = Some(reference),
+            3 => *slot.texture_mut(TextureTarget::BaseColor) = Some(reference),
+            _ => *slot.texture_mut(TextureTarget::Normal) = Some(reference),
         }
         slot
     });

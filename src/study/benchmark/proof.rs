@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use super::report::{EngineReport, Proof};
 use super::{Place, Run, Slot};
-use crate::render::check::{self, CheckOptions};
-use crate::render::hard::{HardError, Stage, catalogue};
-use crate::render::study::StudyError;
+use crate::study::StudyError;
+use crate::study::check::{self, CheckOptions};
+use crate::study::hard::{HardError, Stage, catalogue};
 
 /// Names in the report.
 const CHECK: &str = "check";

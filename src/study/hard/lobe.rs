@@ -9,8 +9,8 @@ use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_middle};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
-use crate::render::check::shapes;
 use crate::scene::surface::bent_normal;
+use crate::study::check::shapes;
 
 /// Extreme random numbers, of 24 or 32 bits.
 const XI_ENDS: [f32; 4] = [0.0, 1.0 / 16_777_216.0, 1.0 / 4_294_967_296.0, 1.0 - 1.0 / 16_777_216.0];

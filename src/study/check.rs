@@ -6,10 +6,6 @@ use std::time::Duration;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::choice::Sampler;
-use super::engine::EngineChoice;
-use super::error::SessionError;
-use super::session::Session;
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use crate::document::{AreaLight, Background, CustomCurve, Document, PixelFilter, Strategy};
 use crate::job::film::Film;
@@ -20,6 +16,10 @@ use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
+use crate::render::EngineChoice;
+use crate::render::Sampler;
+use crate::render::Session;
+use crate::render::SessionError;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 

@@ -1,7 +1,7 @@
 //! Choice and opening of the engine.
 
 use super::calibration;
-use super::engine::{Engine, EngineChoice, EngineInfo, cpu, gpu};
+use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
@@ -11,7 +11,7 @@ const CHOSEN: &str = "chosen by you";
 
 /// Opens the requested engine. If the faster engine is unknown, it is measured for seconds; or, with `may_wait` false,
 /// in the background for the next start.
-pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
+pub(in crate::render) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
     match choice {
         EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
         EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN, may_wait),
@@ -20,7 +20,7 @@ pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Engine, Engi
 }
 
 /// The engine of an open device.
-pub(super) fn on_device(device: GpuDevice) -> Result<(Engine, EngineInfo), GpuError> {
+pub(in crate::render) fn on_device(device: GpuDevice) -> Result<(Engine, EngineInfo), GpuError> {
     gpu(device, CHOSEN.to_owned())
 }
 
@@ -53,7 +53,7 @@ fn auto(may_wait: bool) -> (Engine, EngineInfo) {
 /// # Errors
 ///
 /// If a GPU was requested and fails.
-pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
+pub(crate) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
         adapter.open(calibration::traversal(&adapter, false).0)

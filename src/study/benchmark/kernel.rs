@@ -13,7 +13,7 @@ use super::report::EngineReport;
 use super::{Place, Run, Slot, default_scene};
 use crate::gpu::{GpuAdapter, Traversal};
 use crate::render::Session;
-use crate::render::study::StudyError;
+use crate::study::StudyError;
 
 /// Pairs of a process with empty caches and one that finds what the first left.
 const PAIRS: usize = 3;

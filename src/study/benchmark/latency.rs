@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use super::report::EngineReport;
 use super::{Place, Run, Slot};
 use crate::document::Document;
-use crate::render::study::StudyError;
 use crate::render::worker::{Activity, Pace, Worker};
 use crate::scene::environment::EnvironmentSource;
+use crate::study::StudyError;
 
 /// Viewport of a window of 1440 × 900, in pixels.
 pub const VIEWPORT: [u32; 2] = [806, 780];

@@ -3,7 +3,6 @@
 //! The frame has the surface's outer normal as +z and the tangent, before the material's rotation, as +x. A viewer below
 //! sees the surface from within.
 
-use super::engine::{EngineChoice, Precision};
 use super::probe::Prober;
 use crate::cpu::probe as cpu;
 use crate::document::{MaterialSettings, compile};
@@ -12,6 +11,7 @@ use crate::job::probe::{DrawAnswer, DrawQuestion, MaterialQuestion, MaterialView
 use crate::optics::material::Material;
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::{Vec3, vec3};
+use crate::render::{EngineChoice, Precision};
 
 /// Independent randomisations of the Sobol sequence, whose spread gives the standard errors of albedos.
 pub const BATCHES: u32 = 16;

@@ -2,9 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-pub use super::light_move::{Pull, View};
-use super::light_move::{move_along, move_in_plane, put_at, vector};
-use super::{AreaLight, range};
+use super::motion::{Pull, View, move_along, move_in_plane, put_at, vector};
+use crate::document::{AreaLight, range};
 use crate::named::named;
 
 /// Degrees to which angles snap.

@@ -1,9 +1,15 @@
-//! Studies of cost and accuracy: a race of techniques, a ledger of effects and settings, and scaling with size. All are
-//! measured on the rendering engine, by its own clock, in interleaved trials.
+//! What is found out with the renderer. Studies of cost and accuracy: a race of techniques, a ledger of effects and settings,
+//! scaling with size and a benchmark, all by the engine's own clock, in interleaved trials. Proofs: checks and hard cases.
+//! Questions: values of a material, single functions of an engine, and the account of a path.
 
 pub mod benchmark;
+pub mod check;
 mod convergence;
+pub mod evaluate;
+pub mod explain;
+pub mod hard;
 pub mod ledger;
+pub mod probe;
 pub mod race;
 pub mod references;
 pub mod sampling;
@@ -14,10 +20,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::engine::EngineInfo;
-use super::error::SessionError;
-use super::session::Session;
 use crate::document::Document;
+use crate::render::EngineInfo;
+use crate::render::Session;
+use crate::render::SessionError;
 use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};

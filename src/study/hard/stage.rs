@@ -12,19 +12,20 @@ use crate::gpu::GpuError;
 use crate::import::environment;
 use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
-use crate::render::engine::{EngineChoice, EngineInfo};
-use crate::render::error::SessionError;
+use crate::render::Session;
+use crate::render::SessionError;
 use crate::render::output::{self, OutputError, Rendered};
-use crate::render::probe::Prober;
-use crate::render::session::Session;
+use crate::render::{EngineChoice, EngineInfo};
 use crate::scene::ModelSource;
 use crate::scene::environment::{Environment, EnvironmentSource};
+use crate::study::probe::Prober;
 
 /// Time between two checks for a stop.
 pub(super) const SLICE: Duration = Duration::from_millis(100);
 
 /// Why a case can't be run.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum HardError {
     /// Error of the engine or its input.
     #[error(transparent)]
@@ -34,12 +35,7 @@ pub enum HardError {
     Output(#[from] OutputError),
     /// A file or folder for a case could not be written.
     #[error("{}: cannot be written: {source}; make room in the system's temporary folder", path.display())]
-    Folder {
-        /// Which.
-        path: PathBuf,
-        /// Error of the system.
-        source: io::Error,
-    },
+    Folder { path: PathBuf, source: io::Error },
     /// The run was stopped.
     #[error("stopped")]
     Stopped,

@@ -1,5 +1,9 @@
 //! The two engines behind one interface.
 
+pub(super) mod calibration;
+pub(super) mod choice;
+mod ray_queries;
+
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -11,6 +15,10 @@ use crate::job::Job;
 use crate::job::film::Film;
 use crate::job::tiles::Schedule;
 use crate::named::{Named, named};
+
+pub use choice::Sampler;
+pub(crate) use choice::device_for_functions;
+pub use ray_queries::RayQueries;
 
 named! {
     /// The engine that a user asks for.
@@ -170,7 +178,7 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 }
 
 /// Name of the CPU, if the system reports it.
-pub(super) fn cpu_name() -> String {
+pub(crate) fn cpu_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = text
         .lines()

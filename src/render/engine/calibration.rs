@@ -9,14 +9,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::assets::Assets;
-use super::compile::Compiler;
-use super::engine::{Engine, EngineInfo, Precision, cpu, gpu};
-use super::quiet::{self, Quiet};
 use super::ray_queries::RayQueries;
+use super::{Engine, EngineInfo, Precision, cpu, gpu};
 use crate::document::Document;
 use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
 use crate::job::Job;
+use crate::render::assets::Assets;
+use crate::render::compile::Compiler;
+use crate::render::quiet::{self, Quiet};
 
 /// Side of the measured image, in pixels.
 const SIZE: u32 = 96;
@@ -136,7 +136,7 @@ pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, Str
 
 /// Compares the rates of software Vulkan and the CPU engine on a render, in samples per second. If the CPU engine is faster,
 /// the stored measurement is invalid and is repeated.
-pub(super) fn compare_rates(software: f64, cpu: f64) {
+pub(in crate::render) fn compare_rates(software: f64, cpu: f64) {
     if is_doubtful(software, cpu) && measure_when_quiet(AdapterKind::Software) {
         log::info!(
             "software Vulkan renders {:.1} × as fast as the CPU here: it is measured again",
@@ -167,7 +167,7 @@ fn measure_when_quiet(kind: AdapterKind) -> bool {
         return false;
     }
     let work = move || {
-        super::priority::lower_thread_priority();
+        crate::render::priority::lower_thread_priority();
         let adapter = GpuAdapter::find(kind).ok()?;
         let verdict = measured_and_remembered(&adapter, quiet::common())?;
         log::info!("{}: {}", adapter.info.name, verdict.reason());

@@ -16,8 +16,8 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use super::check::Check;
-use super::engine::{EngineChoice, EngineInfo};
 use crate::job::film::Image;
+use crate::render::{EngineChoice, EngineInfo};
 pub use stage::{HardError, Stage};
 
 /// A situation where naive code fails.

@@ -1,7 +1,5 @@
 //! Questions to single functions of an engine.
 
-use super::choice::device_for_functions;
-use super::engine::EngineChoice;
 use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;
@@ -10,6 +8,8 @@ use crate::job::probe::{
     RandomQuestion, RayAnswer, RayQuestion,
 };
 use crate::optics::vector::Vec3;
+use crate::render::EngineChoice;
+use crate::render::device_for_functions;
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {

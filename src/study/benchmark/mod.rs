@@ -23,7 +23,7 @@ use super::{Steps, StudyError, Watch};
 use crate::document::Document;
 use crate::gpu::{GpuAdapter, GpuError, Traversal};
 use crate::render::denoise::Library;
-use crate::render::{EngineChoice, Session};
+use crate::render::{EngineChoice, Session, cpu_name};
 use goal::Goal;
 use report::{EngineReport, Machine, Report, SCHEMA, SCHEMA_VERSION, Spread};
 use scene::Scene;
@@ -327,10 +327,6 @@ fn described(place: &Place) -> EngineReport {
         rows: Vec::new(),
         left_out: Vec::new(),
     }
-}
-
-fn cpu_name() -> String {
-    crate::render::engine::cpu_name()
 }
 
 fn machine() -> Machine {

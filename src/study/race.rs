@@ -14,11 +14,11 @@ use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::job::film::Image;
+use crate::render::Assets;
 use crate::render::StepDenoiser;
-use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
-use crate::render::study::technique::{Technique, converged, most_accurate};
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
+use crate::study::technique::{Technique, converged, most_accurate};
 
 /// Precision of references relative to the target noise, if time permits.
 const REFERENCE_GAIN: f64 = 8.0;

@@ -10,11 +10,11 @@ use super::{Machine, StudyError, UNLIMITED};
 use crate::analysis::halves::Halves;
 use crate::document::Document;
 use crate::job::film::Image;
-use crate::render::study::technique::converged;
 use crate::render::{Precision, Session};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::replace::save_atomically;
+use crate::study::technique::converged;
 
 /// Cache format: increase if the format or the renders change within a version of the program.
 const FORMAT: u32 = 1;

@@ -6,7 +6,7 @@ use super::report::EngineReport;
 use super::{Case, Place, Run, Slot};
 use crate::gpu::Traversal;
 use crate::render::Session;
-use crate::render::study::{StudyError, UNLIMITED};
+use crate::study::{StudyError, UNLIMITED};
 
 /// Units of the rows; more is better.
 const SAMPLES: (&str, bool) = ("M samples/s", true);

@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{AreaLight, range};
+use crate::document::{AreaLight, range};
 use crate::scene::camera::Camera;
 
 /// How a scene is seen in an image of this size.

@@ -279,6 +279,7 @@ pub fn converged(document: &Document) -> Document {
 
 /// A technique that is not understood.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum TechniqueError {
     /// No group has this name.
     #[error("{0} is no kind of setting; there are {names}", names = group_names())]
@@ -286,11 +287,8 @@ pub enum TechniqueError {
     /// The group has no such member.
     #[error("{group}={value} is no setting; {expected}")]
     Value {
-        /// The group's name.
         group: String,
-        /// What was given.
         value: String,
-        /// What could have been.
         expected: String,
     },
 }

@@ -18,8 +18,8 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
 use crate::render::StepDenoiser;
-use crate::render::study::technique::{Setting, Technique, converged};
 use crate::render::{EngineChoice, Session};
+use crate::study::technique::{Setting, Technique, converged};
 
 /// Minimum samples per pixel of each render by default: two in either half.
 const SAMPLES_MIN: f64 = 4.0;

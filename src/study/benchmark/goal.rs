@@ -14,8 +14,8 @@ use crate::analysis::error::relative_mean_squared_error;
 use crate::document::{Denoise, Document};
 use crate::job::film::Image;
 use crate::render::denoise::Denoiser;
-use crate::render::study::{StudyError, UNLIMITED};
 use crate::render::{EngineChoice, Session};
+use crate::study::{StudyError, UNLIMITED};
 
 /// Unit of the rows; less is better.
 const SECONDS: (&str, bool) = ("s", false);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::render::study::quantile;
+use crate::study::quantile;
 
 /// Name of the schema, in the key `schema`.
 pub const SCHEMA: &str = "glossmith-benchmark";
