@@ -286,6 +286,8 @@ mod ui_workshop;
 mod ui_workspaces;
 #[path = "suite/walk.rs"]
 mod walk;
+#[path = "suite/walk_look.rs"]
+mod walk_look;
 #[path = "suite/words.rs"]
 mod words;
 #[path = "suite/worker.rs"]
