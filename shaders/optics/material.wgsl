@@ -70,6 +70,11 @@ fn material_transmits(material: Material) -> bool {
     return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && material.metalness < 1.0;
 }
 
+// Whether the viewer is within a solid that light passes through.
+fn is_within(material: Material, surface: Surface) -> bool {
+    return surface.is_inside && material_transmits(material);
+}
+
 fn material_has_specular(material: Material) -> bool {
     if PLAN_SPECULAR == 0u {
         return false;

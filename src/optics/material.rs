@@ -381,4 +381,10 @@ impl<T: Real> Surface<T> {
             is_inside: T::Mask::splat(false),
         }
     }
+
+    /// Lanes where the viewer is within a solid that light passes through.
+    #[inline(always)]
+    pub fn is_within(&self, material: &Material<T>) -> T::Mask {
+        self.is_inside & material.transmits()
+    }
 }

@@ -26,7 +26,7 @@ pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, sha
         return T::one();
     }
     let [_, outside, inside] = kept_energies(material, surface, shape);
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     T::one() / T::select(is_within, inside, outside)
 }
 

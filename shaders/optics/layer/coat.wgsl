@@ -4,7 +4,7 @@
 #import "optics/material"
 
 fn coat_is_there(material: Material, surface: Surface) -> bool {
-    return PLAN_COAT == 1u && material.coat_weight > 0.0 && !(surface.is_inside && material_transmits(material));
+    return PLAN_COAT == 1u && material.coat_weight > 0.0 && !is_within(material, surface);
 }
 
 fn coat_lobe(material: Material, surface: Surface) -> LayerLobe {

@@ -81,7 +81,7 @@ fn has_more(material: Material) -> bool {
 fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
     var place = dot(surface.frame.normal, surface.wo);
     var first = material.albedo_table;
-    if surface.is_inside && material_transmits(material) {
+    if is_within(material, surface) {
         place = albedo_place(place, material_ior_ahead(material, true));
         first = material.inner_albedo_table;
     }

@@ -29,7 +29,7 @@ impl<T: Real> LayerModel<T> for Coat {
 
     #[inline(always)]
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
-        T::zero().less(material.coat_weight) & !(surface.is_inside & material.transmits())
+        T::zero().less(material.coat_weight) & !surface.is_within(material)
     }
 
     #[inline(always)]

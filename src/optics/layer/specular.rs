@@ -123,7 +123,7 @@ fn has_more<T: Real>(material: &Material<T>) -> T::Mask {
 #[inline(always)]
 fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
     let cosine = surface.frame.normal.dot(surface.wo);
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     let mut albedos = [Vec3::zero(); 2];
     if is_within.any() {
         let place = albedo_place(cosine, material.ior_ahead(is_within));
