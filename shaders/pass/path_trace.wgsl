@@ -1,4 +1,5 @@
 // The path tracer. Twin of src/cpu/integrator/mod.rs.
+#import "optics/coat_medium"
 #import "optics/layer/scatter"
 #import "optics/random"
 #import "optics/warp"
@@ -118,6 +119,10 @@ fn emitted_light(
     if PLAN_SPOT == 1u {
         let cosine = dot(point.flat, point.surface.wo);
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
+    }
+    if PLAN_COAT_ABSORPTION == 1u {
+        let cosine = dot(point.flat, point.surface.wo);
+        emission *= coat_over_emission(material, cosine, point.surface.is_inside);
     }
     if !samples_emitters() || is_mirror {
         return emission;

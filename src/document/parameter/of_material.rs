@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::accessors::{choice, field};
 use super::{Choice, Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
-use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
+use crate::document::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
@@ -242,7 +242,7 @@ fn coat() -> Vec<Parameter> {
     vec![
         Parameter {
             label: "Weight",
-            help: "A layer of clear lacquer over everything else, by the geometric lobe.",
+            help: "A layer of clear lacquer over everything else.",
             applies: |_| true,
             ..of("coat.weight", unit_number(), field!(Number coat_weight))
         },
@@ -252,10 +252,24 @@ fn coat() -> Vec<Parameter> {
             ..of("coat.weight_texture", Kind::Toggle, field!(Toggle textures.coat))
         },
         Parameter {
+            label: "Lobe",
+            help: "The model of how the coat spreads reflected light.",
+            ..of("coat.lobe", choices::<CoatLobe>(), choice!(coat_lobe))
+        },
+        Parameter {
             label: "Roughness",
             symbol: "R",
-            help: "How far the coat spreads its reflection; what is seen through it stays as sharp as it is.",
+            help: "How far the coat spreads its reflection.",
             ..of("coat.roughness", unit_number(), field!(Number coat_roughness))
+        },
+        Parameter {
+            label: "Anisotropy",
+            help: "Stretches the coat's reflection along the tangent of what lies below, or across it below 0.",
+            ..of(
+                "coat.anisotropy",
+                number([-1.0, 1.0], ""),
+                field!(Number coat_anisotropy),
+            )
         },
         Parameter {
             label: "Index of refraction",
@@ -268,6 +282,16 @@ fn coat() -> Vec<Parameter> {
             label: "Colour",
             help: "Colours what is seen through the coat.",
             ..of("coat.color", Kind::Color, field!(Color coat_color))
+        },
+        Parameter {
+            label: "Darkening",
+            help: "How much darker a base gets by the light that the coat reflects back onto it: varnish on wood. A white base stays white.",
+            ..of("coat.darkening", unit_number(), field!(Number coat_darkening))
+        },
+        Parameter {
+            label: "On the base",
+            help: "The coat changes what lies below: less reflection by its index, more blur by its roughness, deeper colour along slanting ways, as in OpenPBR; off, nothing, as in glTF.",
+            ..of("coat.on_base", Kind::Toggle, field!(Toggle coat_on_base))
         },
     ]
 }
