@@ -44,6 +44,8 @@ mod cli_scatter;
 mod cli_support;
 #[path = "suite/coat.rs"]
 mod coat;
+#[path = "suite/coat_base.rs"]
+mod coat_base;
 #[path = "suite/compare.rs"]
 mod compare;
 #[path = "suite/crashed.rs"]

@@ -27,7 +27,7 @@ pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, sha
         return T::one();
     }
     let [_, outside, inside] = kept_energies(material, surface, shape);
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     T::one() / T::select(is_within, inside, outside)
 }
 
@@ -124,11 +124,18 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 /// Energy that reflection and refraction of a clear interface keep together.
 fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
     let eta = material.ior_ahead(is_inside);
-    let reflected = reflected_energy(material, cosine, samples, |cosine| fresnel_dielectric(cosine, eta));
+    // Under a coat the reflection has another index than the refraction.
+    let of_reflection = material.fresnel_terms(is_inside).ior;
+    let reflects = |cosine: f64| fresnel_dielectric(cosine, of_reflection);
+    let reflected = reflected_energy(material, cosine, samples, reflects);
     let shape = material.transmission_shape(&[], is_inside);
     let refracted = mean_weight(&shape, cosine, samples, |wo, wi| {
         let [before, behind] = refracting_cosines(wo, wi, eta);
-        fresnel_transmitted(before, behind, eta)
+        if of_reflection == eta {
+            fresnel_transmitted(before, behind, eta)
+        } else {
+            1.0 - reflects(before)
+        }
     });
     reflected + refracted
 }

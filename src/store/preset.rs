@@ -278,6 +278,11 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             Some(_) => return Err(MaterialError::Material),
             None => Map::new(),
         };
+        let has_coat = values.get("coat.weight").and_then(Json::as_f64) > Some(0.0);
+        if has_coat && !values.contains_key("coat.on_base") {
+            // From before coats changed what lies below them.
+            material.keep_below_coat();
+        }
         for parameter in PARAMETERS.iter() {
             if let Some(json) = values.shift_remove(parameter.key) {
                 parameter.set(&mut material, parameter.value_from_json(&json)?)?;
