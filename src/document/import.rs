@@ -4,9 +4,9 @@
 use std::sync::LazyLock;
 
 use super::material::specular_color;
-use super::{MaterialSettings, TextureUse};
+use super::{CoatLobe, MaterialSettings, TextureUse};
 use crate::named::named;
-use crate::optics::lobe::Lobe;
+use crate::optics::lobe::{Lobe, Width};
 use crate::optics::material::MATCHED_NODES;
 use crate::optics::table::table_lookup;
 use crate::scene::texture::TextureTarget;
@@ -52,6 +52,30 @@ impl ImportLobe {
 }
 
 impl MaterialSettings {
+    /// GGX's roughness that looks like the lobe's.
+    pub fn ggx_roughness(&self) -> f32 {
+        match self.lobe.traits().width {
+            Width::Roughness => ggx_from_geometric(self.roughness),
+            Width::Fixed | Width::Alpha => self.roughness,
+        }
+    }
+
+    /// GGX's roughness that looks like the coat's.
+    pub fn coat_ggx_roughness(&self) -> f32 {
+        match self.coat_lobe {
+            CoatLobe::Geometric => ggx_from_geometric(self.coat_roughness),
+            CoatLobe::Ggx => self.coat_roughness,
+        }
+    }
+
+    /// Gives the coat GGX's roughness of a file: by this lobe, or by GGX where it is rougher than the other can be.
+    pub fn set_coat_ggx_roughness(&mut self, roughness: f32, lobe: ImportLobe) {
+        (self.coat_lobe, self.coat_roughness) = match lobe.at_roughest(roughness) {
+            ImportLobe::Geometric => (CoatLobe::Geometric, geometric_from_ggx(roughness)),
+            ImportLobe::Ggx => (CoatLobe::Ggx, roughness),
+        };
+    }
+
     /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
     /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
     pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
@@ -88,7 +112,8 @@ impl MaterialSettings {
         material.coat_weight = unit(slot.coat);
         material.coat_ior = slot.coat_ior;
         if slot.coat > 0.0 {
-            material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
+            material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
+            material.keep_below_coat();
         }
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {

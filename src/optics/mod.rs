@@ -8,6 +8,7 @@
 pub mod albedo;
 pub mod blackbody;
 pub mod chord;
+pub mod coat_medium;
 pub mod curve;
 pub mod elementary;
 pub mod frame;

@@ -17,7 +17,9 @@ use super::geometry::Geometry;
 use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
-use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{
+    COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
@@ -252,12 +254,25 @@ pub fn textured_material<T: Scalar>(
         at_point.base_color = at_point.base_color * color;
         at_point.transmission_tint = at_point.transmission_tint * color;
     }
+    if material.coat_texture != NO_TEXTURE {
+        at_point.coat_weight = coat_weight_at(textures, material, uvs);
+        if material.has_flag(COATS_BASE) {
+            at_point.reflecting_ior = material.ior_under_coat(at_point.coat_weight);
+        }
+    }
     // A map with both is looked up once.
     let mut of_metalness = Vec3::splat(T::one());
-    if roughness != NO_TEXTURE {
-        let (values, _) = texture_lookup(textures, roughness, uvs);
-        of_metalness = values;
-        at_point.roughness = material.texture_roughness * values.y;
+    let blurs = material.has_varied_blur();
+    if roughness != NO_TEXTURE || blurs {
+        at_point.ggx_roughness = material.texture_roughness;
+        if roughness != NO_TEXTURE {
+            (of_metalness, _) = texture_lookup(textures, roughness, uvs);
+            at_point.ggx_roughness = material.texture_roughness * of_metalness.y;
+        }
+        at_point.roughness = at_point.ggx_roughness;
+        if blurs {
+            at_point.roughness = material.roughness_under_coat(at_point.roughness, at_point.coat_weight);
+        }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
@@ -273,9 +288,6 @@ pub fn textured_material<T: Scalar>(
     }
     if emission != NO_TEXTURE {
         at_point.emission = at_point.emission * texture_lookup(textures, emission, uvs).0;
-    }
-    if material.coat_texture != NO_TEXTURE {
-        at_point.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
     }
     at_point
 }
@@ -294,7 +306,14 @@ pub fn textured_materials<T: Real>(
         let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
         TexturedNumbers {
             colors: [at.base_color, at.transmission_tint, at.emission],
-            numbers: [at.metalness, at.roughness, at.transmission_roughness, at.coat_weight],
+            numbers: [
+                at.metalness,
+                at.roughness,
+                at.transmission_roughness,
+                at.coat_weight,
+                at.reflecting_ior,
+                at.ggx_roughness,
+            ],
         }
     });
     let at = at.as_ref();
@@ -306,6 +325,8 @@ pub fn textured_materials<T: Real>(
         roughness: T::from_lanes(|lane| at[lane].numbers[1]),
         transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
         coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
+        reflecting_ior: T::from_lanes(|lane| at[lane].numbers[4]),
+        ggx_roughness: T::from_lanes(|lane| at[lane].numbers[5]),
         ..*material
     }
 }
@@ -315,8 +336,9 @@ pub fn textured_materials<T: Real>(
 struct TexturedNumbers<T> {
     /// Base colour, tint of the transmission, emission.
     colors: [Vec3<T>; 3],
-    /// Metalness, roughness, roughness of the refraction, weight of the coat.
-    numbers: [T; 4],
+    /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
+    /// the coat.
+    numbers: [T; 6],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -361,6 +383,14 @@ pub fn emission_at<T: Scalar>(
         return radiance;
     }
     radiance * texture_lookup(textures, emission, uvs).0
+}
+
+/// The weight of the coat at a surface point.
+pub fn coat_weight_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
+    if material.coat_texture == NO_TEXTURE {
+        return material.coat_weight;
+    }
+    material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x
 }
 
 /// The share of light that a surface point stops, in [0, 1]; `alpha` is that of the vertices.

@@ -5,6 +5,7 @@
 
 mod blender;
 pub mod carried;
+mod coat;
 mod gltf;
 mod materialx;
 mod measured;

@@ -4,6 +4,7 @@
 mod fresnel;
 mod geometry;
 mod glb;
+mod layer;
 mod light;
 mod lobe;
 mod meshes;
@@ -47,6 +48,7 @@ pub struct HardCase {
 pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
     [
         lobe::CASES,
+        layer::CASES,
         precision::CASES,
         fresnel::CASES,
         geometry::CASES,

@@ -15,7 +15,7 @@ use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::layer::fuzz::fuzz_bell;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
+use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::scattering::scattering_table;
@@ -142,6 +142,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             metalness: 0.0,
             ior: material.coat_ior,
             roughness: material.coat_roughness,
+            reflecting_ior: material.coat_ior,
             ..*material
         };
         let coat_table = albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false);
@@ -242,6 +243,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let tint = color(0.2, 1.0);
     let fuzz_roughness = rng.range(0.1, 1.0);
     let bell = fuzz_bell(f64::from(fuzz_roughness)).map(|x| x as f32);
+    let ior = rng.range(1.01, 2.5);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
         base_color: if rng.chance(0.1) {
@@ -253,7 +255,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         specular_color,
         specular_weight: if rng.chance(0.1) { 0.0 } else { rng.range(0.1, 1.0) },
         eta,
-        ior: rng.range(1.01, 2.5),
+        ior,
         k,
         roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         emission: vec3(0.0, 0.0, 0.0),
@@ -287,6 +289,14 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         fuzz_middle: bell[0],
         fuzz_width: bell[1],
         fuzz_floor: bell[2],
+        reflecting_ior: if rng.chance(0.5) { rng.range(1.01, 2.5) } else { ior },
+        bare_ior: ior,
+        coated_ior: rng.range(1.01, 2.5),
+        coat_blur: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
+        ggx_roughness: rng.range(0.0, 1.0),
+        coat_darkening: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
+        coat_inner: rng.range(0.0, 0.9),
+        coat_anisotropy: if rng.chance(0.3) { rng.range(-1.0, 1.0) } else { 0.0 },
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,
@@ -295,7 +305,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
-        flags: rng.below(16) as u32,
+        flags: rng.below(16) as u32 | rng.below(8) as u32 * COATS_BASE,
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: NO_TEXTURE,

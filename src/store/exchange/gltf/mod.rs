@@ -35,6 +35,8 @@ const TAKES: Takes = Takes {
     widths: shown_widths,
     coat: true,
     coat_details: false,
+    coat_stretch: false,
+    coat_on_base: false,
     transmission: true,
     absorption: true,
     textures: true,

@@ -34,6 +34,7 @@ pub struct MaterialX {
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     fuzz: false,
+    coat_on_base: false,
     scattering: true,
     weighs_index: false,
     widths: standard_widths,
@@ -185,6 +186,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
         .child(color("coat_color", surface.coat_color))
         .child(number("coat_roughness", surface.coat_roughness))
         .child(number("coat_IOR", surface.coat_ior))
+        .child(number("coat_anisotropy", 1.0 - surface.coat_ratio()))
         .child(number("emission", strength))
         .child(color("emission_color", emission))
         .child(color("opacity", [surface.opacity; 3]))
