@@ -21,10 +21,8 @@ const REMEMBERED: usize = 4;
 /// What is wrong with the file, and in which line.
 pub fn load(path: &Path) -> Result<Lut, FileError> {
     let bytes = file::read(path)?;
-    parse(&String::from_utf8_lossy(&bytes)).map_err(|reason| FileError::Content {
-        path: path.to_owned(),
-        reason: format!("not a table of colours: {reason}; choose a .cube file"),
-    })
+    parse(&String::from_utf8_lossy(&bytes))
+        .map_err(|reason| FileError::content(path, format!("not a table of colours: {reason}; choose a .cube file")))
 }
 
 fn parse(text: &str) -> Result<Lut, String> {
