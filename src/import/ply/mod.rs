@@ -101,10 +101,7 @@ impl PropertyAccess for Skipped {
 
 /// Loads the contents of a PLY file.
 pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
-    let invalid = |reason: String| ModelError::Invalid {
-        path: path.to_owned(),
-        reason: reason.replace('\n', " "),
-    };
+    let invalid = |reason: String| ModelError::invalid(path, reason.replace('\n', " "));
     let read_header = |reader: &mut Reader<_>| {
         let read = Parser::<Vertex>::new().read_header(reader);
         read.map_err(|error| invalid(error.to_string()))
