@@ -144,6 +144,8 @@ mod killed;
 mod lanes;
 #[path = "suite/library.rs"]
 mod library;
+#[path = "suite/light_groups.rs"]
+mod light_groups;
 #[path = "suite/light_paths.rs"]
 mod light_paths;
 #[path = "suite/lights.rs"]

@@ -55,8 +55,8 @@ struct Globals {
     camera_medium: u32,
     // From this slot on the camera does not see surfaces.
     first_hidden_slot: u32,
-    // To a multiple of 16 bytes.
-    unused: u32,
+    // Light groups that are summed apart.
+    light_groups: u32,
     // 1: coarse triangles are rounded according to their normals.
     rounds_surfaces: u32,
     // Throughput limit of Russian roulette for paths with few rough bounces.
@@ -77,6 +77,8 @@ const WEIGHS_INDEX: u32 = 64u;
 const COATS_BASE: u32 = 128u;
 const COAT_ABSORBS: u32 = 256u;
 const COAT_IS_GGX: u32 = 512u;
+// The bits above hold the light group of what the material emits.
+const LIGHT_GROUP_SHIFT: u32 = 24u;
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {

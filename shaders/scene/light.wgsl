@@ -11,6 +11,8 @@ struct LightSample {
     radiance: vec3f,
     // Length of the shadow ray: it ends just before the position, so that the triangle itself is not hit.
     distance: f32,
+    // Number of its light group.
+    group: u32,
 }
 
 // Keeps densities finite where a triangle is seen edge-on.
@@ -70,6 +72,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
         direction, light_density(material.light_luminance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
+        material.flags >> LIGHT_GROUP_SHIFT,
     );
 }
 

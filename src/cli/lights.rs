@@ -3,8 +3,9 @@
 use std::ops::RangeInclusive;
 
 use super::parse::{number_in, numbers_in};
+use crate::document::light_groups::NAME_MAX;
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, LIGHT_PARAMETERS, Parameter, range};
+use crate::document::{AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
 
 /// Luminous flux of a light in lumens, or illuminance of a sun in lux.
@@ -100,6 +101,7 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
     };
     match word {
         "temperature" => light.color = color_of_temperature(value)?,
+        "group" => light.group = group_name(value)?,
         "power" => {
             let power = number_in(POWER)(value).map_err(|expected| format!("power={value}: {expected}"))?;
             argument.power = Some(power);
@@ -129,9 +131,39 @@ fn expected(light: &AreaLight) -> String {
         _ => "triangle, disc, sphere, ",
     };
     format!(
-        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power",
+        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power, group",
         words.join(", ")
     )
+}
+
+/// The name of a light group.
+fn group_name(text: &str) -> Result<GroupName, String> {
+    let name = GroupName::new(text);
+    if name.is_empty() || name.as_str() != text {
+        return Err(format!(
+            "{text}: give a group's name of at most {NAME_MAX} letters, digits, - and _"
+        ));
+    }
+    Ok(name)
+}
+
+/// A group's name, a factor of its light, and perhaps a colour or its temperature.
+pub(super) fn light_mix(text: &str) -> Result<LightMix, String> {
+    let (name, factors) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text}: write GROUP=FACTOR, such as key=0.5 or key=0.5,3200K"))?;
+    let (factor, color) = factors.split_once(',').unwrap_or((factors, ""));
+    let color = match color {
+        "" => [1.0; 3],
+        temperature if temperature.ends_with('K') => color_of_temperature(temperature)?,
+        color => parse_color(color).map_err(|error| error.to_string())?,
+    };
+    let factor = number_in(range::LIGHT_MIX)(factor).map_err(|expected| format!("{factor}: {expected}"))?;
+    Ok(LightMix {
+        group: group_name(name)?,
+        factor: factor as f32,
+        color,
+    })
 }
 
 /// The colour of a body that shines at a temperature, as in 3200K.

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialSettings, range};
+use super::{GroupName, MaterialSettings, range};
 use crate::named::named;
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
@@ -49,6 +49,9 @@ pub struct AreaLight {
     pub color: [f32; 3],
     /// Radiance of white; a sun's irradiance at the model.
     pub strength: f32,
+    /// Its light group; without a name that of its kind, see [`AreaLight::group_name`].
+    #[serde(skip_serializing_if = "GroupName::is_empty")]
+    pub group: GroupName,
     /// It shines and throws shadows, but the camera does not see it, except in mirrors and through glass.
     #[serde(rename = "hidden_from_camera", skip_serializing_if = "std::ops::Not::not")]
     pub is_hidden: bool,
@@ -73,6 +76,7 @@ impl Default for AreaLight {
             angle_deg: 0.53,
             color: [1.0; 3],
             strength: 10.0,
+            group: GroupName::default(),
             is_hidden: false,
             is_muted: false,
         }

@@ -10,6 +10,7 @@ pub mod effect;
 mod ground;
 pub mod history;
 pub mod import;
+pub mod light_groups;
 mod look_words;
 pub mod material;
 mod material_textures;
@@ -37,6 +38,7 @@ pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
+pub use light_groups::{GroupName, LightMix};
 pub use material::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
 pub use material_textures::{map_key, target_of_key, texture_assignments};
 pub use parameter::{

@@ -38,6 +38,8 @@ pub const COAT_ABSORBS: u32 = 256;
 pub const COAT_IS_GGX: u32 = 512;
 /// Flag: a texture uses box projection.
 pub const HAS_BOX: u32 = 32;
+/// The flags' bits from here on: the light group of what the material emits, see [`Material::light_group`].
+pub const LIGHT_GROUP_SHIFT: u32 = 24;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -382,6 +384,12 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn has_flag(&self, flag: u32) -> bool {
         self.flags & flag != 0
+    }
+
+    /// Number of the light group of what it emits.
+    #[inline(always)]
+    pub fn light_group(&self) -> u32 {
+        self.flags >> LIGHT_GROUP_SHIFT
     }
 
     /// True if it varies over the surface: by a texture or vertex colours.

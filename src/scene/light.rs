@@ -171,6 +171,8 @@ pub struct LightSample<T> {
     pub distance: T,
     /// Emitted radiance, linear RGB.
     pub radiance: Vec3<T>,
+    /// Number of its light group.
+    pub group: T,
 }
 
 /// The emitters, as light sampling needs them.
@@ -240,6 +242,7 @@ pub fn light_sample<T: Scalar>(
         ),
         distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
         radiance,
+        group: T::from_count(material.light_group()),
     }
 }
 

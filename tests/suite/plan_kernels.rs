@@ -35,6 +35,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
     let without: fn(&mut Material<f32>, u32) = match effect {
         // Their code is guarded on both engines: the processor reads the plan, too.
         "light-sampling" | "emitter-sampling" | "interreflection" | "firefly-clamp" | "guides" => return,
+        "light-groups" => return settings.light_groups = 0,
         "depth-of-field" => return settings.camera.lens_radius = 0.0,
         "shadow-catcher" => return settings.catcher = None,
         "shadow-terminator" => return settings.rounds_surfaces = false,

@@ -4,7 +4,7 @@
 use super::group::Group;
 use super::paths::Paths;
 use super::shadow_rays::{ShadowRay, ShadowRays};
-use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex};
+use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, Origin, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::coat_medium::coat_over_emission;
@@ -203,6 +203,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
+            group: T::zero(),
         };
         if of_environment.any() {
             let rows = group.each(&paths.light_rows);
@@ -219,6 +220,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::select(of_emitters, emitted.density, sampled.density),
             distance: T::select(of_emitters, emitted.distance, sampled.distance),
             radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
+            group: emitted.group,
         }
     }
 
@@ -253,6 +255,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::from_lanes(|lane| samples[lane].density),
             distance: T::from_lanes(|lane| samples[lane].distance),
             radiance: Vec3::from_lanes(|lane| samples[lane].radiance),
+            group: T::from_lanes(|lane| samples[lane].group),
         }
     }
 
@@ -307,6 +310,9 @@ impl<T: Real> Integrator<'_, T> {
         group.set_flags(&mut shadow_rays.is_pending, all, is_lit);
         if self.samples_emitters {
             group.set_vector(&mut shadow_rays.radiance, all, radiance);
+            if self.light_groups > 0 {
+                group.set_number(&mut shadow_rays.groups, all, sampled.group);
+            }
         }
         if R::KEEPS {
             let light = paths.shadow_rays.get(0);
@@ -363,23 +369,11 @@ impl<T: Real> Integrator<'_, T> {
         // A path has one light sample; accounts differ by its source.
         let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
         if of_emitters.any() {
-            self.add(
-                &members,
-                of_emitters,
-                Source::Surface,
-                light,
-                bounce + 1,
-                &mut paths.outputs,
-            );
+            let groups = group.number(&shadow_rays.groups);
+            let origin = Origin::Surface(groups);
+            self.add(&members, of_emitters, origin, light, bounce + 1, paths);
         }
-        self.add(
-            &members,
-            of_environment,
-            Source::Environment,
-            light,
-            bounce + 1,
-            &mut paths.outputs,
-        );
+        self.add(&members, of_environment, Origin::Environment, light, bounce + 1, paths);
     }
 
     /// Radiance and alpha of the background for camera rays. `dimension` is the random pair that a blur draws.

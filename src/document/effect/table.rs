@@ -520,6 +520,16 @@ pub static EFFECTS: &[Effect] = &[
         remove: None,
     },
     Effect {
+        id: EffectId::LightGroups,
+        label: "Light groups",
+        help: "The light of each group summed apart, for layers and for a mix after rendering.",
+        decide: |facts| match facts.settings.light_groups {
+            0 => Decision::off("all light is summed together"),
+            groups => Decision::on(format!("{groups} groups are summed apart")),
+        },
+        remove: Some(|document| document.lighting.light_groups = false),
+    },
+    Effect {
         id: EffectId::Denoising,
         label: "Denoising",
         help: "Denoising with Open Image Denoise, guided by albedo and normal.",

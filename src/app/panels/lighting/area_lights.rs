@@ -7,7 +7,7 @@ use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::app::lights::{View, put_in_view};
-use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
+use crate::document::{AreaLight, GroupName, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
 /// What the buttons beside a light's name ask for.
@@ -182,6 +182,29 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
         }
     }
     widgets::comes_and_goes(ui, |ui| power(ui, desk, title, light));
+    widgets::comes_and_goes(ui, |ui| group(ui, desk, title, light));
+}
+
+/// The name of its light group, while groups are summed apart.
+fn group(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
+    if !desk.document.lighting.light_groups {
+        return;
+    }
+    let full = format!("{title} group");
+    let help = "Lights of the same name are mixed together and share a layer.";
+    let by_kind = AreaLight {
+        group: GroupName::default(),
+        ..*light
+    };
+    let mut text = light.group.to_string();
+    let response = widgets::row(ui, Name::new(&full, "Group", help), |ui| {
+        let field = egui::TextEdit::singleline(&mut text).hint_text(by_kind.group_name().to_string());
+        ui.add(field.desired_width(f32::INFINITY))
+    });
+    if response.changed {
+        light.group = GroupName::new(&text);
+    }
+    edited(desk, response, full, &mut light.group, GroupName::default());
 }
 
 /// The row of a parameter, where it has an effect on a light of this shape.
