@@ -84,7 +84,7 @@ pub struct Layers {
     pub denoised: Option<Arc<Image>>,
     /// First-hit features.
     pub features: Features,
-    /// Light groups as they were rendered, whatever their mix.
+    /// Light groups as rendered, before the mix.
     pub lights: Vec<LightLayer>,
     /// Samples in each pixel's mean.
     pub samples: Vec<f32>,

@@ -191,7 +191,7 @@ fn group(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
         return;
     }
     let full = format!("{title} group");
-    let help = "Lights of the same name are mixed together and share a layer.";
+    let help = "Lights of the same group share a factor and a layer.";
     let by_kind = AreaLight {
         group: GroupName::default(),
         ..*light

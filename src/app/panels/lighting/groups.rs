@@ -32,7 +32,7 @@ fn rows(ui: &mut Ui, mix: &mut LightMix) {
     };
     let label = mix.group.to_string();
     let full = format!("Mix of {label}");
-    let help = "Factor of the group's light, without rendering anew.";
+    let help = "Multiplies the light of this group, without rendering again.";
     let response = widgets::row(ui, Name::new(&full, &label, help), |ui| {
         widgets::number(ui, &mut mix.factor, &style)
     });
@@ -40,7 +40,7 @@ fn rows(ui: &mut Ui, mix: &mut LightMix) {
         mix.factor = neutral.factor;
     }
     let full = format!("Mix colour of {label}");
-    let help = "Colour by which the group's light is multiplied.";
+    let help = "Tints the light of this group.";
     let response = widgets::row(ui, Name::new(&full, "", help), |ui| {
         widgets::color(ui, &full, &mut mix.color)
     });
