@@ -148,6 +148,8 @@ mod library;
 mod light_groups;
 #[path = "suite/light_paths.rs"]
 mod light_paths;
+#[path = "suite/light_profiles.rs"]
+mod light_profiles;
 #[path = "suite/lights.rs"]
 mod lights;
 #[path = "suite/lobe_cases.rs"]

@@ -148,6 +148,7 @@ fn emitted_light(
     if PLAN_SPOT == 1u {
         let cosine = dot(point.flat, point.surface.wo);
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
+        emission *= profile_share(material, point.surface.wo);
     }
     if PLAN_COAT_ABSORPTION == 1u {
         let cosine = dot(point.flat, point.surface.wo);

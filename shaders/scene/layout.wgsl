@@ -77,6 +77,7 @@ const WEIGHS_INDEX: u32 = 64u;
 const COATS_BASE: u32 = 128u;
 const COAT_ABSORBS: u32 = 256u;
 const COAT_IS_GGX: u32 = 512u;
+const HAS_PROFILE: u32 = 1024u;
 // The bits above hold the light group of what the material emits.
 const LIGHT_GROUP_SHIFT: u32 = 24u;
 

@@ -5,8 +5,12 @@ use std::ops::RangeInclusive;
 use super::parse::{number_in, numbers_in};
 use crate::document::light_groups::NAME_MAX;
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, range};
+use crate::document::{
+    AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, range,
+};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
+use crate::scene::path_text::path_of_text;
+use crate::store::{FileError, light_profile};
 
 /// Luminous flux of a light in lumens, or illuminance of a sun in lux.
 const POWER: RangeInclusive<f64> = 0.0..=1e12;
@@ -27,6 +31,12 @@ impl LightArgument {
             light.set_power(power, radius_m);
         }
         light
+    }
+
+    /// Whether its profile can be read.
+    pub(super) fn check_profile(&self) -> Result<(), FileError> {
+        let profile = self.light.profile;
+        profile.map_or(Ok(()), |file| light_profile::load(file.path()).map(drop))
     }
 }
 
@@ -79,6 +89,9 @@ fn with_words(light: AreaLight, text: &str) -> Result<LightArgument, String> {
     for word in &words {
         put_word(&mut argument, word)?;
     }
+    if argument.light.profile.is_some() && !argument.light.is_sphere() {
+        return Err("profile: only a sphere has one; give --area-light with the word sphere".to_owned());
+    }
     Ok(argument)
 }
 
@@ -102,6 +115,7 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
     match word {
         "temperature" => light.color = color_of_temperature(value)?,
         "group" => light.group = group_name(value)?,
+        "profile" => light.profile = Some(ProfileFile::new(&path_of_text(value))),
         "power" => {
             let power = number_in(POWER)(value).map_err(|expected| format!("power={value}: {expected}"))?;
             argument.power = Some(power);
@@ -131,8 +145,9 @@ fn expected(light: &AreaLight) -> String {
         _ => "triangle, disc, sphere, ",
     };
     format!(
-        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power, group",
-        words.join(", ")
+        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power, group{}",
+        words.join(", "),
+        if light.is_sphere() { ", profile" } else { "" }
     )
 }
 

@@ -59,7 +59,7 @@ pub struct SceneArguments {
     environment_encoding: Option<EnvironmentEncoding>,
     /// A rectangle (triangle, disc, sphere) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow, and WORD=VALUE as of
-    /// --spot. May be repeated, 64 lights in all.
+    /// --spot. A sphere may have a light profile (profile=FILE.ies). May be repeated, 64 lights in all.
     #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
@@ -236,6 +236,7 @@ impl SceneArguments {
         }
         let radius_m = model.bounding_radius() * self.unit_m(document)?;
         let given = [&self.area_lights, &self.spots, &self.suns].into_iter().flatten();
+        given.clone().try_for_each(LightArgument::check_profile)?;
         document
             .lighting
             .area_lights

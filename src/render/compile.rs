@@ -13,16 +13,18 @@ use crate::document::{
 use crate::job::effect::EffectId;
 use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{BackgroundKind, Catcher, Job, Settings, Strategy};
-use crate::optics::material::{LIGHT_GROUP_SHIFT, Material};
+use crate::optics::material::{HAS_PROFILE, LIGHT_GROUP_SHIFT, Material};
 use crate::optics::table::append_table;
 use crate::optics::vector::Vec3;
-use crate::scene::Geometry;
 use crate::scene::camera::{Camera, Projection, framing_distance, orbit_direction};
 use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
+use crate::scene::light_profile::LightProfile;
 use crate::scene::medium::medium_at;
 use crate::scene::texture::{Textures, UserTextureFile};
+use crate::scene::{AreaFrame, Geometry};
+use crate::store::light_profile;
 
 /// How far from its target parallel rays start at least, bounding radii of the model, and how far behind the camera.
 const PARALLEL_REACH: f64 = 4.0;
@@ -34,8 +36,47 @@ type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 /// Key of materials and tables: settings, textures, and what lights are.
 type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Emission);
 
-/// The slots of area lights with their emission profiles, and the light group of each slot where there are any.
-type Emission = (Vec<(usize, Shine)>, Vec<u32>);
+/// What lights are, by the slots of their materials.
+#[derive(Debug, PartialEq)]
+struct Emission {
+    shines: Vec<(usize, Shine)>,
+    /// The light group of each slot; none where they are not summed apart.
+    groups: Vec<u32>,
+    /// Slots of lights whose profiles could be read.
+    profiles: Vec<(usize, AreaFrame, Arc<LightProfile>)>,
+}
+
+impl Emission {
+    /// Of a document whose area lights begin at a slot.
+    fn of(document: &Document, model_slots: usize, first_light: usize) -> Self {
+        let shines: Vec<_> = (first_light..)
+            .zip(document.lighting.shining().map(AreaLight::shine))
+            .collect();
+        let profile = |(slot, shine): &(usize, Shine)| {
+            let (file, frame) = shine.profile()?;
+            Some((*slot, frame, light_profile::remembered(file.path())?))
+        };
+        Self {
+            groups: slot_groups(document, model_slots),
+            profiles: shines.iter().filter_map(profile).collect(),
+            shines,
+        }
+    }
+
+    /// Puts it on the compiled materials.
+    fn finish(&self, materials: &mut [Material<f32>], tables: &mut Vec<f32>) {
+        for (slot, shine) in &self.shines {
+            shine.finish(&mut materials[*slot]);
+        }
+        for (material, group) in materials.iter_mut().zip(&self.groups) {
+            material.flags |= group << LIGHT_GROUP_SHIFT;
+        }
+        for (slot, frame, profile) in &self.profiles {
+            materials[*slot].flags |= HAS_PROFILE;
+            materials[*slot].lobe_table = append_table(tables, &profile.table(frame));
+        }
+    }
+}
 
 /// Key of the emitters' table: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
@@ -111,9 +152,8 @@ impl Compiler {
         let textures = textures_of(document, &slots[..model.slots.len()], assets)?;
         slots.extend(document.catcher_reflection());
         let first_light = model.slots.len() + usize::from(document.ground);
-        let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();
-        let groups = slot_groups(document, model.slots.len());
-        let (materials, tables) = self.materials(&slots, &textures, (shines, groups));
+        let emission = Emission::of(document, model.slots.len(), first_light);
+        let (materials, tables) = self.materials(&slots, &textures, emission);
         let (catcher, tables) = if document.catches_shadows() {
             let (table, tables) = self.with_catcher(document, &geometry, &environment, tables);
             let catcher = Catcher {
@@ -190,14 +230,8 @@ impl Compiler {
         if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (mut materials, tables) = compile_textured(wanted, &textures.slots);
-        let (shines, groups) = &emission;
-        for (slot, shine) in shines {
-            shine.finish(&mut materials[*slot]);
-        }
-        for (material, group) in materials.iter_mut().zip(groups) {
-            material.flags |= group << LIGHT_GROUP_SHIFT;
-        }
+        let (mut materials, mut tables) = compile_textured(wanted, &textures.slots);
+        emission.finish(&mut materials, &mut tables);
         let compiled = (Arc::new(materials), Arc::new(tables));
         self.materials = Some(((wanted.to_vec(), textures.clone(), emission), compiled.clone()));
         compiled

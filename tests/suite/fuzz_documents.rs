@@ -132,6 +132,7 @@ fn any_document(seed: u64) -> Document {
             target: [(); 3].map(|()| f64::from(setting(random, [-1e3, 1e3]))),
             turn_deg: f64::from(setting(random, [-180.0, 180.0])),
             shape: AreaLightShape::ALL[random.below(AreaLightShape::ALL.len())],
+            profile: None,
             group: GroupName::new(["", "key", "rim"][random.below(3)]),
             cone_deg: f64::from(setting(random, [1.0, 180.0])),
             softness: f64::from(setting(random, [0.0, 1.0])),

@@ -40,6 +40,8 @@ pub(in crate::app) enum Purpose {
     WatchFolder,
     Texture(TextureTarget),
     OpenLut,
+    /// Of the area light of this number.
+    LightProfile(usize),
     Reference,
 }
 
@@ -61,6 +63,7 @@ impl Purpose {
             Self::WatchFolder => "Watch a folder",
             Self::Texture(_) => "Choose a texture",
             Self::OpenLut => "Choose a table of colours",
+            Self::LightProfile(_) => "Choose a light profile",
             Self::Reference => "Choose a reference image",
         }
     }
@@ -84,6 +87,7 @@ impl Purpose {
             Self::SaveWindow => ("PNG images", vec!["png"]),
             Self::WatchFolder => ("Folders", Vec::new()),
             Self::Texture(_) | Self::Reference => ("Images", endings(PICTURE_KINDS)),
+            Self::LightProfile(_) => (FileKind::LightProfile.label(), FileKind::LightProfile.endings()),
             Self::OpenLut => (FileKind::ColorTable.label(), FileKind::ColorTable.endings()),
         }
     }

@@ -10,7 +10,7 @@ use crate::job::{BackgroundKind, Strategy};
 use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::layer::{Layers, material_evaluate};
-use crate::optics::material::{COAT_ABSORBS, Material};
+use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE, Material};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
@@ -19,6 +19,7 @@ use crate::scene::environment::{
     environment_world_from_local, prefetch_cell, prefetch_chosen, prefetch_guide, prefetch_texels, sample_in_rows,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
+use crate::scene::light_profile::profile_share;
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
@@ -126,6 +127,9 @@ impl<T: Real> Integrator<'_, T> {
         if material.has_flag(COAT_ABSORBS) {
             emission = emission * coat_over_emission(material, cosine, point.surface.is_inside);
         }
+        if material.has_flag(HAS_PROFILE) {
+            emission = emission * self.profile_shares(material, point.surface.wo);
+        }
         let density = light_density(
             material.light_luminance,
             cosine,
@@ -133,6 +137,14 @@ impl<T: Real> Integrator<'_, T> {
             self.density_per_luminance,
         );
         self.mis_weighted(Source::Surface, emission, density, vertex, paths)
+    }
+
+    /// The share of its mean radiance that a light with a profile sends in each lane's direction.
+    #[inline(always)]
+    fn profile_shares(&self, material: &Material<T>, directions: Vec3<T>) -> T {
+        let table = &self.tables[material.lobe_table as usize..];
+        let directions = directions.to_each();
+        T::from_lanes(|lane| profile_share(table, directions.as_ref()[lane]))
     }
 
     /// Radiance times the MIS weight of BSDF sampling. The weight is 1 if light sampling does not sample this source or
@@ -242,6 +254,7 @@ impl<T: Real> Integrator<'_, T> {
             materials: &self.scalar_materials,
             textures: self.textures,
             lights: self.lights,
+            tables: self.tables,
             density_per_luminance: self.density_per_luminance.lane(0),
         };
         let (positions, errors, numbers) = (point.position.to_each(), point.error.to_each(), xi.to_each());
