@@ -213,7 +213,7 @@ fn a_profile_is_chosen_dropped_and_removed_in_the_window() {
     harness.get_by_label("Remove area light 1 profile").click_accesskit();
     settle(&mut harness);
     assert_eq!(light(&harness), before);
-    // Dropped on the window it is for the only light, whatever its shape was.
+    // Dropped on the window it is for the only light, of any shape.
     request(&mut harness, Action::Drop(vec![place.path("lamp.ies")]));
     settle(&mut harness);
     assert!(light(&harness).has_profile());
