@@ -66,7 +66,7 @@ struct Globals {
 // Bits of a material's flags: vertex attributes, whether the reflection's weight and tint spare metals,
 // whether multiple scattering between facets is compensated, whether a texture uses box projection,
 // whether the dielectric's index has the weight in it, and whether the coat changes what lies below it, absorbs by the way of
-// the light and is GGX.
+// the light and is GGX; whether the emission has a profile.
 const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
