@@ -103,6 +103,9 @@ impl MaterialSettings {
             emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
             coat: slot.coat_texture.is_some(),
+            coat_roughness: slot.coat_roughness_texture.is_some(),
+            coat_color: slot.coat_color_texture.is_some(),
+            coat_normal: slot.coat_normal_texture.is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
@@ -110,6 +113,7 @@ impl MaterialSettings {
         }
         material.coat_weight = unit(slot.coat);
         material.coat_ior = slot.coat_ior;
+        material.coat_normal_strength = slot.coat_normal_scale.clamp(-10.0, 10.0);
         if slot.coat > 0.0 {
             material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
             material.keep_below_coat();

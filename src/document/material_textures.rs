@@ -1,6 +1,6 @@
 //! The images of a material in use: the user's, and the model's.
 
-use super::{MaterialSettings, TextureUse};
+use super::{CoatLobe, MaterialSettings, TextureUse};
 use crate::scene::texture::{TextureAssignment, TextureProjection, TextureTarget, UserTexture};
 
 /// A target's place in a material.
@@ -69,6 +69,17 @@ const PLACES: &[Place; TextureTarget::ALL.len()] = &[
             }
         },
     ),
+    Place::new(
+        "coat.roughness_map",
+        |uses| &mut uses.coat_roughness,
+        |material| (material.coat_lobe, material.coat_roughness) = (CoatLobe::Ggx, 1.0),
+    ),
+    Place::new(
+        "coat.color_map",
+        |uses| &mut uses.coat_color,
+        |material| material.coat_color = [1.0; 3],
+    ),
+    Place::new("coat.normal_map", |uses| &mut uses.coat_normal, |_| {}),
 ];
 
 /// The key of a target's image in a material's file, and on the command line before that of a parameter:

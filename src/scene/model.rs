@@ -284,6 +284,14 @@ pub struct Slot {
     pub emissive_texture: Option<TextureRef>,
     /// Coat map; its red channel multiplies `coat`.
     pub coat_texture: Option<TextureRef>,
+    /// Its green channel multiplies `coat_roughness`.
+    pub coat_roughness_texture: Option<TextureRef>,
+    /// Multiplies the colour of the coat (sRGB-encoded).
+    pub coat_color_texture: Option<TextureRef>,
+    /// Tangent-space normals of the coat, as `normal_texture`.
+    pub coat_normal_texture: Option<TextureRef>,
+    /// Scales x and y of the coat's normals.
+    pub coat_normal_scale: f32,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
     /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
@@ -331,6 +339,10 @@ impl Default for Slot {
             normal_scale: 1.0,
             emissive_texture: None,
             coat_texture: None,
+            coat_roughness_texture: None,
+            coat_color_texture: None,
+            coat_normal_texture: None,
+            coat_normal_scale: 1.0,
             specular: 1.0,
             specular_color: [1.0; 3],
             anisotropy: 0.0,
@@ -363,6 +375,9 @@ impl Slot {
             &self.normal_texture,
             &self.emissive_texture,
             &self.coat_texture,
+            &self.coat_roughness_texture,
+            &self.coat_color_texture,
+            &self.coat_normal_texture,
         ];
         refs.into_iter().flatten()
     }
@@ -375,6 +390,9 @@ impl Slot {
             &mut self.normal_texture,
             &mut self.emissive_texture,
             &mut self.coat_texture,
+            &mut self.coat_roughness_texture,
+            &mut self.coat_color_texture,
+            &mut self.coat_normal_texture,
         ];
         refs.into_iter().flatten()
     }

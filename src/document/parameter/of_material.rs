@@ -263,6 +263,15 @@ fn coat() -> Vec<Parameter> {
             ..of("coat.roughness", unit_number(), field!(Number coat_roughness))
         },
         Parameter {
+            label: "Roughness texture",
+            help: "Multiplies GGX's roughness of the coat by a texture.",
+            ..of(
+                "coat.roughness_texture",
+                Kind::Toggle,
+                field!(Toggle textures.coat_roughness),
+            )
+        },
+        Parameter {
             label: "Anisotropy",
             help: "Stretches the coat's reflection along the tangent of what lies below, or across it below 0.",
             ..of(
@@ -284,6 +293,11 @@ fn coat() -> Vec<Parameter> {
             ..of("coat.color", Kind::Color, field!(Color coat_color))
         },
         Parameter {
+            label: "Colour texture",
+            help: "Multiplies the colour of the coat by a texture.",
+            ..of("coat.color_texture", Kind::Toggle, field!(Toggle textures.coat_color))
+        },
+        Parameter {
             label: "Darkening",
             help: "How much darker a base gets by the light that the coat reflects back onto it: varnish on wood. A white base stays white.",
             ..of("coat.darkening", unit_number(), field!(Number coat_darkening))
@@ -292,6 +306,22 @@ fn coat() -> Vec<Parameter> {
             label: "On the base",
             help: "The coat changes what lies below: less reflection by its index, more blur by its roughness, deeper colour along slanting ways, as in OpenPBR; off, nothing, as in glTF.",
             ..of("coat.on_base", Kind::Toggle, field!(Toggle coat_on_base))
+        },
+        Parameter {
+            label: "Normal strength",
+            help: "Scales the slopes of the coat's normal texture.",
+            applies: |material| material.coat_weight > 0.0 && material.textures.coat_normal,
+            row: bar(0.0, 2.0),
+            ..of(
+                "coat.normal_strength",
+                number([-10.0, 10.0], ""),
+                field!(Number coat_normal_strength),
+            )
+        },
+        Parameter {
+            label: "Normal texture",
+            help: "Bends the coat's normal by a texture.",
+            ..of("coat.normal_texture", Kind::Toggle, field!(Toggle textures.coat_normal))
         },
     ]
 }

@@ -29,6 +29,19 @@ impl TextureInfo {
     }
 }
 
+/// A reference to a normal texture.
+#[derive(Debug, Deserialize)]
+pub(super) struct NormalInfo {
+    #[serde(flatten)]
+    pub info: TextureInfo,
+    #[serde(default = "whole")]
+    pub scale: f32,
+}
+
+fn whole() -> f32 {
+    1.0
+}
+
 /// KHR_materials_clearcoat.
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -37,6 +50,7 @@ pub(super) struct Clearcoat {
     pub clearcoat_texture: Option<TextureInfo>,
     pub clearcoat_roughness_factor: f32,
     pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<NormalInfo>,
 }
 
 /// KHR_materials_specular.

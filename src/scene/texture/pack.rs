@@ -66,6 +66,12 @@ pub struct SlotTextures {
     pub opacity: u32,
     /// Its red multiplies the weight of the coat.
     pub coat: u32,
+    /// Its green multiplies the roughness of the coat.
+    pub coat_roughness: u32,
+    /// Multiplies the colour of the coat.
+    pub coat_color: u32,
+    /// Tangent-space normals of the coat.
+    pub coat_normal: u32,
     /// Opacity cutoff of a masked material; negative for blended opacity.
     pub alpha_cutoff: f32,
     /// The emission texture's mean, linear.
@@ -80,6 +86,10 @@ pub struct SlotTextures {
     pub constant_metalness: Option<f32>,
     /// Constant value of a uniform coat map.
     pub constant_coat: Option<f32>,
+    /// Constant value of a uniform map of the coat's roughness.
+    pub constant_coat_roughness: Option<f32>,
+    /// Linear RGB of a uniform map of the coat's colour.
+    pub constant_coat_color: Option<[f32; 3]>,
     /// Parameters that vertex colours multiply, as material flags.
     pub vertex_flags: u32,
     /// Whether each target uses box projection.
@@ -96,6 +106,9 @@ impl Default for SlotTextures {
             emission: NO_TEXTURE,
             opacity: NO_TEXTURE,
             coat: NO_TEXTURE,
+            coat_roughness: NO_TEXTURE,
+            coat_color: NO_TEXTURE,
+            coat_normal: NO_TEXTURE,
             alpha_cutoff: -1.0,
             mean_emission: [1.0; 3],
             constant_base_color: None,
@@ -103,6 +116,8 @@ impl Default for SlotTextures {
             constant_roughness: None,
             constant_metalness: None,
             constant_coat: None,
+            constant_coat_roughness: None,
+            constant_coat_color: None,
             vertex_flags: 0,
             on_box: [false; TextureTarget::ALL.len()],
         }
@@ -302,7 +317,7 @@ impl Pack {
     /// Assigns a map, or its uniform value, to a slot.
     fn look_up(&self, used: &Use, textures: &mut Textures, slot: &mut SlotTextures) {
         let picture = &self.pictures[used.picture];
-        let value = picture.one_value(used).filter(|_| used.target != TextureTarget::Normal);
+        let value = picture.one_value(used).filter(|_| !used.target.is_normal());
         slot.on_box[used.target as usize] = value.is_none() && used.flags & IS_BOX != 0;
         let mut number = |constant: fn(&mut SlotTextures) -> &mut Option<f32>,
                           record: fn(&mut SlotTextures) -> &mut u32| {
@@ -316,7 +331,18 @@ impl Pack {
             TextureTarget::Metalness => number(|slot| &mut slot.constant_metalness, |slot| &mut slot.metalness),
             TextureTarget::Opacity => number(|slot| &mut slot.constant_opacity, |slot| &mut slot.opacity),
             TextureTarget::Coat => number(|slot| &mut slot.constant_coat, |slot| &mut slot.coat),
+            TextureTarget::CoatRoughness => number(
+                |slot| &mut slot.constant_coat_roughness,
+                |slot| &mut slot.coat_roughness,
+            ),
             TextureTarget::Normal => slot.normal = textures.add(picture.record(used)),
+            TextureTarget::CoatNormal => slot.coat_normal = textures.add(picture.record(used)),
+            TextureTarget::CoatColor => {
+                slot.constant_coat_color = value.map(Vec3::to_f32);
+                if value.is_none() {
+                    slot.coat_color = textures.add(picture.record(used));
+                }
+            }
             TextureTarget::BaseColor => {
                 slot.constant_base_color = value.map(Vec3::to_f32);
                 if value.is_none() {
@@ -406,11 +432,15 @@ impl Packed {
         };
         let counts = match (used.flags >> CHANNEL_SHIFT) & 7 {
             0 => match used.target {
-                TextureTarget::Roughness => Some(1),
+                TextureTarget::Roughness | TextureTarget::CoatRoughness => Some(1),
                 TextureTarget::Metalness => Some(2),
                 TextureTarget::Opacity => Some(3),
                 TextureTarget::Coat => Some(0),
-                TextureTarget::BaseColor | TextureTarget::Normal | TextureTarget::Emission => None,
+                TextureTarget::BaseColor
+                | TextureTarget::Normal
+                | TextureTarget::Emission
+                | TextureTarget::CoatColor
+                | TextureTarget::CoatNormal => None,
             },
             one => Some(one as usize - 1),
         };

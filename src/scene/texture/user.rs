@@ -16,6 +16,9 @@ named! {
         Opacity, "opacity", "Opacity", "Multiplies the opacity.";
         Emission, "emission", "Emission", "Multiplies the emission.";
         Coat, "coat", "Coat", "Multiplies the weight of the coat.";
+        CoatRoughness, "coat-roughness", "Coat roughness", "Multiplies the coat's roughness, that of GGX, which is then its lobe.";
+        CoatColor, "coat-color", "Coat colour", "Multiplies the colour of the coat.";
+        CoatNormal, "coat-normal", "Coat normal", "Bends the normal of the coat.";
     }
 }
 
@@ -58,12 +61,17 @@ named! {
 impl TextureTarget {
     /// True for a colour, false for a scalar or a normal.
     pub fn is_color(self) -> bool {
-        matches!(self, Self::BaseColor | Self::Emission)
+        matches!(self, Self::BaseColor | Self::Emission | Self::CoatColor)
     }
 
     /// True for a scalar.
     pub fn is_number(self) -> bool {
-        !self.is_color() && self != Self::Normal
+        !self.is_color() && !self.is_normal()
+    }
+
+    /// True for a normal.
+    pub fn is_normal(self) -> bool {
+        matches!(self, Self::Normal | Self::CoatNormal)
     }
 }
 

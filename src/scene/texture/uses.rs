@@ -26,7 +26,7 @@ impl TextureAssignment {
 
     /// Whether green is read upside down.
     pub fn is_flipped(&self) -> bool {
-        self.target == TextureTarget::Normal && self.texture.inverted
+        self.target.is_normal() && self.texture.inverted
     }
 }
 
@@ -64,6 +64,9 @@ pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> Sl
             TextureTarget::Opacity => opacity,
             TextureTarget::Emission => slot.emissive_texture,
             TextureTarget::Coat => slot.coat_texture,
+            TextureTarget::CoatRoughness => slot.coat_roughness_texture,
+            TextureTarget::CoatColor => slot.coat_color_texture,
+            TextureTarget::CoatNormal => slot.coat_normal_texture,
         };
         reference.map(|reference| of_reference(target, &reference))
     };
@@ -111,7 +114,7 @@ pub(super) fn of_user_texture(
         true => 1 + texture.channel_of(*target, is_translucent),
         false => 0,
     };
-    let is_normal = *target == TextureTarget::Normal;
+    let is_normal = target.is_normal();
     let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
     let [scale, offset] = match texture.inverted {
         _ if is_normal => [1.0, 0.0],

@@ -32,11 +32,14 @@ enum Asked {
 }
 
 /// The parameter, by its key, at which each target's texture stands. That of the normal has no number beside it.
-const PLACES: [(&str, TextureTarget); 7] = [
+const PLACES: [(&str, TextureTarget); 10] = [
     ("base.color", TextureTarget::BaseColor),
     ("base.metalness", TextureTarget::Metalness),
     ("specular.roughness", TextureTarget::Roughness),
     ("coat.weight", TextureTarget::Coat),
+    ("coat.roughness", TextureTarget::CoatRoughness),
+    ("coat.color", TextureTarget::CoatColor),
+    ("coat.normal_texture", TextureTarget::CoatNormal),
     ("emission.color", TextureTarget::Emission),
     ("geometry.opacity", TextureTarget::Opacity),
     ("geometry.normal_texture", TextureTarget::Normal),
@@ -77,7 +80,7 @@ pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
 /// for that of the normal, which has a row.
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
-    if picture.is_some() || target == TextureTarget::Normal {
+    if picture.is_some() || target.is_normal() {
         let top = ui.cursor().min;
         let place = egui::Rect::from_min_size(top, egui::vec2(ui.available_width(), theme::ROW_HEIGHT));
         if ui.rect_contains_pointer(place) {
@@ -99,6 +102,9 @@ fn switch(target: TextureTarget) -> Option<&'static Parameter> {
         TextureTarget::Opacity => "geometry.opacity_texture",
         TextureTarget::Emission => "emission.color_texture",
         TextureTarget::Coat => "coat.weight_texture",
+        TextureTarget::CoatRoughness => "coat.roughness_texture",
+        TextureTarget::CoatColor => "coat.color_texture",
+        TextureTarget::CoatNormal => "coat.normal_texture",
     };
     PARAMETERS.iter().find(|parameter| parameter.key == key)
 }
@@ -197,7 +203,7 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                 let has_effect = match parameter.key {
                     "channel" => target.is_number(),
                     // Bumps have a strength of their own, and are never colours.
-                    "strength" | "color_space" => target != TextureTarget::Normal,
+                    "strength" | "color_space" => !target.is_normal(),
                     _ => true,
                 };
                 if !has_effect {
@@ -243,6 +249,9 @@ fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
         TextureTarget::Opacity => slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque),
         TextureTarget::Emission => slot.emissive_texture,
         TextureTarget::Coat => slot.coat_texture,
+        TextureTarget::CoatRoughness => slot.coat_roughness_texture,
+        TextureTarget::CoatColor => slot.coat_color_texture,
+        TextureTarget::CoatNormal => slot.coat_normal_texture,
     };
     Some(Picture::OfModel(scene.model.clone(), reference?.texture))
 }

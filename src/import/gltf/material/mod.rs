@@ -299,6 +299,11 @@ impl<'a> Materials<'a> {
                 .note(Fate::Ignored, format!("{what}, kept in the material"), &read.name);
         }
         read.kept = kept;
+        if let (Some(texture), false) = (&read.coat_normal_texture, uv_use.has_normal_texture) {
+            // Tangents follow the coat's texture where there is no other.
+            uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
+            uv_use.has_normal_texture = true;
+        }
         uv_use.sets = [sets[0].or(Some(0)), sets[1]];
         (read, uv_use)
     }
@@ -385,13 +390,12 @@ impl<'a> Materials<'a> {
             if read.coat > 0.0 {
                 let reference = coat.clearcoat_texture.as_ref().map(TextureInfo::reference);
                 read.coat_texture = self.texture(reference, sets, &read.name);
-                means.extend(mean(
-                    &coat.clearcoat_roughness_texture,
-                    "a coat roughness texture, by its mean",
-                    |slot, mean| {
-                        slot.coat_roughness *= mean.codes[1];
-                    },
-                ));
+                let reference = coat.clearcoat_roughness_texture.as_ref().map(TextureInfo::reference);
+                read.coat_roughness_texture = self.texture(reference, sets, &read.name);
+                if let Some(normal) = &coat.clearcoat_normal_texture {
+                    read.coat_normal_texture = self.texture(Some(normal.info.reference()), sets, &read.name);
+                    read.coat_normal_scale = normal.scale;
+                }
             }
         }
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {

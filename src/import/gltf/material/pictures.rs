@@ -199,6 +199,10 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
             slot.emission = [0.0; 3];
         }
         keep(&mut slot.coat_texture);
+        if !keep(&mut slot.coat_roughness_texture) {
+            slot.coat_roughness *= 0.5;
+        }
+        keep(&mut slot.coat_normal_texture);
     }
     textures.into_iter().flatten().collect()
 }

@@ -49,8 +49,8 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "clearcoatFactor" "0.25" => To "coat.weight" "";
         "clearcoatTexture" TEXTURE => To "coat.weight_texture" "";
         "clearcoatRoughnessFactor" "0.25" => To "coat.roughness" "matched to the geometric lobe";
-        "clearcoatRoughnessTexture" TEXTURE => To "coat.roughness" "by its mean";
-        "clearcoatNormalTexture" TEXTURE => Nowhere "a coat normal texture: coats lie smooth" "";
+        "clearcoatRoughnessTexture" TEXTURE => To "coat.roughness_texture" "";
+        "clearcoatNormalTexture" r#"{"index": 0, "scale": 0.5}"# => To "coat.normal_texture, coat.normal_strength" "a scale beyond ±10";
     }
     "/extensions/KHR_materials_diffuse_roughness/" {
         "diffuseRoughnessFactor" "0.25" => To "base.diffuse_roughness" "a draft";

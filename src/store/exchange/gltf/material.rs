@@ -19,6 +19,8 @@ pub struct SlotTextures {
     pub normal: Option<Json>,
     pub emissive: Option<Json>,
     pub coat: Option<Json>,
+    pub coat_roughness: Option<Json>,
+    pub coat_normal: Option<Json>,
     /// The mean of the roughness that a texture varies.
     pub roughness_mean: Option<f32>,
     /// What the texture's opacity means, where it is looked up.
@@ -90,8 +92,13 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
         json["doubleSided"] = true.into();
     }
     let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
-    if let (Some(texture), Some(coat)) = (&textures.coat, extensions.get_mut("KHR_materials_clearcoat")) {
-        coat["clearcoatTexture"] = texture.clone();
+    if let Some(coat) = extensions.get_mut("KHR_materials_clearcoat") {
+        put(coat, "clearcoatTexture", &textures.coat);
+        put(coat, "clearcoatRoughnessTexture", &textures.coat_roughness);
+        put(coat, "clearcoatNormalTexture", &textures.coat_normal);
+        if textures.coat_normal.is_some() && material.coat_normal_strength != 1.0 {
+            coat["clearcoatNormalTexture"]["scale"] = material.coat_normal_strength.into();
+        }
     }
     if surface.anisotropy != 0.0 {
         let (_, rotation_deg) = surface.ratio_and_rotation();

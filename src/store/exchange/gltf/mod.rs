@@ -303,6 +303,8 @@ impl Builder {
             normal: texture(uses.normal, &slot.normal_texture),
             emissive: texture(uses.emission, &slot.emissive_texture),
             coat: texture(uses.coat, &slot.coat_texture),
+            coat_roughness: texture(uses.coat_roughness, &slot.coat_roughness_texture),
+            coat_normal: texture(uses.coat_normal, &slot.coat_normal_texture),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

@@ -79,6 +79,9 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             TextureTarget::Normal => of.normal_texture = Some(place),
             TextureTarget::Emission => of.emissive_texture = Some(place),
             TextureTarget::Coat => of.coat_texture = Some(place),
+            TextureTarget::CoatRoughness => of.coat_roughness_texture = Some(place),
+            TextureTarget::CoatNormal => of.coat_normal_texture = Some(place),
+            TextureTarget::CoatColor => of.coat_color_texture = Some(place),
             TextureTarget::Opacity => {}
         }
         model.textures.push(picture);
@@ -112,8 +115,11 @@ fn picture(
     if target == TextureTarget::Opacity {
         return Err("the format has opacity in the texture of the base colour alone".to_owned());
     }
-    if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
+    if target.is_normal() && texture.rotation_deg != 0.0 {
         return Err("the format does not turn normals with their texture".to_owned());
+    }
+    if target == TextureTarget::CoatColor {
+        return Err("the format's coat has no colour".to_owned());
     }
     let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
@@ -127,7 +133,7 @@ fn picture(
 
 /// A texel of a file: sRGB codes of a colour, a normal, or a number in all channels.
 fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
-    if target == TextureTarget::Normal {
+    if target.is_normal() {
         return [r, if texture.inverted { 255 - g } else { g }, b, 255];
     }
     let decoded = |code: [u8; 3]| {
