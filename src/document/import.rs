@@ -116,7 +116,8 @@ impl MaterialSettings {
         material.coat_normal_strength = slot.coat_normal_scale.clamp(-10.0, 10.0);
         if slot.coat > 0.0 {
             material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
-            material.keep_below_coat();
+            (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
+            (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
         }
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {

@@ -266,6 +266,14 @@ pub struct Slot {
     pub coat_roughness: f32,
     /// Index of refraction of the coat, at least 1.
     pub coat_ior: f32,
+    /// What the coat leaves of light that crosses it twice, linear RGB in [0, 1] (the draft KHR_materials_coat).
+    pub coat_color: [f32; 3],
+    /// Stretch of the coat's reflection along the tangent, as `anisotropy`.
+    pub coat_anisotropy: f32,
+    /// Whether the coat changes what lies below it.
+    pub coat_on_base: bool,
+    /// Share of its darkening that shows, in [0, 1].
+    pub coat_darkening: f32,
     /// Transmittance over `attenuation_distance` inside, linear RGB (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
     /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
@@ -330,6 +338,10 @@ impl Default for Slot {
             coat: 0.0,
             coat_roughness: 0.0,
             coat_ior: 1.5,
+            coat_color: [1.0; 3],
+            coat_anisotropy: 0.0,
+            coat_on_base: false,
+            coat_darkening: 0.0,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
             base_color_texture: None,

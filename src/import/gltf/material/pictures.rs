@@ -202,6 +202,7 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
         if !keep(&mut slot.coat_roughness_texture) {
             slot.coat_roughness *= 0.5;
         }
+        keep(&mut slot.coat_color_texture);
         keep(&mut slot.coat_normal_texture);
     }
     textures.into_iter().flatten().collect()

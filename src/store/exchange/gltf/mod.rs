@@ -59,6 +59,17 @@ const UNSIGNED_INT: u32 = 5125;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
+/// What it takes of a material: OpenPBR's coat by a draft.
+fn takes(material: &MaterialSettings) -> Takes {
+    let is_draft = material.coat_on_base;
+    Takes {
+        coat_details: is_draft,
+        coat_stretch: is_draft,
+        coat_on_base: is_draft,
+        ..TAKES
+    }
+}
+
 impl Format for Gltf {
     fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         let mut model = match &subject.document {
@@ -87,7 +98,7 @@ impl Format for Gltf {
                 None => Vec::new(),
             };
             let material = &material;
-            let (surface, mut report) = shown(material, &TAKES);
+            let (surface, mut report) = shown(material, &takes(material));
             report.entries.extend(of_own);
             let textures = file.textures(&model, slot, material);
             if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
@@ -134,7 +145,7 @@ impl Format for Gltf {
             };
             let mut shows = material_json(
                 &exact,
-                &shown(&exact, &TAKES).0,
+                &shown(&exact, &takes(&exact)).0,
                 &SlotTextures::default(),
                 radius_of(&model),
             );
@@ -305,6 +316,7 @@ impl Builder {
             coat: texture(uses.coat, &slot.coat_texture),
             coat_roughness: texture(uses.coat_roughness, &slot.coat_roughness_texture),
             coat_normal: texture(uses.coat_normal, &slot.coat_normal_texture),
+            coat_color: texture(uses.coat_color, &slot.coat_color_texture),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

@@ -119,7 +119,7 @@ fn picture(
         return Err("the format does not turn normals with their texture".to_owned());
     }
     if target == TextureTarget::CoatColor {
-        return Err("the format's coat has no colour".to_owned());
+        return Err("the format has a coat's colour in a draft alone".to_owned());
     }
     let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
