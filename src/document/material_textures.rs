@@ -28,6 +28,13 @@ impl Place {
     }
 }
 
+/// Gives a material a coat if it has none.
+fn show_coat(material: &mut MaterialSettings) {
+    if material.coat_weight == 0.0 {
+        material.coat_weight = 1.0;
+    }
+}
+
 /// The places of all targets, in their order.
 const PLACES: &[Place; TextureTarget::ALL.len()] = &[
     Place::new(
@@ -60,26 +67,24 @@ const PLACES: &[Place; TextureTarget::ALL.len()] = &[
             }
         },
     ),
-    Place::new(
-        "coat.weight_map",
-        |uses| &mut uses.coat,
-        |material| {
-            if material.coat_weight == 0.0 {
-                material.coat_weight = 1.0;
-            }
-        },
-    ),
+    Place::new("coat.weight_map", |uses| &mut uses.coat, show_coat),
     Place::new(
         "coat.roughness_map",
         |uses| &mut uses.coat_roughness,
-        |material| (material.coat_lobe, material.coat_roughness) = (CoatLobe::Ggx, 1.0),
+        |material| {
+            show_coat(material);
+            (material.coat_lobe, material.coat_roughness) = (CoatLobe::Ggx, 1.0);
+        },
     ),
     Place::new(
         "coat.color_map",
         |uses| &mut uses.coat_color,
-        |material| material.coat_color = [1.0; 3],
+        |material| {
+            show_coat(material);
+            material.coat_color = [1.0; 3];
+        },
     ),
-    Place::new("coat.normal_map", |uses| &mut uses.coat_normal, |_| {}),
+    Place::new("coat.normal_map", |uses| &mut uses.coat_normal, show_coat),
 ];
 
 /// The key of a target's image in a material's file, and on the command line before that of a parameter:
