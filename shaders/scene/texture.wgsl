@@ -147,7 +147,7 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
     let pictures = PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES;
-    if pictures + PLAN_VERTEX_COLORS == 0u {
+    if pictures + PLAN_FILM_TEXTURES + PLAN_VERTEX_COLORS == 0u {
         return material;
     }
     // A map with both roughness and metalness is looked up once.
@@ -196,6 +196,14 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     }
     if PLAN_COAT_TEXTURES == 1u {
         at_point.coat_weight = material.coat_weight * found[4].x;
+    }
+    if PLAN_FILM_TEXTURES == 1u {
+        if material.film_texture != NO_TEXTURE {
+            at_point.film_weight = material.film_weight * texture_lookup(material.film_texture, uvs).x;
+        }
+        if material.film_path_texture != NO_TEXTURE {
+            at_point.film_path = material.film_path * texture_lookup(material.film_path_texture, uvs).x;
+        }
     }
     return at_point;
 }

@@ -15,6 +15,7 @@ use crate::optics::material::{
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
+use crate::optics::thin_film::film_path;
 use crate::optics::vector::Vec3;
 use crate::scene::texture::{SlotTextures, TextureTarget};
 
@@ -127,13 +128,25 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         fuzz_middle: bell[0],
         fuzz_width: bell[1],
         fuzz_floor: bell[2],
+        film_path: film_path(settings.film_thickness * factor(uses.film_thickness, slot.constant_film_thickness)),
+        film_weight: settings.film_weight * factor(uses.film, slot.constant_film),
+        film_ior: settings.film_ior,
+        has_film: 0,
+        film_texture: NO_TEXTURE,
+        film_path_texture: NO_TEXTURE,
     };
+    if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
+        material.has_film = 1;
+        material.film_texture = looked_up(uses.film, slot.film);
+        material.film_path_texture = looked_up(uses.film_thickness, slot.film_thickness);
+    }
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
         material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
     }
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
-    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2];
+    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2]
+        || (material.has_film_texture() && material.least_metallic().metalness < 1.0);
     material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
@@ -239,6 +252,7 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         fresnel: Fresnel::Dielectric as u32,
         transmission_weight: 0.0,
         has_rough_tables: 0,
+        has_film: 0,
         ..*material
     }
 }
@@ -312,6 +326,10 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
             // With a table over the roughness their difference counts.
             roughness: material.roughness,
             transmission_roughness: of_interface(material.transmission_roughness),
+            has_film: if transmits { key.material.has_film } else { 0 },
+            film_weight: of_interface(key.material.film_weight),
+            film_path: key.material.film_path * of_interface(1.0),
+            film_ior: of_interface(key.material.film_ior),
             ..key.material
         },
         holds: Holds::Energies,
@@ -324,6 +342,8 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
     let is_rough = material.has_rough_tables == 1;
     let white = Vec3::splat(1.0);
     let transmits = material.least_metallic().transmits();
+    let is_measured = material.fresnel == Fresnel::Conductor as u32;
+    let has_filmed = material.has_film == 1 && (!is_rough || is_measured);
     let material = Material {
         metalness: 0.0,
         roughness: if is_rough { 0.0 } else { material.roughness },
@@ -345,6 +365,13 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         fuzz_middle: 0.0,
         fuzz_width: 0.0,
         fuzz_floor: 0.0,
+        // One over the roughness has no film in it, but for that on a measured metal.
+        has_film: if has_filmed { 1 } else { 0 },
+        film_weight: if has_filmed { material.film_weight } else { 0.0 },
+        film_path: if has_filmed { material.film_path } else { Vec3::zero() },
+        film_ior: if has_filmed { material.film_ior } else { 1.0 },
+        film_texture: NO_TEXTURE,
+        film_path_texture: NO_TEXTURE,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+use super::material::FILM_THICKNESS_MAX;
 use super::material::specular_color;
 use super::{MaterialSettings, TextureUse};
 use crate::named::named;
@@ -79,6 +80,8 @@ impl MaterialSettings {
             emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
             coat: slot.coat_texture.is_some(),
+            film: slot.film_texture.is_some(),
+            film_thickness: slot.film_thickness_texture.is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
@@ -89,6 +92,9 @@ impl MaterialSettings {
         if slot.coat > 0.0 {
             material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
         }
+        material.film_weight = unit(slot.film);
+        material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);
+        material.film_ior = slot.film_ior.clamp(1.0, 3.0);
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {
             material.transmission_color = slot.attenuation_color.map(unit);

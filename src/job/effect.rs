@@ -81,6 +81,7 @@ effects! {
     MultipleScattering "multiple-scattering" flag "PLAN_MULTIPLE_SCATTERING";
     Fuzz "fuzz" flag "PLAN_FUZZ";
     Coat "coat" flag "PLAN_COAT";
+    ThinFilm "thin-film" flag "PLAN_THIN_FILM";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";
     ColorTexture "color-texture" flag "PLAN_COLOR_TEXTURES";
@@ -90,6 +91,7 @@ effects! {
     EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
     VertexColors "vertex-colors" flag "PLAN_VERTEX_COLORS";
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
+    FilmTexture "film-texture" flag "PLAN_FILM_TEXTURES";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";
     DepthOfField "depth-of-field" flag "PLAN_LENS";

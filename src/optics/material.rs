@@ -11,6 +11,7 @@ use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{Fresnel, FresnelTerms};
 use super::lobe::{Horizon, Lobe, LobeShape};
 use super::real::{Mask, Real, Scalar};
+use super::thin_film::FilmTerms;
 use super::vector::{Vec3, vec3};
 
 /// The number of a texture that is not there.
@@ -213,6 +214,19 @@ material! {
         fuzz_width: T,
         /// What fuzz reflects of every view.
         fuzz_floor: T,
+        /// Phase of a crossing of the thin film at normal incidence over its index, by channel
+        /// ([`film_path`](super::thin_film::film_path)).
+        film_path: Vec3<T>,
+        /// Share of the surface that has a thin film, in [0, 1].
+        film_weight: T,
+        /// Index of refraction of the thin film.
+        film_ior: T,
+        /// 1 if there is a thin film ([`has_film`](super::thin_film::has_film)).
+        has_film: u32,
+        /// The texture that multiplies the weight of the thin film, or [`NO_TEXTURE`].
+        film_texture: u32,
+        /// The texture that multiplies the thickness of the thin film, or [`NO_TEXTURE`].
+        film_path_texture: u32,
     }
 }
 
@@ -288,6 +302,19 @@ impl<T: Real> Material<T> {
             ior: self.ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,
+            has_film: self.has_film == 1,
+            film: self.film_terms(is_bare),
+        }
+    }
+
+    /// The thin film, before it the interior where that is `within`.
+    #[inline(always)]
+    fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
+        let before = T::select(within, self.ior, T::one());
+        FilmTerms {
+            weight: self.film_weight,
+            ior: self.film_ior / before,
+            path: self.film_path * before,
         }
     }
 
@@ -302,7 +329,14 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
         let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
-        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4]
+        let is_plain = others == [NO_TEXTURE; 3] && self.textures == [NO_TEXTURE; 4];
+        !is_plain || self.has_film_texture()
+    }
+
+    /// True if a texture varies the thin film.
+    #[inline(always)]
+    pub fn has_film_texture(&self) -> bool {
+        [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
     }
 
     /// True if some light may pass straight through the surface.

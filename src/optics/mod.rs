@@ -25,6 +25,7 @@ pub mod refraction;
 pub mod rough_diffuse;
 pub mod scattering;
 pub mod table;
+pub mod thin_film;
 pub mod tone;
 pub mod vector;
 pub mod warp;

@@ -16,7 +16,8 @@ use super::fresnel::{
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
 use super::real::Real;
-use super::refraction::refracting_cosines;
+use super::refraction::{refracted_square, refracting_cosines};
+use super::thin_film::film_passed;
 use super::vector::{Vec3, vec3};
 
 /// Factor that keeps a clear interface's light: one over the energy of reflection and refraction together.
@@ -67,7 +68,11 @@ fn compensated<T: Real>(
         return fresnel(terms, cosine) * (white + head_on * (again * terms.metalness));
     }
     let [dielectric, metal] = fresnel_parts(terms, cosine);
-    let metal = metal * (white + terms.metal_f0 * terms.metal_tint * again);
+    let mut head_on = terms.metal_f0 * terms.metal_tint;
+    if terms.has_film {
+        head_on = fresnel_parts(terms, one)[1];
+    }
+    let metal = metal * (white + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = T::select(material.transmits(), material.transmission_weight, T::zero());
     let gain = one + (interface_gain(material, surface, shape) - one) * share;
@@ -123,11 +128,23 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 /// Energy that reflection and refraction of a clear interface keep together.
 fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
     let eta = material.ior_ahead(is_inside);
-    let reflected = reflected_energy(material, cosine, samples, |cosine| fresnel_dielectric(cosine, eta));
+    let terms = FresnelTerms {
+        tint: Vec3::splat(1.0),
+        ..material.fresnel_terms(is_inside)
+    };
+    // A film shares the light otherwise, by its mean over the channels.
+    let film = |cosine: f64, height: f64| match terms.has_film {
+        true => film_passed(&terms, cosine, height).dot(Vec3::splat(1.0 / 3.0)),
+        false => 0.0,
+    };
+    let reflected = reflected_energy(material, cosine, samples, |cosine| {
+        let height = refracted_square(cosine, eta).safe_sqrt();
+        fresnel_dielectric(cosine, eta) - film(cosine, height)
+    });
     let shape = material.transmission_shape(&[], is_inside);
     let refracted = mean_weight(&shape, cosine, samples, |wo, wi| {
         let [before, behind] = refracting_cosines(wo, wi, eta);
-        fresnel_transmitted(before, behind, eta)
+        fresnel_transmitted(before, behind, eta) + film(before, eta * behind)
     });
     reflected + refracted
 }

@@ -266,6 +266,14 @@ pub struct Slot {
     pub coat_roughness: f32,
     /// Index of refraction of the coat, at least 1.
     pub coat_ior: f32,
+    /// Share of the surface that has a thin film, in [0, 1] (KHR_materials_iridescence).
+    pub film: f32,
+    /// Index of refraction of the thin film, at least 1.
+    pub film_ior: f32,
+    /// Thickness of the thin film in µm, where its texture is 1.
+    pub film_thickness: f32,
+    /// Thickness of the thin film in µm, where its texture is 0.
+    pub film_thickness_min: f32,
     /// Transmittance over `attenuation_distance` inside, linear RGB (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
     /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
@@ -284,6 +292,10 @@ pub struct Slot {
     pub emissive_texture: Option<TextureRef>,
     /// Coat map; its red channel multiplies `coat`.
     pub coat_texture: Option<TextureRef>,
+    /// Film map; its red channel multiplies `film`.
+    pub film_texture: Option<TextureRef>,
+    /// Thickness of the film, in the green channel.
+    pub film_thickness_texture: Option<TextureRef>,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
     /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
@@ -322,6 +334,10 @@ impl Default for Slot {
             coat: 0.0,
             coat_roughness: 0.0,
             coat_ior: 1.5,
+            film: 0.0,
+            film_ior: 1.3,
+            film_thickness: 0.4,
+            film_thickness_min: 0.1,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
             base_color_texture: None,
@@ -331,6 +347,8 @@ impl Default for Slot {
             normal_scale: 1.0,
             emissive_texture: None,
             coat_texture: None,
+            film_texture: None,
+            film_thickness_texture: None,
             specular: 1.0,
             specular_color: [1.0; 3],
             anisotropy: 0.0,
@@ -363,6 +381,8 @@ impl Slot {
             &self.normal_texture,
             &self.emissive_texture,
             &self.coat_texture,
+            &self.film_texture,
+            &self.film_thickness_texture,
         ];
         refs.into_iter().flatten()
     }
@@ -375,6 +395,8 @@ impl Slot {
             &mut self.normal_texture,
             &mut self.emissive_texture,
             &mut self.coat_texture,
+            &mut self.film_texture,
+            &mut self.film_thickness_texture,
         ];
         refs.into_iter().flatten()
     }

@@ -190,7 +190,7 @@ fn migrate_0(object: &mut Map<String, Json>) {
 
 /// True of parameters that came after version 0.
 fn is_newer(key: &str) -> bool {
-    let groups = ["transmission.", "coat.", "fuzz.", "geometry."];
+    let groups = ["transmission.", "coat.", "fuzz.", "thin_film.", "geometry."];
     groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
 }
 

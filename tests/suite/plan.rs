@@ -144,6 +144,7 @@ fn needing(effect: &str) -> Document {
         "base" => &["specular.fresnel=schlick", "base.metalness=0"],
         "coat" => &["coat.weight=1"],
         "fuzz" => &["fuzz.weight=1", "fuzz.roughness=1"],
+        "thin-film" => &["thin_film.weight=1", "thin_film.ior=2"],
         "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
         "diffuse-roughness" => &["base.metalness=0", "base.diffuse_roughness=1"],
         "multiple-scattering" => &["specular.lobe=ggx", "specular.roughness=0.9"],

@@ -96,7 +96,9 @@ fn textured(folder: &Folder) -> Document {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    material.user_textures.set(TextureTarget::Coat, Some(coat));
+    for target in [TextureTarget::Coat, TextureTarget::Film, TextureTarget::FilmThickness] {
+        material.user_textures.set(target, Some(coat.clone()));
+    }
     document
 }
 
@@ -258,6 +260,7 @@ fn calls_for(effect: &str) -> Calls {
             ],
         ),
         "fuzz" => (metal, &[|d, _| d.materials[0].fuzz_weight = LEAST]),
+        "thin-film" => (metal, &[|d, _| d.materials[0].film_weight = LEAST]),
         "coat" => (metal, &[|d, _| d.materials[0].coat_weight = LEAST]),
         "transmission" => (
             metal,
@@ -293,6 +296,13 @@ fn calls_for(effect: &str) -> Calls {
         "coat-texture" => (
             metal,
             &[|d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST)],
+        ),
+        "film-texture" => (
+            metal,
+            &[
+                |d, _| (d.materials[0].textures.film, d.materials[0].film_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.film_thickness, d.materials[0].film_weight) = (true, LEAST),
+            ],
         ),
         "box-projection" => (
             metal,

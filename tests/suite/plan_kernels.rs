@@ -60,6 +60,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
         "fuzz" => |material, _| material.fuzz_weight = 0.0,
+        "thin-film" => |material, _| material.has_film = 0,
         "coat" => |material, _| material.coat_weight = 0.0,
         "color-texture" => |material, _| {
             material.textures[0] = NO_TEXTURE;
@@ -72,6 +73,9 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
         "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
+        "film-texture" => |material, _| {
+            (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
+        },
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
@@ -232,6 +236,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         "base.metalness=0.5",
         "base.diffuse_roughness=0.5",
         "fuzz.weight=0.2",
+        "thin_film.weight=0.3",
         "specular.lobe=ggx",
         "specular.roughness=0.5",
     ] {

@@ -278,6 +278,13 @@ pub static EFFECTS: &[Effect] = &[
         remove: Some(|document| each_material(document, |material| material.coat_weight = 0.0)),
     },
     Effect {
+        id: EffectId::ThinFilm,
+        label: "Thin film",
+        help: "Interference in a film over the surface that reflects: soap, oil, tempered steel.",
+        decide: |facts| facts.needed_by(|m| m.has_film == 1, "has a thin film"),
+        remove: Some(|document| each_material(document, |material| material.film_weight = 0.0)),
+    },
+    Effect {
         id: EffectId::Transmission,
         label: "Refraction",
         help: "Light that passes through surfaces and is refracted there.",
@@ -377,6 +384,17 @@ pub static EFFECTS: &[Effect] = &[
             )
         },
         remove: Some(|document| each_material(document, |material| material.textures.coat = false)),
+    },
+    Effect {
+        id: EffectId::FilmTexture,
+        label: "Thin film textures",
+        help: "Weights and thicknesses of thin films from textures.",
+        decide: |facts| facts.needed_by(Material::has_film_texture, "takes its thin film from a texture"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                (material.textures.film, material.textures.film_thickness) = (false, false);
+            });
+        }),
     },
     Effect {
         id: EffectId::BoxProjection,

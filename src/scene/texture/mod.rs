@@ -276,6 +276,12 @@ pub fn textured_material<T: Scalar>(
     if material.coat_texture != NO_TEXTURE {
         at_point.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
     }
+    if material.film_texture != NO_TEXTURE {
+        at_point.film_weight = material.film_weight * texture_lookup(textures, material.film_texture, uvs).0.x;
+    }
+    if material.film_path_texture != NO_TEXTURE {
+        at_point.film_path = material.film_path * texture_lookup(textures, material.film_path_texture, uvs).0.x;
+    }
     at_point
 }
 
@@ -292,8 +298,14 @@ pub fn textured_materials<T: Real>(
     let at = T::each(|lane| {
         let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
         TexturedNumbers {
-            colors: [at.base_color, at.transmission_tint, at.emission],
-            numbers: [at.metalness, at.roughness, at.transmission_roughness, at.coat_weight],
+            colors: [at.base_color, at.transmission_tint, at.emission, at.film_path],
+            numbers: [
+                at.metalness,
+                at.roughness,
+                at.transmission_roughness,
+                at.coat_weight,
+                at.film_weight,
+            ],
         }
     });
     let at = at.as_ref();
@@ -305,6 +317,8 @@ pub fn textured_materials<T: Real>(
         roughness: T::from_lanes(|lane| at[lane].numbers[1]),
         transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
         coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
+        film_path: Vec3::from_lanes(|lane| at[lane].colors[3]),
+        film_weight: T::from_lanes(|lane| at[lane].numbers[4]),
         ..*material
     }
 }
@@ -312,10 +326,10 @@ pub fn textured_materials<T: Real>(
 /// Parameters that [`textured_material`] changes.
 #[derive(Clone, Copy, Default)]
 struct TexturedNumbers<T> {
-    /// Base colour, tint of the transmission, emission.
-    colors: [Vec3<T>; 3],
-    /// Metalness, roughness, roughness of the refraction, weight of the coat.
-    numbers: [T; 4],
+    /// Base colour, tint of the transmission, emission, phase of the thin film.
+    colors: [Vec3<T>; 4],
+    /// Metalness, roughness, roughness of the refraction, weights of coat and thin film.
+    numbers: [T; 5],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.

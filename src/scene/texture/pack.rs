@@ -66,6 +66,10 @@ pub struct SlotTextures {
     pub opacity: u32,
     /// Its red multiplies the weight of the coat.
     pub coat: u32,
+    /// Its red multiplies the weight of the thin film.
+    pub film: u32,
+    /// Its red multiplies the thickness of the thin film.
+    pub film_thickness: u32,
     /// Opacity cutoff of a masked material; negative for blended opacity.
     pub alpha_cutoff: f32,
     /// The emission texture's mean, linear.
@@ -80,6 +84,10 @@ pub struct SlotTextures {
     pub constant_metalness: Option<f32>,
     /// Constant value of a uniform coat map.
     pub constant_coat: Option<f32>,
+    /// Constant value of a uniform map of the thin film's weight.
+    pub constant_film: Option<f32>,
+    /// Constant value of a uniform map of the thin film's thickness.
+    pub constant_film_thickness: Option<f32>,
     /// Parameters that vertex colours multiply, as material flags.
     pub vertex_flags: u32,
     /// Whether each target uses box projection.
@@ -96,6 +104,8 @@ impl Default for SlotTextures {
             emission: NO_TEXTURE,
             opacity: NO_TEXTURE,
             coat: NO_TEXTURE,
+            film: NO_TEXTURE,
+            film_thickness: NO_TEXTURE,
             alpha_cutoff: -1.0,
             mean_emission: [1.0; 3],
             constant_base_color: None,
@@ -103,6 +113,8 @@ impl Default for SlotTextures {
             constant_roughness: None,
             constant_metalness: None,
             constant_coat: None,
+            constant_film: None,
+            constant_film_thickness: None,
             vertex_flags: 0,
             on_box: [false; TextureTarget::ALL.len()],
         }
@@ -316,6 +328,11 @@ impl Pack {
             TextureTarget::Metalness => number(|slot| &mut slot.constant_metalness, |slot| &mut slot.metalness),
             TextureTarget::Opacity => number(|slot| &mut slot.constant_opacity, |slot| &mut slot.opacity),
             TextureTarget::Coat => number(|slot| &mut slot.constant_coat, |slot| &mut slot.coat),
+            TextureTarget::Film => number(|slot| &mut slot.constant_film, |slot| &mut slot.film),
+            TextureTarget::FilmThickness => number(
+                |slot| &mut slot.constant_film_thickness,
+                |slot| &mut slot.film_thickness,
+            ),
             TextureTarget::Normal => slot.normal = textures.add(picture.record(used)),
             TextureTarget::BaseColor => {
                 slot.constant_base_color = value.map(Vec3::to_f32);
@@ -409,7 +426,7 @@ impl Packed {
                 TextureTarget::Roughness => Some(1),
                 TextureTarget::Metalness => Some(2),
                 TextureTarget::Opacity => Some(3),
-                TextureTarget::Coat => Some(0),
+                TextureTarget::Coat | TextureTarget::Film | TextureTarget::FilmThickness => Some(0),
                 TextureTarget::BaseColor | TextureTarget::Normal | TextureTarget::Emission => None,
             },
             one => Some(one as usize - 1),

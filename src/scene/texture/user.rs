@@ -16,6 +16,8 @@ named! {
         Opacity, "opacity", "Opacity", "Multiplies the opacity.";
         Emission, "emission", "Emission", "Multiplies the emission.";
         Coat, "coat", "Coat", "Multiplies the weight of the coat.";
+        Film, "film", "Thin film", "Multiplies the weight of the thin film.";
+        FilmThickness, "film-thickness", "Film thickness", "Multiplies the thickness of the thin film.";
     }
 }
 

@@ -64,8 +64,17 @@ pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> Sl
             TextureTarget::Opacity => opacity,
             TextureTarget::Emission => slot.emissive_texture,
             TextureTarget::Coat => slot.coat_texture,
+            TextureTarget::Film => slot.film_texture,
+            TextureTarget::FilmThickness => slot.film_thickness_texture,
         };
-        reference.map(|reference| of_reference(target, &reference))
+        let mut used = of_reference(target, &reference?);
+        if target == TextureTarget::FilmThickness && slot.film_thickness > 0.0 {
+            // From the least thickness to the largest, by the green channel.
+            used.offset = slot.film_thickness_min / slot.film_thickness;
+            used.scale = 1.0 - used.offset;
+            used.flags |= 2 << CHANNEL_SHIFT;
+        }
+        Some(used)
     };
     std::array::from_fn(|index| uses(TextureTarget::ALL[index]))
 }

@@ -32,11 +32,13 @@ enum Asked {
 }
 
 /// The parameter, by its key, at which each target's texture stands. That of the normal has no number beside it.
-const PLACES: [(&str, TextureTarget); 7] = [
+const PLACES: [(&str, TextureTarget); 9] = [
     ("base.color", TextureTarget::BaseColor),
     ("base.metalness", TextureTarget::Metalness),
     ("specular.roughness", TextureTarget::Roughness),
     ("coat.weight", TextureTarget::Coat),
+    ("thin_film.weight", TextureTarget::Film),
+    ("thin_film.thickness", TextureTarget::FilmThickness),
     ("emission.color", TextureTarget::Emission),
     ("geometry.opacity", TextureTarget::Opacity),
     ("geometry.normal_texture", TextureTarget::Normal),
@@ -99,6 +101,8 @@ fn switch(target: TextureTarget) -> Option<&'static Parameter> {
         TextureTarget::Opacity => "geometry.opacity_texture",
         TextureTarget::Emission => "emission.color_texture",
         TextureTarget::Coat => "coat.weight_texture",
+        TextureTarget::Film => "thin_film.weight_texture",
+        TextureTarget::FilmThickness => "thin_film.thickness_texture",
     };
     PARAMETERS.iter().find(|parameter| parameter.key == key)
 }
@@ -243,6 +247,8 @@ fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
         TextureTarget::Opacity => slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque),
         TextureTarget::Emission => slot.emissive_texture,
         TextureTarget::Coat => slot.coat_texture,
+        TextureTarget::Film => slot.film_texture,
+        TextureTarget::FilmThickness => slot.film_thickness_texture,
     };
     Some(Picture::OfModel(scene.model.clone(), reference?.texture))
 }

@@ -18,8 +18,8 @@ pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, DiffuseRoughness, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume,
-    extension, kept, unreadable,
+    Anisotropy, Clearcoat, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission,
+    Volume, extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
@@ -394,6 +394,9 @@ impl<'a> Materials<'a> {
                 ));
             }
         }
+        if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
+            self.read_film(&film, read, sets);
+        }
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
             read.anisotropy = unit(anisotropy.anisotropy_strength);
             read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;
@@ -408,6 +411,20 @@ impl<'a> Materials<'a> {
             ));
         }
         self.add_means(slot, means);
+    }
+
+    /// A thin film. Without a texture it has the largest thickness.
+    fn read_film(&mut self, film: &Iridescence, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        read.film = unit(film.iridescence_factor);
+        read.film_ior = film.iridescence_ior.max(1.0);
+        let thicknesses = [film.iridescence_thickness_minimum, film.iridescence_thickness_maximum];
+        [read.film_thickness_min, read.film_thickness] = thicknesses.map(|nm| 1e-3 * not_negative(nm));
+        if read.film > 0.0 {
+            let [weight, thickness] = [&film.iridescence_texture, &film.iridescence_thickness_texture]
+                .map(|texture| texture.as_ref().map(TextureInfo::reference));
+            read.film_texture = self.texture(weight, sets, &read.name);
+            read.film_thickness_texture = self.texture(thickness, sets, &read.name);
+        }
     }
 
     /// Index of refraction, transmission and absorption.

@@ -199,6 +199,8 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
             slot.emission = [0.0; 3];
         }
         keep(&mut slot.coat_texture);
+        keep(&mut slot.film_texture);
+        keep(&mut slot.film_thickness_texture);
     }
     textures.into_iter().flatten().collect()
 }

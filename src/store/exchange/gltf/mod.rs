@@ -29,6 +29,8 @@ const TAKES: Takes = Takes {
     eta_and_k: false,
     diffuse_roughness: true,
     fuzz: false,
+    film: true,
+    film_weight: true,
     scattering: true,
     edge_tint: false,
     specular: true,
@@ -301,6 +303,9 @@ impl Builder {
             normal: texture(uses.normal, &slot.normal_texture),
             emissive: texture(uses.emission, &slot.emissive_texture),
             coat: texture(uses.coat, &slot.coat_texture),
+            film: texture(uses.film, &slot.film_texture),
+            film_thickness: texture(uses.film_thickness, &slot.film_thickness_texture),
+            thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

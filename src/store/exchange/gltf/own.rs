@@ -79,6 +79,11 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             TextureTarget::Normal => of.normal_texture = Some(place),
             TextureTarget::Emission => of.emissive_texture = Some(place),
             TextureTarget::Coat => of.coat_texture = Some(place),
+            TextureTarget::Film => of.film_texture = Some(place),
+            TextureTarget::FilmThickness => {
+                of.film_thickness_texture = Some(place);
+                of.film_thickness_min = 0.0;
+            }
             TextureTarget::Opacity => {}
         }
         model.textures.push(picture);
@@ -154,7 +159,7 @@ fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, 
     let code = code(put_on(number));
     // What shares the image with it is left as it is.
     match target {
-        TextureTarget::Roughness => [255, code, 255, 255],
+        TextureTarget::Roughness | TextureTarget::FilmThickness => [255, code, 255, 255],
         TextureTarget::Metalness => [255, 255, code, 255],
         _ => [code, 255, 255, 255],
     }

@@ -130,6 +130,9 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             s.coat_ior,
             s.fuzz_weight,
             s.fuzz_roughness,
+            s.film_weight,
+            s.film_thickness,
+            s.film_ior,
             s.opacity,
         ];
         let colors = [
