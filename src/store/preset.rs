@@ -12,6 +12,7 @@ use serde_json::{Map, Value as Json, json};
 use super::own;
 use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
+use crate::document::material::FILM_THICKNESS_MAX;
 use crate::document::parameter::nearest_key;
 use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
@@ -40,7 +41,7 @@ pub const SHIPPED: &[&str] = shipped! {
     "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red"
     "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass" "diamond"
     "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
-    "copper" "platinum" "titanium" "cast-iron" "mercury"
+    "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel" "soap-film"
 };
 
 /// The shipped materials, in the order of the menus.
@@ -241,6 +242,25 @@ pub enum MaterialError {
     Material,
 }
 
+/// Turns what older files kept of glTF's iridescence into the thin film that it is.
+fn show_iridescence(values: &mut Map<String, Json>) {
+    values.shift_remove("iridescence.thickness_min_nm");
+    let mut take = |key: &str| values.shift_remove(key).and_then(|value| value.as_f64());
+    let [weight, ior, thickness_nm] = ["weight", "ior", "thickness_nm"].map(|key| take(&format!("iridescence.{key}")));
+    let Some(weight) = weight else { return };
+    let film = [
+        ("thin_film.weight", weight.clamp(0.0, 1.0)),
+        ("thin_film.ior", ior.unwrap_or(1.3).clamp(1.0, 3.0)),
+        (
+            "thin_film.thickness",
+            (1e-3 * thickness_nm.unwrap_or(400.0)).clamp(0.0, FILM_THICKNESS_MAX.into()),
+        ),
+    ];
+    for (key, value) in film {
+        values.entry(key).or_insert(json!(value));
+    }
+}
+
 /// From `{"name": …, "material": {…}}`.
 impl TryFrom<Map<String, Json>> for MaterialSettings {
     type Error = MaterialError;
@@ -256,6 +276,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             Some(_) => return Err(MaterialError::Material),
             None => Map::new(),
         };
+        show_iridescence(&mut values);
         for parameter in PARAMETERS.iter() {
             if let Some(json) = values.shift_remove(parameter.key) {
                 parameter.set(&mut material, parameter.value_from_json(&json)?)?;

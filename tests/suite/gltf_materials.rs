@@ -188,12 +188,10 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
 fn what_cannot_be_shown_yet_is_kept_in_the_material() {
     let model = slot_of(&json!({"extensions": {
         "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 1.0], "sheenRoughnessFactor": 0.5},
-        "KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 350},
         "KHR_materials_dispersion": {"dispersion": 0.0},
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
     }}));
     says(&model, Fate::Ignored, "sheen, kept in the material");
-    says(&model, Fate::Ignored, "iridescence, kept in the material");
     assert!(
         !model
             .report
@@ -212,8 +210,38 @@ fn what_cannot_be_shown_yet_is_kept_in_the_material() {
         (material.extra, Vec::<String>::new())
     );
     assert_eq!(read.value.extra["sheen.color"], json!([0.5, 0.25, 1.0]));
-    assert_eq!(read.value.extra["iridescence.thickness_nm"], json!(350));
     assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
+}
+
+#[test]
+fn iridescence_is_a_thin_film() {
+    let model = slot_of(&json!({"extensions": {"KHR_materials_iridescence": {
+        "iridescenceFactor": 0.5, "iridescenceIor": 1.75, "iridescenceThicknessMaximum": 350,
+    }}}));
+    assert!(
+        model
+            .report
+            .entries
+            .iter()
+            .all(|entry| !entry.what.contains("iridescence"))
+    );
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    let film = |m: &MaterialSettings| [m.film_weight, m.film_ior, m.film_thickness];
+    assert_eq!(film(&material), [0.5, 1.75, 0.35]);
+    // Files of versions that only kept it.
+    let folder = Folder::new();
+    let path = folder.path("old.json");
+    let old = json!({"glossmith": 1, "name": "Old", "material": {
+        "iridescence.weight": 0.5, "iridescence.ior": 1.75, "iridescence.thickness_nm": 350,
+        "iridescence.thickness_min_nm": 100,
+    }});
+    std::fs::write(&path, old.to_string()).unwrap();
+    let read = glossmith::store::load_material(&path).unwrap();
+    assert_eq!(
+        (film(&read.value), read.warnings),
+        ([0.5, 1.75, 0.35], Vec::<String>::new())
+    );
+    assert!(read.value.extra.is_empty());
 }
 
 #[test]

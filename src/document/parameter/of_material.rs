@@ -312,7 +312,7 @@ fn thin_film() -> Vec<Parameter> {
         Parameter {
             label: "Thickness",
             symbol: "d",
-            help: "Decides the colours: straw and blue on steel 0.04 and 0.07, soap 0.2 to 0.6. From 1 on they are pale.",
+            help: "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.",
             row: bar(0.0, 1.0),
             ..of(
                 "thin_film.thickness",

@@ -178,7 +178,7 @@ struct Kept {
 }
 
 /// Extensions that are not supported yet.
-const KEPT: [Kept; 4] = [
+const KEPT: [Kept; 3] = [
     Kept {
         extension: "KHR_materials_sheen",
         weight: "sheenColorFactor",
@@ -187,17 +187,6 @@ const KEPT: [Kept; 4] = [
             ("sheenRoughnessFactor", "sheen.roughness"),
         ],
         what: "sheen",
-    },
-    Kept {
-        extension: "KHR_materials_iridescence",
-        weight: "iridescenceFactor",
-        values: &[
-            ("iridescenceFactor", "iridescence.weight"),
-            ("iridescenceIor", "iridescence.ior"),
-            ("iridescenceThicknessMinimum", "iridescence.thickness_min_nm"),
-            ("iridescenceThicknessMaximum", "iridescence.thickness_nm"),
-        ],
-        what: "iridescence",
     },
     Kept {
         extension: "KHR_materials_dispersion",
