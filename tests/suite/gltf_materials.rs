@@ -1,9 +1,11 @@
 //! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
 
 use glossmith::document::of_model::materials_of;
-use glossmith::document::{ImportLobe, MaterialSettings};
+use glossmith::document::{ImportLobe, MaterialSettings, compile_textured};
 use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
+use glossmith::optics::thin_film::film_path;
+use glossmith::scene::texture::Textures;
 use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
@@ -215,8 +217,10 @@ fn what_cannot_be_shown_yet_is_kept_in_the_material() {
 
 #[test]
 fn iridescence_is_a_thin_film() {
+    let texture = json!({"index": 0});
     let model = slot_of(&json!({"extensions": {"KHR_materials_iridescence": {
         "iridescenceFactor": 0.5, "iridescenceIor": 1.75, "iridescenceThicknessMaximum": 350,
+        "iridescenceTexture": texture, "iridescenceThicknessTexture": texture,
     }}}));
     assert!(
         model
@@ -228,6 +232,13 @@ fn iridescence_is_a_thin_film() {
     let material = materials_of(&model, ImportLobe::Geometric).remove(0);
     let film = |m: &MaterialSettings| [m.film_weight, m.film_ior, m.film_thickness];
     assert_eq!(film(&material), [0.5, 1.75, 0.35]);
+    // Both texels of the picture are (10, 20, 30); the least thickness is 100 nm.
+    let (compiled, _) = compile_textured(&[material], &Textures::new(&model).slots);
+    let share = 20.0 / 255.0;
+    let expected = [0.5 * 10.0 / 255.0, film_path(0.1 + 0.25 * share).x];
+    for (found, expected) in [compiled[0].film_weight, compiled[0].film_path.x].iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
+    }
     // Files of versions that only kept it.
     let folder = Folder::new();
     let path = folder.path("old.json");

@@ -83,6 +83,8 @@ fn found(target: TextureTarget, texture: &UserTexture, uv: [f64; 2]) -> [f64; 4]
         slot.opacity,
         slot.emission,
         slot.coat,
+        slot.film,
+        slot.film_thickness,
     ][target as usize];
     let (color, alpha) = texture_lookup::<f64>(&textures, record, [uv, [9.0; 2], [9.0; 2]]);
     let [r, g, b] = color.to_f64();
@@ -176,6 +178,10 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
     assert_near(found(TextureTarget::Coat, &both, lower_left), [1.0 - 0.5 * share; 4]);
     // By itself: red, but the alpha of an opacity; what is named for several has roughness in green, metalness in blue.
     assert_near(found(TextureTarget::Coat, &plain, upper_right), [100.0 / 255.0; 4]);
+    assert_near(
+        found(TextureTarget::FilmThickness, &plain, upper_right),
+        [100.0 / 255.0; 4],
+    );
     assert_near(found(TextureTarget::Opacity, &plain, upper_right), [128.0 / 255.0; 4]);
     let packed = UserTexture::of("rock_arm_1k.png".into());
     assert_near(found(TextureTarget::Roughness, &packed, lower_left), [share; 4]);

@@ -17,6 +17,10 @@ use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::evaluate::Evaluator;
 use glossmith::render::probe::Prober;
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::store::preset::load_material;
+use glossmith::store::save_material;
+
+use crate::cli_support::Workplace;
 
 const CPU: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Single);
 const EXACT: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Double);
@@ -439,4 +443,46 @@ fn both_ends_of_films_are_finite() {
             }
         }
     }
+}
+
+/// Formats that have a place for a film show it without the exact parameters; the report tells of what has none.
+#[test]
+fn films_come_back_from_other_formats() {
+    let place = Workplace::new();
+    let film = filmed(
+        &DIFFUSE,
+        &[
+            "specular.lobe=ggx",
+            "thin_film.weight=0.5",
+            "thin_film.thickness=0.25",
+            "thin_film.ior=1.75",
+        ],
+    );
+    save_material(&place.path("a.json"), &film).unwrap();
+    for (format, ending, weight) in [
+        ("materialx", "mtlx", 0.5),
+        ("standard-surface", "mtlx", 1.0),
+        ("gltf", "glb", 0.5),
+    ] {
+        let report = place.done(&format!("convert a.json a.{ending} --to {format} --report -"));
+        place.done(&format!("convert a.{ending} b.json --without-exact --import-lobe ggx"));
+        let back = load_material(&place.path("b.json")).unwrap().value;
+        let numbers = |m: &MaterialSettings| [m.film_thickness, m.film_ior];
+        for (a, b) in numbers(&film).into_iter().zip(numbers(&back)) {
+            assert!((a - b).abs() < 1e-5, "{format}: {a} came back as {b}");
+        }
+        assert!(
+            (back.film_weight - weight).abs() < 1e-5,
+            "{format}: {}",
+            back.film_weight
+        );
+        let is_told = report.stdout.contains("the thin film's weight");
+        assert_eq!(is_told, weight == 1.0, "{format}: {}", report.stdout);
+    }
+    let blender = place.done("convert a.json a.py --to blender --report -");
+    assert!(blender.stdout.contains("the thin film's weight"), "{}", blender.stdout);
+    let script = std::fs::read_to_string(place.path("a.py")).unwrap();
+    assert!(script.contains("\"Thin Film Thickness\": 250") && script.contains("\"Thin Film IOR\": 1.75"));
+    let mitsuba = place.done("convert a.json a.xml --to mitsuba --report -");
+    assert!(mitsuba.stdout.contains("thin film"), "{}", mitsuba.stdout);
 }

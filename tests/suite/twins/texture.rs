@@ -84,6 +84,8 @@ fn textured_materials_agree() {
                     row.put_vector(m.transmission_tint);
                     row.put_vector(m.emission);
                     row.put_numbers([m.metalness, m.roughness, m.transmission_roughness, m.coat_weight]);
+                    row.put(m.film_weight);
+                    row.put_vector(m.film_path);
                 }),
             )
             .output("m.base_color", COLOUR)
@@ -93,6 +95,8 @@ fn textured_materials_agree() {
             .output("m.roughness", SHARE)
             .output("m.transmission_roughness", SHARE)
             .output("m.coat_weight", SHARE)
+            .output("m.film_weight", SHARE)
+            .output("m.film_path", COLOUR)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)
