@@ -47,6 +47,9 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
 }
 
 fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
+    if PLAN_THIN_FILM == 0u {
+        return FilmTerms();
+    }
     let before = select(1.0, material.ior, is_within);
     return FilmTerms(material.film_weight, material.film_ior / before, material.film_path * before);
 }

@@ -310,6 +310,9 @@ impl<T: Real> Material<T> {
     /// The thin film, before it the interior where that is `within`.
     #[inline(always)]
     fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
+        if self.has_film == 0 {
+            return FilmTerms::none();
+        }
         let before = T::select(within, self.ior, T::one());
         FilmTerms {
             weight: self.film_weight,

@@ -36,6 +36,7 @@ pub struct FilmTerms<T> {
 
 impl<T: Real> FilmTerms<T> {
     /// No film.
+    #[inline(always)]
     pub fn none() -> Self {
         Self {
             weight: T::zero(),

@@ -17,7 +17,7 @@ use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::evaluate::Evaluator;
 use glossmith::render::probe::Prober;
 use glossmith::render::{EngineChoice, Precision};
-use glossmith::store::preset::load_material;
+use glossmith::store::preset::{load_material, material_by_name};
 use glossmith::store::save_material;
 
 use crate::cli_support::Workplace;
@@ -254,6 +254,33 @@ fn films_keep_all_light() {
     assert!(worst.0 < 4e-3, "{}", worst.1);
 }
 
+/// Where the surface is partly metal, or a texture varies it, the base takes what the mean facet leaves.
+#[test]
+fn films_over_what_varies_keep_light_to_a_few_percent() {
+    let mut worst = 0.0_f64;
+    for (ior, thickness) in [(1.4, 0.5), (2.0, 0.5), (2.0, 0.2)] {
+        for (lobe, roughness) in [("geometric", 0.3), ("ggx", 0.05), ("ggx", 0.3), ("ggx", 0.5)] {
+            let material = material(&[
+                "base.metalness=0.5",
+                "base.color=1,1,1",
+                "specular.fresnel=dielectric",
+                "thin_film.weight=1",
+                &format!("thin_film.ior={ior}"),
+                &format!("thin_film.thickness={thickness}"),
+                &format!("specular.lobe={lobe}"),
+                &format!("specular.roughness={roughness}"),
+            ]);
+            let mut of_case = 0.0_f64;
+            for found in sums(&material, CPU, &[1.0, 0.7, 0.4, 0.15], 1 << 14).concat() {
+                of_case = of_case.max((found - 1.0).abs());
+            }
+            println!("{ior}, {thickness}, {lobe} {roughness}: {of_case:.4}");
+            worst = worst.max(of_case);
+        }
+    }
+    assert!(worst < 0.03, "{worst}");
+}
+
 /// A soap bubble's wall: a film with air on both sides reflects as Airy says and lets the rest go straight on.
 #[test]
 fn a_soap_film_reflects_and_lets_through() {
@@ -440,6 +467,27 @@ fn both_ends_of_films_are_finite() {
                 let grazing = Vec3::from_f64([1.0, 0.0, 1e-7]);
                 let values = evaluator.evaluate(&[[grazing, grazing]]).unwrap()[0];
                 assert!(values.value[0].is_finite() && values.density.is_finite(), "{values:?}");
+            }
+        }
+    }
+}
+
+/// What docs/reference/materials.md says of the presets with a film.
+#[test]
+fn presets_with_a_film_reflect_as_told() {
+    for (name, head_on, at_sixty) in [
+        ("tempered-steel", [0.025, 0.090, 0.294], [0.085, 0.112, 0.280]),
+        ("soap-film", [0.004, 0.032, 0.060], [0.191, 0.152, 0.001]),
+    ] {
+        let (materials, _) = compile(std::slice::from_ref(material_by_name(name).unwrap()));
+        let terms = materials[0].cast::<f64>().fresnel_terms(false);
+        for (cosine, expected) in [(1.0, head_on), (0.5, at_sixty)] {
+            let found = fresnel(&terms, cosine).to_f64();
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 6e-4,
+                    "{name} at {cosine}: {found} for {expected}"
+                );
             }
         }
     }
