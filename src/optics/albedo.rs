@@ -15,7 +15,7 @@ use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
-use super::thin_film::{film_change, mean_facet};
+use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
@@ -204,9 +204,8 @@ pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3
     if terms.has_film {
         // No table has every thickness: the lobe counts as its mean facet.
         let [cosine, energy] = mean_facet([constant, grazing]);
-        let [of_dielectric, of_metal] = film_change(terms, cosine);
-        dielectric = (dielectric + of_dielectric * energy).at_least_zero();
-        metal = (metal + of_metal * energy).at_least_zero();
+        dielectric = (dielectric + film_change_of_dielectric(terms, cosine) * energy).at_least_zero();
+        metal = (metal + film_change_of_metal(terms, cosine) * energy).at_least_zero();
     }
     dielectric.mix(metal, terms.metalness)
 }

@@ -2,7 +2,7 @@
 
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
-use super::thin_film::{FilmTerms, film_change, film_on_conductor, film_passed};
+use super::thin_film::{FilmTerms, film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
 use super::vector::{Vec3, vec3};
 use crate::named::named;
 
@@ -91,8 +91,10 @@ pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2
     if !terms.has_film {
         return parts;
     }
-    let [of_dielectric, of_metal] = film_change(terms, cosine);
-    [in_unit(parts[0] + of_dielectric), in_unit(parts[1] + of_metal)]
+    [
+        in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
+        in_unit(parts[1] + film_change_of_metal(terms, cosine)),
+    ]
 }
 
 /// Each channel brought into [0, 1].

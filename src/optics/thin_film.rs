@@ -17,11 +17,11 @@ use super::vector::{Vec3, vec3};
 /// The wavelengths of red, green and blue in nm.
 pub const WAVELENGTHS_NM: [f64; 3] = [620.0, 540.0, 450.0];
 /// The largest reflectance at normal incidence for which a complex index is sought.
-const LARGEST_F0: f64 = 0.999;
+pub const LARGEST_FILM_F0: f64 = 0.999;
 /// The least cosine: at 0 a film over the index before it would be 0/0.
-const LEAST_COSINE: f64 = 1e-15;
+pub const LEAST_FILM_COSINE: f64 = 1e-15;
 /// Below it a denominator counts as this.
-const TINY: f64 = 1e-36;
+pub const FILM_TINY: f64 = 1e-36;
 
 /// A film as the Fresnel factor sees it.
 #[derive(Clone, Copy, Debug)]
@@ -59,30 +59,37 @@ pub fn film_path(thickness_um: f32) -> Vec3<f32> {
     Vec3::from_f64(WAVELENGTHS_NM.map(phase))
 }
 
-/// The change by the film of what the dielectric and the metal of a surface reflect, tints included.
+/// The change by the film of what the dielectric of a surface reflects, tint included.
 #[inline(always)]
-pub fn film_change<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2] {
-    T::out_of_line(
+pub fn film_change_of_dielectric<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+    if !terms.metalness.less(T::one()).any() {
+        return Vec3::zero();
+    }
+    let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
+    let passed = T::out_of_line(
         #[inline(always)]
-        || {
-            let cosine = cosine.max(T::from_f64(LEAST_COSINE));
-            let mut changes = [Vec3::zero(); 2];
-            if terms.metalness.less(T::one()).any() {
-                let height = refracted_square(cosine, terms.ior).safe_sqrt();
-                changes[0] = -(terms.tint.map(|x| x.min(T::one())) * film_passed(terms, cosine, height)) * terms.weight;
-            }
-            if T::zero().less(terms.metalness).any() {
-                changes[1] = film_on_metal(terms, cosine) * terms.metal_tint;
-            }
-            changes
-        },
-    )
+        || film_passed(terms, cosine, height),
+    );
+    -(terms.tint.map(|x| x.min(T::one())) * passed) * terms.weight
+}
+
+/// The change by the film of what the metal of a surface reflects, tint included.
+#[inline(always)]
+pub fn film_change_of_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+    if !T::zero().less(terms.metalness).any() {
+        return Vec3::zero();
+    }
+    let changed = T::out_of_line(
+        #[inline(always)]
+        || film_on_metal(terms, cosine.max(T::from_f64(LEAST_FILM_COSINE))),
+    );
+    changed * terms.metal_tint
 }
 
 /// The change by the film of what a dielectric lets through. `height` is its relative index times the cosine behind it.
 #[inline(always)]
 pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: T) -> Vec3<T> {
-    let cosine = cosine.max(T::from_f64(LEAST_COSINE));
+    let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
     let behind = Behind {
         perpendicular: [height, T::zero()],
         parallel: [height / (terms.ior * terms.ior), T::zero()],
@@ -97,9 +104,9 @@ pub fn film_on_conductor<T: Real>(terms: &FresnelTerms<T>, cosine: T, bare: Vec3
     T::out_of_line(
         #[inline(always)]
         || {
-            let cosine = cosine.max(T::from_f64(LEAST_COSINE));
+            let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
             let (eta, k) = (terms.eta, terms.k);
-            let behind = [(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)].map(|(eta, k)| of_index(cosine, eta, k));
+            let behind = [(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)].map(|(eta, k)| admittances(cosine, eta, k));
             let filmed = Vec3::splat(T::one()) - entered(&terms.film, cosine, behind);
             bare.mix(filmed.at_least_zero(), terms.film.weight)
         },
@@ -112,10 +119,10 @@ fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
     let (f0, edge) = (terms.metal_f0, terms.edge_tint);
     let behind = [(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)].map(|(f0, edge)| {
         let [eta, k] = index_of_colors(f0, edge);
-        of_index(cosine, eta, k)
+        admittances(cosine, eta, k)
     });
     let filmed = entered(&terms.film, cosine, behind);
-    let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(TINY)));
+    let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(FILM_TINY)));
     let scale = vec3(filmed.x / x, filmed.y / y, filmed.z / z);
     let reflected = fresnel_metal(f0, edge, cosine);
     let lost = Vec3::splat(T::one()) - reflected;
@@ -126,7 +133,7 @@ fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
 #[inline(always)]
 pub fn index_of_colors<T: Real>(f0: T, edge: T) -> [T; 2] {
     let one = T::one();
-    let r = f0.min(T::from_f64(LARGEST_F0));
+    let r = f0.min(T::from_f64(LARGEST_FILM_F0));
     let root = r.sqrt();
     let eta = edge * (one - r) / (one + r) + (one - edge) * (one + root) / (one - root);
     let square = ((eta + one) * (eta + one) * r - (eta - one) * (eta - one)) / (one - r);
@@ -135,18 +142,18 @@ pub fn index_of_colors<T: Real>(f0: T, edge: T) -> [T; 2] {
 
 /// Admittances of a medium of a complex index.
 #[inline(always)]
-fn of_index<T: Real>(cosine: T, eta: T, k: T) -> Behind<T> {
+fn admittances<T: Real>(cosine: T, eta: T, k: T) -> Behind<T> {
     let two = T::from_f64(2.0);
     let [x, y] = [refracted_square(cosine, eta) - k * k, two * eta * k];
     // The root of x + iy, without cancellation.
     let leg = (T::from_f64(0.5) * ((x * x + y * y).sqrt() + x.abs())).sqrt();
-    let other = T::from_f64(0.5) * y / leg.max(T::from_f64(TINY));
+    let other = T::from_f64(0.5) * y / leg.max(T::from_f64(FILM_TINY));
     let is_below = x.less(T::zero());
     let [re, im] = [T::select(is_below, other, leg), T::select(is_below, leg, other)];
     // Over the squared index for the other polarisation.
     let [square, twice] = [(eta - k) * (eta + k), two * eta * k];
     let size = eta * eta + k * k;
-    let scale = T::one() / (size * size).max(T::from_f64(TINY));
+    let scale = T::one() / (size * size).max(T::from_f64(FILM_TINY));
     Behind {
         perpendicular: [re, im],
         parallel: [
@@ -165,7 +172,7 @@ fn entered<T: Real>(film: &FilmTerms<T>, cosine: T, behind: [Behind<T>; 3]) -> V
     let channel = |path: T, behind: Behind<T>| {
         let phase = path * height;
         let is_small = phase.less(T::from_f64(1e-4));
-        let across = path * T::select(is_small, T::one(), phase.sin() / phase.max(T::from_f64(TINY)));
+        let across = path * T::select(is_small, T::one(), phase.sin() / phase.max(T::from_f64(FILM_TINY)));
         let along = phase.cos();
         let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across]);
         let square = square / (index_square * index_square);
@@ -196,7 +203,7 @@ fn entered_polarised<T: Real>(before: T, behind: [T; 2], film_square: T, [along,
     let [re, im] = behind;
     let x = (before + re) * along + before * im * across;
     let y = im * along - (before * re + film_square) * across;
-    T::from_f64(4.0) * before * re / (x * x + y * y).max(T::from_f64(TINY))
+    T::from_f64(4.0) * before * re / (x * x + y * y).max(T::from_f64(FILM_TINY))
 }
 
 /// The cosine at which a facet reflects as a lobe does on average, from its albedo under the factors 1 − (1 − c)⁵ and
@@ -204,8 +211,8 @@ fn entered_polarised<T: Real>(before: T, behind: [T; 2], film_square: T, [along,
 #[inline(always)]
 pub fn mean_facet<T: Real>([constant, grazing]: [T; 2]) -> [T; 2] {
     let energy = constant + grazing;
-    let share = (grazing / energy.max(T::from_f64(TINY))).clamp(T::zero(), T::one());
-    let cosine = T::one() - share.max(T::from_f64(TINY)).powf(T::from_f64(0.2));
+    let share = (grazing / energy.max(T::from_f64(FILM_TINY))).clamp(T::zero(), T::one());
+    let cosine = T::one() - share.max(T::from_f64(FILM_TINY)).powf(T::from_f64(0.2));
     [cosine, energy]
 }
 
