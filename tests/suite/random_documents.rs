@@ -75,6 +75,13 @@ fn value(random: &mut Random, parameter: &Parameter, present: &Value) -> Value {
     }
 }
 
+/// Switches that do nothing without a texture.
+const WITHOUT_TEXTURES: [&str; 3] = [
+    "coat.weight_texture",
+    "thin_film.weight_texture",
+    "thin_film.thickness_texture",
+];
+
 /// A document of any values.
 pub fn random_document(random: &mut Random) -> Document {
     let models = [
@@ -93,7 +100,7 @@ pub fn random_document(random: &mut Random) -> Document {
     // parts by rounding.
     for parameter in PARAMETERS
         .iter()
-        .filter(|parameter| parameter.key != "coat.weight_texture")
+        .filter(|parameter| !WITHOUT_TEXTURES.contains(&parameter.key))
     {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));
