@@ -19,7 +19,7 @@ use glossmith::store::PRESETS;
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
+use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
 use crate::terminator::coarse;
@@ -211,6 +211,8 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
         let document = if ["coat-texture", "box-projection"].contains(&effect.name()) {
             coated_on_a_box(&folder)
+        } else if effect.id == EffectId::FilmTexture {
+            filmed_on_a_box(&folder)
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {

@@ -22,7 +22,7 @@ use glossmith::store::PRESETS;
 
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
+use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
@@ -263,6 +263,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         glass,
         small(all_at_once(folder)),
         coated_on_a_box(folder),
+        filmed_on_a_box(folder),
         small(coarse(folder)),
         small(shining_by_vertices(folder)),
     ]
