@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use glossmith::document::{AreaLight, Document};
 use glossmith::render::EngineChoice;
-use glossmith::render::study::benchmark::latency::{INTERVAL, VIEWPORT, await_kernel, first_image, viewport};
 use glossmith::render::worker::Worker;
 use glossmith::scene::shapes::bumpy_sphere;
 use glossmith::scene::{Model, ModelSource, Slot};
+use glossmith::study::benchmark::latency::{INTERVAL, VIEWPORT, await_kernel, first_image, viewport};
 
 /// Steps of a drag.
 const STEPS: u32 = 60;

@@ -19,9 +19,9 @@ use std::time::{Duration, Instant};
 use glossmith::analysis::error::{RELATIVE_FLOOR, relative_mean_squared_error};
 use glossmith::document::Document;
 use glossmith::job::film::Image;
-use glossmith::render::study::benchmark::GOAL;
-use glossmith::render::study::benchmark::scene::{DEPTH, EYE, FOV_DEG, GOLD, Scene, TARGET};
 use glossmith::render::{EngineChoice, Session};
+use glossmith::study::benchmark::GOAL;
+use glossmith::study::benchmark::scene::{DEPTH, EYE, FOV_DEG, GOLD, Scene, TARGET};
 use serde_json::{Value, json};
 
 /// Linear RGB of its pixels.

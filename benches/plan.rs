@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 use glossmith::document::Document;
 use glossmith::document::effect::{EffectSwitches, Switch};
 use glossmith::job::effect::EffectId;
-use glossmith::render::study::ledger::{LedgerOptions, ledger};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
+use glossmith::study::ledger::{LedgerOptions, ledger};
 
 #[path = "../tests/suite/random_documents.rs"]
 mod random_documents;

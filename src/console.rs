@@ -3,9 +3,10 @@
 //! Printing never decides what becomes of an image. If a stream is closed, or its disk full, the work goes on; [`finish`]
 //! reports it at the end.
 
+use crate::panics::lock;
 use std::fmt;
 use std::io::{self, ErrorKind, Write as _};
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 /// What became of standard output, where it failed.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
@@ -39,7 +40,7 @@ pub(crate) fn print(words: fmt::Arguments<'_>) {
 
 /// Prints bytes on standard output, at once.
 pub(crate) fn print_bytes(bytes: &[u8]) {
-    let mut failed = FAILED.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut failed = lock(&FAILED);
     if failed.is_none() {
         let mut output = io::stdout().lock();
         *failed = output.write_all(bytes).and_then(|()| output.flush()).err();
@@ -51,7 +52,7 @@ pub(crate) fn print_bytes(bytes: &[u8]) {
 /// # Errors
 /// What the system said, such as that a disk is full.
 pub fn finish() -> io::Result<()> {
-    match FAILED.lock().unwrap_or_else(PoisonError::into_inner).take() {
+    match lock(&FAILED).take() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => Err(error),
         _ => Ok(()),
     }

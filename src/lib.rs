@@ -1,8 +1,9 @@
 //! Glossmith: a material editor around the geometric lobe.
 //!
 //! The modules, in the order in which they may use each other:
-//! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`, and between [`job`] and
-//! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`matching`] ← [`store`]; [`import`], after [`scene`], reads files.
+//! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`study`] ← [`cli`], [`app`] ← `main`, and between
+//! [`job`] and [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`matching`] ← [`store`]; [`import`], after [`scene`],
+//! reads files.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -18,6 +19,7 @@ pub mod matching;
 pub mod store;
 
 pub mod render;
+pub mod study;
 
 #[cfg(feature = "window")]
 pub mod app;

@@ -3,9 +3,15 @@
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 thread_local! {
     static IS_CONTAINED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Locks, after a panic too: what stands behind our locks is whole at any time, as each write is an assignment or a push.
+pub fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Runs work that should not panic; where it does, what the panic said.

@@ -44,6 +44,8 @@ mod cli_scatter;
 mod cli_support;
 #[path = "suite/coat.rs"]
 mod coat;
+#[path = "suite/coat_base.rs"]
+mod coat_base;
 #[path = "suite/compare.rs"]
 mod compare;
 #[path = "suite/crashed.rs"]
@@ -286,6 +288,8 @@ mod ui_workshop;
 mod ui_workspaces;
 #[path = "suite/walk.rs"]
 mod walk;
+#[path = "suite/walk_look.rs"]
+mod walk_look;
 #[path = "suite/words.rs"]
 mod words;
 #[path = "suite/worker.rs"]

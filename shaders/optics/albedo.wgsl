@@ -7,6 +7,7 @@
 const ALBEDO_NODES: u32 = 64u;
 const TOTAL_NODES: u32 = 16u;
 const ROUGHNESS_NODES: u32 = 17u;
+const ROUGH_ALBEDO_LENGTH: u32 = 4u * ROUGHNESS_NODES * ALBEDO_NODES;
 
 // The node, and how far the value is beyond it.
 fn node_below(value: f32, nodes: u32) -> vec2f {

@@ -34,6 +34,31 @@ fn material_ior_ahead(material: Material, is_inside: bool) -> f32 {
     return select(material.ior, 1.0 / material.ior, is_inside && material_transmits(material));
 }
 
+fn reflecting_ior_ahead(material: Material, is_inside: bool) -> f32 {
+    if PLAN_COAT == 0u {
+        return material_ior_ahead(material, is_inside);
+    }
+    return select(material.reflecting_ior, 1.0 / material.ior, is_inside && material_transmits(material));
+}
+
+// The index of what is reflected under a coat of this weight.
+fn ior_under_coat(material: Material, weight: f32) -> f32 {
+    let ior = material.bare_ior + (material.coated_ior - material.bare_ior) * weight;
+    let root = sqrt(min(fresnel_f0(ior) * material.specular_weight, 0.99));
+    return select(ior, (1.0 + root) / (1.0 - root), has_flag(material, WEIGHS_INDEX));
+}
+
+fn has_coated_table(material: Material) -> bool {
+    return has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE;
+}
+
+// GGX's roughness under a coat of this weight.
+fn roughness_under_coat(material: Material, roughness: f32, weight: f32) -> f32 {
+    let square = roughness * roughness;
+    let blurred = sqrt(sqrt(min(square * square + material.coat_blur, 1.0)));
+    return roughness + (blurred - roughness) * weight;
+}
+
 fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
     let tint = select(material.specular_color, vec3f(1.0), is_bare);
@@ -41,7 +66,7 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let of_dielectric = select(weight, 1.0, has_flag(material, WEIGHS_INDEX));
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
-        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, material_ior_ahead(material, is_inside), material.eta, material.k,
+        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside), material.eta, material.k,
         material.has_film == 1u, material_film_terms(material, is_bare),
     );
 }
@@ -50,7 +75,7 @@ fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
     if PLAN_THIN_FILM == 0u {
         return FilmTerms();
     }
-    let before = select(1.0, material.ior, is_within);
+    let before = select(material.ior / material.reflecting_ior, material.ior, is_within);
     return FilmTerms(material.film_weight, material.film_ior / before, material.film_path * before);
 }
 
@@ -77,6 +102,11 @@ fn material_has_base(material: Material) -> bool {
 
 fn material_transmits(material: Material) -> bool {
     return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && material.metalness < 1.0;
+}
+
+// Whether the viewer is within a solid that light passes through.
+fn is_within(material: Material, surface: Surface) -> bool {
+    return surface.is_inside && material_transmits(material);
 }
 
 fn material_has_specular(material: Material) -> bool {

@@ -1,5 +1,5 @@
 // Common part of the microfacet lobes. Twin of src/optics/microfacet.rs; local frame, n = +z.
-#import "optics/lobe/lobe"
+#import "optics/frame"
 
 struct Facet {
     wo: vec3f,
@@ -7,16 +7,6 @@ struct Facet {
     h: vec3f,
     // Between h and either direction.
     cosine: f32,
-}
-
-fn microfacet_alpha(shape: LobeShape) -> vec2f {
-    let alpha = alpha_from_roughness(shape.roughness);
-    let stretch = stretch_from_anisotropy(shape.anisotropy);
-    return vec2f(alpha * stretch, alpha / stretch);
-}
-
-fn isotropic_alpha(shape: LobeShape) -> vec2f {
-    return vec2f(alpha_from_roughness(shape.roughness));
 }
 
 fn facet(frame: Frame, wo_world: vec3f, wi_world: vec3f) -> Facet {
@@ -50,15 +40,13 @@ fn smith_g2_over_cosine(alpha: vec2f, wo: vec3f, wi: vec3f) -> f32 {
     return select(0.0, 2.0 * wi.z / max(sum, 1e-12), wo.z > 0.0 && wi.z > 0.0);
 }
 
-fn visible_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
-    let alpha = microfacet_alpha(shape);
+fn visible_density(alpha: vec2f, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let f = facet(frame, wo, wi);
     let value = 0.25 * ggx_distribution(alpha, f.h) * smith_g1_over_cosine(alpha, f.wo);
     return select(0.0, value, f.h.z > 0.0);
 }
 
-fn visible_weight(shape: LobeShape, frame: Frame, wo_world: vec3f, wi_world: vec3f) -> f32 {
-    let alpha = microfacet_alpha(shape);
+fn visible_weight(alpha: vec2f, frame: Frame, wo_world: vec3f, wi_world: vec3f) -> f32 {
     let wo = local_from_world(frame, wo_world);
     let wi = local_from_world(frame, wi_world);
     return smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);

@@ -1,5 +1,5 @@
 // Refraction at a dielectric interface. Twin of src/optics/refraction.rs, which explains the mathematics.
-#import "optics/microfacet"
+#import "optics/frame"
 
 struct Refracted {
     wi: vec3f,
@@ -31,12 +31,12 @@ fn refracting_cosines(wo: vec3f, wi: vec3f, eta: f32) -> vec2f {
     return clamp(vec2f(dot(wo, h), -dot(wi, h)), vec2f(0.0), vec2f(1.0));
 }
 
-// Factor from the density of the facet's mirror direction of `wo` to the density of `wi`. 0 if no facet refracts one to the
-// other, or if `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
 fn facet_mirror(frame: Frame, wo: vec3f, wi: vec3f, eta: f32) -> vec3f {
     return mirrored_about(wo, normalize_or(refracting_normal(wo, wi, eta), frame.normal));
 }
 
+// Factor from the density of the facet's mirror direction of `wo` to the density of `wi`. 0 if no facet refracts one to the
+// other, or if `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
 fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec3f) -> f32 {
     let square = max(dot(along, along), 1e-30);
     let h = along / sqrt(square);
@@ -45,20 +45,4 @@ fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec
     let value = 4.0 * before * eta * eta * behind / square;
     let is_seen = before > 0.0 && dot(frame.normal, h) > 0.0;
     return select(0.0, value, dot(frame.normal, wi) < 0.0 && is_seen && behind > 0.0);
-}
-
-fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f, mirrored: vec3f) -> f32 {
-    var alpha = isotropic_alpha(shape);
-    if is_anisotropic(shape.lobe) { alpha = microfacet_alpha(shape); }
-    let wo_local = local_from_world(frame, wo);
-    let wi_local = local_from_world(frame, wi);
-    var weight = smith_g1_over_cosine(alpha, wi_local) * abs(wi_local.z);
-    if facets(shape.lobe) == FACETS_ALL {
-        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
-        let of_mirrored = facet(frame, wo, mirrored);
-        let ratio = of_mirrored.cosine / max(of_mirrored.h.z, 1e-6);
-        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
-        weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, of_mirrored.h.z > 0.0);
-    }
-    return select(0.0, weight, wi_local.z < 0.0 && wo_local.z > 0.0);
 }

@@ -13,7 +13,7 @@ fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> f32
         return 1.0;
     }
     let kept = kept_energies(material, surface, shape);
-    return 1.0 / select(kept.y, kept.z, surface.is_inside && material_transmits(material));
+    return 1.0 / select(kept.y, kept.z, is_within(material, surface));
 }
 
 fn scattered_again(

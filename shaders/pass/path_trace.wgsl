@@ -1,4 +1,5 @@
 // The path tracer. Twin of src/cpu/integrator/mod.rs.
+#import "optics/coat_medium"
 #import "optics/layer/scatter"
 #import "optics/random"
 #import "optics/warp"
@@ -118,6 +119,10 @@ fn emitted_light(
     if PLAN_SPOT == 1u {
         let cosine = dot(point.flat, point.surface.wo);
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
+    }
+    if PLAN_COAT_ABSORPTION == 1u {
+        let cosine = dot(point.flat, point.surface.wo);
+        emission *= coat_over_emission(material, cosine, point.surface.is_inside);
     }
     if !samples_emitters() || is_mirror {
         return emission;
@@ -429,8 +434,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         // Beer-Lambert absorption along the segment that ends here, before anything at this vertex is weighted.
         if PLAN_ABSORPTION == 1u {
             // At the back of a surface that transmits, the medium is that surface's own.
-            let is_within = point.surface.is_inside && material_transmits(material);
-            throughput *= transmittance_over(select(medium, slot, is_within), hit.t);
+            throughput *= transmittance_over(select(medium, slot, is_within(material, point.surface)), hit.t);
         }
         let layers = material_layers(material, point.surface);
         // Guides for the denoiser. Later vertices overwrite them until one is not specular; depth is always the first hit's.

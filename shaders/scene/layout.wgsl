@@ -65,7 +65,8 @@ struct Globals {
 
 // Bits of a material's flags: vertex attributes, whether the reflection's weight and tint spare metals,
 // whether multiple scattering between facets is compensated, whether a texture uses box projection,
-// and whether the dielectric's index has the weight in it.
+// whether the dielectric's index has the weight in it, and whether the coat changes what lies below it, absorbs by the way of
+// the light and is GGX.
 const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
@@ -73,6 +74,9 @@ const SPARES_METAL: u32 = 8u;
 const COMPENSATES: u32 = 16u;
 const HAS_BOX: u32 = 32u;
 const WEIGHS_INDEX: u32 = 64u;
+const COATS_BASE: u32 = 128u;
+const COAT_ABSORBS: u32 = 256u;
+const COAT_IS_GGX: u32 = 512u;
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {

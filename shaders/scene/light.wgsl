@@ -1,4 +1,5 @@
 // Surfaces that emit: sampled by power, triangle by triangle. Twin of src/scene/light.rs.
+#import "optics/coat_medium"
 #import "scene/alias"
 #import "scene/surface"
 
@@ -55,6 +56,15 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     }
     if PLAN_SPOT == 1u {
         radiance *= spot_share(material, -dot(normal, direction));
+    }
+    if PLAN_COAT_ABSORPTION == 1u {
+        var coated = material;
+        if PLAN_COAT_TEXTURES == 1u && material.coat_texture != NO_TEXTURE {
+            let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
+            coated.coat_weight *= texture_lookup(material.coat_texture, uvs).x;
+        }
+        let facing = -dot(normal, direction);
+        radiance *= coat_over_emission(coated, facing, facing < 0.0);
     }
     let cosine = abs(dot(normal, direction));
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;

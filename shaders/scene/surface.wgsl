@@ -103,7 +103,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
         shading = lifted_normal(shading, normal, wo);
     }
     var frame = frame_from_normal(shading);
-    if PLAN_ANISOTROPY == 1u && material.anisotropy != 0.0 {
+    if PLAN_ANISOTROPY == 1u && (material.anisotropy != 0.0 || material.coat_anisotropy != 0.0) {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
         let is_mirrored = side * tangent.w < 0.0;
         frame = frame_from_tangent(shading, tangent.xyz, select(1.0, -1.0, is_mirrored) * material.rotation_rad);

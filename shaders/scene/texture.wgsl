@@ -180,8 +180,21 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     if PLAN_ROUGHNESS_TEXTURES == 1u {
         at_point.metalness = material.metalness * select(found[3], found[1], has_both).z;
     }
-    if PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE {
-        at_point.roughness = material.texture_roughness * found[1].y;
+    if PLAN_COAT_TEXTURES == 1u {
+        at_point.coat_weight = material.coat_weight * found[4].x;
+        if has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE {
+            at_point.reflecting_ior = ior_under_coat(material, at_point.coat_weight);
+        }
+    }
+    let has_roughness = PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE;
+    let has_coat = PLAN_COAT_TEXTURES == 1u && material.coat_texture != NO_TEXTURE;
+    let blurs = PLAN_COAT == 1u && material.coat_blur > 0.0 && (has_roughness || has_coat);
+    if has_roughness || blurs {
+        at_point.ggx_roughness = material.texture_roughness * select(1.0, found[1].y, has_roughness);
+        at_point.roughness = at_point.ggx_roughness;
+        if blurs {
+            at_point.roughness = roughness_under_coat(material, at_point.roughness, at_point.coat_weight);
+        }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
@@ -193,9 +206,6 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     }
     if has_vertex_flag(material, VERTEX_EMISSION) {
         at_point.emission *= vertex_color;
-    }
-    if PLAN_COAT_TEXTURES == 1u {
-        at_point.coat_weight = material.coat_weight * found[4].x;
     }
     if PLAN_FILM_TEXTURES == 1u {
         if material.film_texture != NO_TEXTURE {

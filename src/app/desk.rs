@@ -22,12 +22,12 @@ use crate::app::services::snapshots::Snapshots;
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
-use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
+use crate::study::references::ReferenceCache;
 
 /// What panels work on.
 pub(super) struct Desk<'a> {
@@ -281,13 +281,7 @@ impl Desk<'_> {
 
     /// The row of the angle that the plots of lobes and their samples share.
     pub(super) fn view_angle_row(&mut self, ui: &mut Ui) {
-        let style = NumberStyle {
-            range: 0.0..=89.9,
-            bar: Some([0.0, 89.9]),
-            unit: "°",
-            speed: 0.5,
-            decimals: 1,
-        };
+        let style = NumberStyle::plain(0.0..=89.9, "°", 0.5, 1).with_bar([0.0, 89.9]);
         let name = Name {
             full: "Samples view angle",
             label: "View angle",

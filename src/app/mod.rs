@@ -10,6 +10,7 @@ mod desk;
 mod handlers;
 mod kit;
 pub mod layout;
+mod lights;
 mod pane;
 mod panels;
 mod services;
@@ -56,12 +57,12 @@ use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
-use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::still_life;
+use crate::study::references::ReferenceCache;
 
 /// A finished image that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);

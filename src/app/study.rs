@@ -14,7 +14,7 @@ use crate::app::kit::words::time_left;
 use crate::document::{Change, Document};
 use crate::render::EngineChoice;
 use crate::render::background::Background;
-use crate::render::study::{StudyError, StudyProgress, Watch};
+use crate::study::{StudyError, StudyProgress, Watch};
 
 /// How often what is left is updated.
 const REPORT_INTERVAL: Duration = Duration::from_millis(500);

@@ -8,9 +8,9 @@ use super::answer::Answer;
 use super::study::Bar;
 use crate::console::output;
 use crate::render::EngineChoice;
-use crate::render::study::benchmark::compare::compare;
-use crate::render::study::benchmark::report::Report;
-use crate::render::study::benchmark::{BenchmarkOptions, SECONDS, benchmark, kernel::compile_on};
+use crate::study::benchmark::compare::compare;
+use crate::study::benchmark::report::Report;
+use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark, kernel::compile_on};
 
 /// Arguments of `glossmith benchmark`.
 #[derive(Debug, Args)]

@@ -10,10 +10,10 @@ use clap::Args;
 use super::answer::{Destination, write_json};
 use super::parse::check_writable;
 use crate::console::{message, output};
-use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
-use crate::render::hard::{self, HardOptions, HardRow};
 use crate::render::{EngineChoice, EngineInfo, EngineKind};
 use crate::store::replace::save_atomically;
+use crate::study::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
+use crate::study::hard::{self, HardOptions, HardRow};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]

@@ -7,8 +7,8 @@ use super::answer::Answer;
 use super::parse;
 use super::scene::SceneArguments;
 use crate::console;
-use crate::render::explain::{PathAccount, explain};
 use crate::render::{EngineChoice, Session};
+use crate::study::explain::{PathAccount, explain};
 
 /// Arguments of `glossmith explain`: a pixel, a sample, and those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ pub mod scatter;
 mod tile_sums;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -22,6 +22,7 @@ use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};
 use crate::optics::lanes::{InLanes, in_lanes};
 use crate::optics::real::Real;
+use crate::panics::lock;
 use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 
@@ -138,7 +139,7 @@ impl CpuEngine {
     ) -> usize {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
-        let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
+        let film = || lock(&film);
         let (start, taken) = (Instant::now(), AtomicUsize::new(0));
         waves.par_iter_mut().for_each(|wave| {
             while let Some(work) = works.get(taken.fetch_add(1, Ordering::Relaxed)) {

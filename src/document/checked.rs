@@ -7,6 +7,7 @@ use super::{AreaLight, Background, Document, range};
 
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum SettingError {
     /// Of the table.
     #[error(transparent)]
@@ -17,13 +18,9 @@ pub enum SettingError {
     /// A number of a list.
     #[error("{name} is {value}; it must lie between {low} and {high}")]
     Range {
-        /// As it is called in files.
         name: &'static str,
-        /// Its value.
         value: f64,
-        /// The least value it takes.
         low: f64,
-        /// The largest value it takes.
         high: f64,
     },
 }

@@ -1,22 +1,23 @@
 //! From materials as edited to materials as the integrators read them.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use super::MaterialSettings;
-use super::import::{MATCHED, ggx_under_texture};
+use super::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
+use super::{CoatLobe, MaterialSettings};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
-use crate::optics::layer::coat::coat_shape;
+use crate::optics::layer::coat::{coat_shape, inner_reflection};
 use crate::optics::layer::fuzz::{FUZZ_ROUGHNESS_MIN, fuzz_bell};
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
-    COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
-    VERTEX_OPACITY, WEIGHS_INDEX,
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL,
+    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::thin_film::film_path;
 use crate::optics::vector::Vec3;
+use crate::panics::lock;
 use crate::scene::texture::{SlotTextures, TextureTarget};
 
 /// Samples of each node of an albedo table.
@@ -29,8 +30,8 @@ const REMEMBERED: usize = 32;
 /// Samples of each node of a table over the roughness too, of which there are many.
 const ROUGH_ALBEDO_SAMPLES: u32 = 256;
 
-/// Samples of the energies that a lobe keeps, over those of an albedo table: their errors are those of a whole metal.
-const ENERGY_SAMPLES: u32 = 8;
+/// Samples of each node of the energies that a lobe keeps: their errors are those of a whole metal.
+const ENERGY_SAMPLES: u32 = 2048;
 
 /// The materials in the same order, and the tables they refer to.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {
@@ -52,17 +53,21 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
 
 /// The plain numbers of a material, its tables still to be made.
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
-    let looked_up = |is_on: bool, texture: u32| if is_on { texture } else { NO_TEXTURE };
+    use TextureTarget as On;
     let uses = settings.textures;
+    let looked_up = |target| match settings.uses_texture(target) {
+        true => slot.record(target),
+        false => NO_TEXTURE,
+    };
     // Textures of one value are multiplied in here.
-    let factor = |is_on: bool, constant: Option<f32>| constant.filter(|_| is_on).unwrap_or(1.0);
-    let color = slot.constant_base_color.filter(|_| uses.color);
-    let color = color.map_or(Vec3::splat(1.0), Vec3::from_f32);
-    let of_texture = slot.constant_roughness.filter(|_| uses.roughness);
-    let roughness = of_texture.map_or(settings.roughness, |share| textured_roughness(settings, share));
-    let metalness = settings.metalness * factor(uses.roughness, slot.constant_metalness);
+    let constant = |target| slot.constant(target).filter(|_| settings.uses_texture(target));
+    let factor = |target| constant(target).map_or(1.0, |[value, ..]| value);
+    let color = constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
+    let roughness =
+        constant(On::Roughness).map_or(settings.roughness, |[share, ..]| textured_roughness(settings, share));
+    let metalness = settings.metalness * factor(On::Metalness);
     let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
-    let emission_texture = looked_up(uses.emission, slot.emission);
+    let emission_texture = looked_up(On::Emission);
     let mut mean_emission = emission;
     if uses.emission {
         mean_emission = emission * Vec3::from_f32(slot.mean_emission);
@@ -97,20 +102,20 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
-        opacity: settings.opacity * factor(uses.opacity, slot.constant_opacity),
+        opacity: settings.opacity * factor(On::Opacity),
         coat_color: Vec3::from_f32(settings.coat_color),
-        coat_weight: settings.coat_weight * factor(uses.coat, slot.constant_coat),
+        coat_weight: settings.coat_weight * factor(On::Coat),
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
         coat_table: 0,
         light_luminance: mean_emission.luminance(),
         textures: [
-            looked_up(uses.color, slot.base_color),
-            looked_up(uses.roughness, slot.roughness),
-            looked_up(uses.normal, slot.normal),
+            looked_up(On::BaseColor),
+            looked_up(On::Roughness),
+            looked_up(On::Normal),
             emission_texture,
         ],
-        opacity_texture: looked_up(uses.opacity, slot.opacity),
+        opacity_texture: looked_up(On::Opacity),
         alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
         has_rough_tables: 0,
@@ -119,8 +124,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         spot_scale: 0.0,
         spot_offset: 1.0,
-        metalness_texture: looked_up(uses.roughness, slot.metalness),
-        coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
+        metalness_texture: looked_up(On::Metalness),
+        coat_texture: if settings.coat_weight > 0.0 {
+            looked_up(On::Coat)
+        } else {
+            NO_TEXTURE
+        },
         diffuse_roughness: settings.diffuse_roughness,
         fuzz_color: Vec3::from_f32(settings.fuzz_color),
         fuzz_weight: settings.fuzz_weight,
@@ -128,17 +137,25 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         fuzz_middle: bell[0],
         fuzz_width: bell[1],
         fuzz_floor: bell[2],
-        film_path: film_path(settings.film_thickness * factor(uses.film_thickness, slot.constant_film_thickness)),
-        film_weight: settings.film_weight * factor(uses.film, slot.constant_film),
+        film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
+        film_weight: settings.film_weight * factor(On::Film),
         film_ior: settings.film_ior,
         has_film: 0,
         film_texture: NO_TEXTURE,
         film_path_texture: NO_TEXTURE,
+        reflecting_ior: settings.ior,
+        bare_ior: settings.ior,
+        coated_ior: settings.ior,
+        coat_blur: 0.0,
+        ggx_roughness: settings.ggx_roughness(),
+        coat_darkening: 0.0,
+        coat_inner: 0.0,
+        coat_anisotropy: 0.0,
     };
     if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
         material.has_film = 1;
-        material.film_texture = looked_up(uses.film, slot.film);
-        material.film_path_texture = looked_up(uses.film_thickness, slot.film_thickness);
+        material.film_texture = looked_up(On::Film);
+        material.film_path_texture = looked_up(On::FilmThickness);
     }
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
@@ -147,7 +164,8 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
     let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2]
         || (material.has_film_texture() && material.least_metallic().metalness < 1.0);
-    material.has_rough_tables = u32::from(changes || is_metal_in_part);
+    let is_under_varied_coat = settings.coat_on_base && material.coat_texture != NO_TEXTURE;
+    material.has_rough_tables = u32::from(changes || is_metal_in_part || is_under_varied_coat);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
         material.fresnel = Fresnel::Dielectric as u32;
@@ -162,10 +180,14 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         material.ior = weighted_ior(settings.ior.into(), settings.specular_weight.into()) as f32;
         material.flags |= WEIGHS_INDEX;
     }
+    material.reflecting_ior = material.ior;
+    if material.coat_weight > 0.0 {
+        put_coat(settings, &mut material);
+    }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
     let most = if is_schlick {
-        fresnel_f0(material.ior).recip()
+        fresnel_f0(material.ior.max(material.reflecting_ior)).recip()
     } else {
         1.0
     };
@@ -174,6 +196,47 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         material.flags |= COMPENSATES;
     }
     material
+}
+
+/// What a coat has of its own, and what it does to what lies below it.
+fn put_coat(settings: &MaterialSettings, material: &mut Material<f32>) {
+    material.coat_anisotropy = settings.coat_anisotropy;
+    if settings.coat_lobe == CoatLobe::Ggx {
+        material.flags |= COAT_IS_GGX;
+    }
+    material.coat_darkening = settings.coat_darkening;
+    material.coat_inner = inner_reflection(settings.coat_ior.into()) as f32;
+    if !settings.coat_on_base {
+        return;
+    }
+    material.flags |= COATS_BASE;
+    if material.coat_color != Vec3::splat(1.0) {
+        material.flags |= COAT_ABSORBS;
+    }
+    // Total reflection by a coat of greater index would not be there: light is refracted into the coat first.
+    let [base, coat] = [settings.ior, settings.coat_ior];
+    material.coated_ior = base.max(coat) / base.min(coat);
+    material.reflecting_ior = material.ior_under_coat(material.coat_weight);
+    if settings.lobe.traits().width == Width::Fixed {
+        return;
+    }
+    material.coat_blur = 2.0 * settings.coat_ggx_roughness().powi(4);
+    if material.has_varied_blur() {
+        // Where a texture has been looked up.
+        return;
+    }
+    if material.coat_blur > 0.0 {
+        let blurred = material.roughness_under_coat(material.ggx_roughness, material.coat_weight);
+        let is_geometric = settings.lobe.traits().width == Width::Roughness;
+        let roughness = if is_geometric {
+            geometric_from_ggx(blurred)
+        } else {
+            blurred
+        };
+        let extra = material.transmission_roughness - material.roughness;
+        material.roughness = roughness.max(material.roughness);
+        material.transmission_roughness = (material.roughness + extra).clamp(0.0, 1.0);
+    }
 }
 
 /// Whether the lobe loses light between its facets that no base below takes: a metal's, or a clear interface's.
@@ -220,12 +283,27 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
         material.lobe_table = append_table(tables, &remembered(scattering_key(&material)));
     }
     if (anywhere.has_base() || anywhere.transmits()) && anywhere.has_specular() {
-        material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
+        if material.has_coated_table() {
+            // One without the coat, then one under all of it.
+            let [bare, coated] = [0.0, 1.0].map(|weight| {
+                let reflecting_ior = material.ior_under_coat(weight);
+                let under = Material {
+                    reflecting_ior,
+                    ..material
+                };
+                remembered_albedo(&under, &curve_table, false)
+            });
+            material.albedo_table = append_table(tables, &bare);
+            append_table(tables, &coated);
+        } else {
+            material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
+        }
     }
     if anywhere.transmits() {
         material.inner_albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, true));
     }
-    if material.textures[1] != NO_TEXTURE && settings.lobe.traits().width == Width::Roughness {
+    let varies = material.textures[1] != NO_TEXTURE || material.has_varied_blur();
+    if varies && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
         material.texture_roughness = ggx_under_texture(settings.roughness);
         material.roughness_table = append_table(tables, &*MATCHED);
@@ -244,6 +322,7 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         specular_color: Vec3::splat(1.0),
         specular_weight: 1.0,
         ior: material.coat_ior,
+        reflecting_ior: material.coat_ior,
         roughness: shape.roughness,
         anisotropy: shape.anisotropy,
         lobe: shape.lobe as u32,
@@ -285,7 +364,7 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
 }
 
 fn remembered(key: TableKey) -> Arc<[f32]> {
-    let memory = || TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    let memory = || lock(&TABLES);
     let known = memory()
         .iter()
         .find(|(of, _)| *of == key)
@@ -298,7 +377,7 @@ fn remembered(key: TableKey) -> Arc<[f32]> {
     let samples = if is_rough { ROUGH_ALBEDO_SAMPLES } else { ALBEDO_SAMPLES };
     let is_inside = key.holds == Holds::InnerAlbedo;
     let table: Arc<[f32]> = match key.holds {
-        Holds::Energies => scattering_table(&of, ENERGY_SAMPLES * samples).into(),
+        Holds::Energies => scattering_table(&of, ENERGY_SAMPLES).into(),
         _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
         _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };
@@ -321,6 +400,7 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
             eta: Vec3::zero(),
             k: Vec3::zero(),
             ior: of_interface(material.ior),
+            reflecting_ior: of_interface(material.reflecting_ior),
             // The samplings of GGX share one model.
             lobe: Lobe::Ggx as u32,
             // With a table over the roughness their difference counts.
@@ -372,6 +452,13 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         film_ior: if has_filmed { material.film_ior } else { 1.0 },
         film_texture: NO_TEXTURE,
         film_path_texture: NO_TEXTURE,
+        bare_ior: 1.0,
+        coated_ior: 1.0,
+        coat_blur: 0.0,
+        ggx_roughness: 0.0,
+        coat_darkening: 0.0,
+        coat_inner: 0.0,
+        coat_anisotropy: 0.0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

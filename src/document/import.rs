@@ -5,11 +5,12 @@ use std::sync::LazyLock;
 
 use super::material::FILM_THICKNESS_MAX;
 use super::material::specular_color;
-use super::{MaterialSettings, TextureUse};
+use super::{CoatLobe, MaterialSettings, TextureUse};
 use crate::named::named;
-use crate::optics::lobe::Lobe;
+use crate::optics::lobe::{Lobe, Width};
 use crate::optics::material::MATCHED_NODES;
 use crate::optics::table::table_lookup;
+use crate::scene::texture::TextureTarget;
 use crate::scene::{AlphaMode, Slot};
 
 named! {
@@ -52,6 +53,30 @@ impl ImportLobe {
 }
 
 impl MaterialSettings {
+    /// GGX's roughness that looks like the lobe's.
+    pub fn ggx_roughness(&self) -> f32 {
+        match self.lobe.traits().width {
+            Width::Roughness => ggx_from_geometric(self.roughness),
+            Width::Fixed | Width::Alpha => self.roughness,
+        }
+    }
+
+    /// GGX's roughness that looks like the coat's.
+    pub fn coat_ggx_roughness(&self) -> f32 {
+        match self.coat_lobe {
+            CoatLobe::Geometric => ggx_from_geometric(self.coat_roughness),
+            CoatLobe::Ggx => self.coat_roughness,
+        }
+    }
+
+    /// Gives the coat GGX's roughness of a file: by this lobe, or by GGX where it is rougher than the other can be.
+    pub fn set_coat_ggx_roughness(&mut self, roughness: f32, lobe: ImportLobe) {
+        (self.coat_lobe, self.coat_roughness) = match lobe.at_roughest(roughness) {
+            ImportLobe::Geometric => (CoatLobe::Geometric, geometric_from_ggx(roughness)),
+            ImportLobe::Ggx => (CoatLobe::Ggx, roughness),
+        };
+    }
+
     /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
     /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
     pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
@@ -74,14 +99,14 @@ impl MaterialSettings {
         };
         lobe.of_slot(slot).apply(&mut material);
         material.textures = TextureUse {
-            color: slot.base_color_texture.is_some() || (slot.has_vertex_colors && !slot.is_unlit),
-            roughness: slot.metallic_roughness_texture.is_some(),
-            normal: slot.normal_texture.is_some(),
-            emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
+            color: slot.texture(TextureTarget::BaseColor).is_some() || (slot.has_vertex_colors && !slot.is_unlit),
+            roughness: slot.texture(TextureTarget::Roughness).is_some(),
+            normal: slot.texture(TextureTarget::Normal).is_some(),
+            emission: slot.texture(TextureTarget::Emission).is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
-            coat: slot.coat_texture.is_some(),
-            film: slot.film_texture.is_some(),
-            film_thickness: slot.film_thickness_texture.is_some(),
+            coat: slot.texture(TextureTarget::Coat).is_some(),
+            film: slot.texture(TextureTarget::Film).is_some(),
+            film_thickness: slot.texture(TextureTarget::FilmThickness).is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
@@ -90,7 +115,8 @@ impl MaterialSettings {
         material.coat_weight = unit(slot.coat);
         material.coat_ior = slot.coat_ior;
         if slot.coat > 0.0 {
-            material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
+            material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
+            material.keep_below_coat();
         }
         material.film_weight = unit(slot.film);
         material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);

@@ -5,6 +5,7 @@ use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
 use super::user_textures::UserTextures;
+use crate::named::named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
@@ -73,6 +74,14 @@ pub struct MaterialSettings {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
     pub coat_color: [f32; 3],
+    /// The lobe of the coat.
+    pub coat_lobe: CoatLobe,
+    /// Stretch of the coat's lobe in [−1, 1].
+    pub coat_anisotropy: f32,
+    /// The coat changes what lies below it by its index, its roughness and the way of light through it.
+    pub coat_on_base: bool,
+    /// How much of the darkening by the coat shows, in [0, 1].
+    pub coat_darkening: f32,
     /// Share of the surface that has fuzz, in [0, 1].
     pub fuzz_weight: f32,
     /// Tint of the fuzz, linear RGB in [0, 1].
@@ -142,6 +151,10 @@ impl Default for MaterialSettings {
             coat_roughness: 0.1,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            coat_lobe: CoatLobe::Geometric,
+            coat_anisotropy: 0.0,
+            coat_on_base: true,
+            coat_darkening: 1.0,
             fuzz_weight: 0.0,
             fuzz_color: [1.0; 3],
             fuzz_roughness: 0.5,
@@ -184,6 +197,11 @@ impl MaterialSettings {
         self.specular_weight > 0.0 || is_spared_metal || self.transmits()
     }
 
+    /// Lets the coat leave what lies below it as it is, as glTF's clearcoat does and files from before OpenPBR's coat.
+    pub fn keep_below_coat(&mut self) {
+        (self.coat_on_base, self.coat_darkening) = (false, 0.0);
+    }
+
     /// True if the specular weight is in a dielectric's index: one that is opaque and reflects by it.
     pub fn has_weight_in_index(&self) -> bool {
         let has_index = matches!(self.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
@@ -224,6 +242,16 @@ impl MaterialSettings {
             self.conductor = Conductor::Custom;
         }
         (self.eta, self.k) = (eta, k);
+    }
+}
+
+named! {
+    /// The lobe of a coat.
+    #[derive(Default)]
+    CoatLobe {
+        #[default]
+        Geometric, "geometric", "Geometric", "The geometric lobe with the smooth curve.";
+        Ggx, "ggx", "GGX", "GGX, as other programs have it.";
     }
 }
 

@@ -10,8 +10,7 @@ pub mod effect;
 mod ground;
 pub mod history;
 pub mod import;
-pub mod light_handle;
-pub mod light_move;
+mod look_words;
 pub mod material;
 mod material_textures;
 mod metal_colors;
@@ -38,7 +37,7 @@ pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
-pub use material::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
+pub use material::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
 pub use material_textures::{map_key, target_of_key, texture_assignments};
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,

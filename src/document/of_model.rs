@@ -37,7 +37,7 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
             note("a rough refraction, as wide as that of GGX but without its tail");
         }
         if slot.coat > 0.0 && slot.coat_roughness > ROUGHNESS_MAX {
-            note("a coat's roughness above 0.7, taken as 0.7");
+            note("a coat's roughness above 0.7, for which its lobe is GGX");
         }
     }
     report

@@ -7,6 +7,7 @@ use pollster::block_on;
 use super::array::TEXEL_ROW;
 use super::device::{GpuDevice, GpuError, driver, is_software};
 use super::traversal::Traversal;
+use crate::panics::lock;
 
 /// Kinds of adapters to consider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,10 +79,7 @@ impl GpuAdapter {
     ///
     /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
-        let preferred = PREFERRED
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner)
-            .clone();
+        let preferred = lock(&PREFERRED).clone();
         let mut adapters = Self::of_kind(kind);
         adapters.sort_by_key(|adapter| (Some(adapter.key()) != preferred, rank(&adapter.info)));
         adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
@@ -124,7 +122,7 @@ impl GpuAdapter {
 
     /// Has [`Self::find`] choose this adapter among those of its kind, in the whole process; `None`: the fastest again.
     pub fn prefer(adapter: Option<&Self>) {
-        *PREFERRED.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = adapter.map(Self::key);
+        *lock(&PREFERRED) = adapter.map(Self::key);
     }
 
     /// Identification among the adapters of a machine: interface and name.

@@ -2,14 +2,16 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use pollster::block_on;
 
 use super::traversal::Traversal;
+use crate::panics::lock;
 
 /// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum GpuError {
     /// No adapter of the requested kind.
     #[error(
@@ -19,25 +21,16 @@ pub enum GpuError {
     NoAdapter(&'static str),
     /// The adapter can't run the path tracer.
     #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the CPU with --engine cpu")]
-    Unfit {
-        /// Name of the adapter.
-        adapter: String,
-        /// What the adapter lacks.
-        reason: String,
-    },
+    Unfit { adapter: String, reason: String },
     /// A resource exceeds the adapter's limit.
     #[error(
         "{what} takes {needed_mib} MiB, and the adapter {adapter} takes {allowed_mib} MiB at once. Choose something \
          smaller, or render on the CPU with --engine cpu"
     )]
     TooLarge {
-        /// The resource.
         what: &'static str,
-        /// Size of the resource, in MiB.
         needed_mib: u64,
-        /// Name of the adapter.
         adapter: String,
-        /// Limit of the adapter, in MiB.
         allowed_mib: u64,
     },
     /// A command that the device refused; the device remains usable.
@@ -295,11 +288,6 @@ impl GpuDevice {
             .map_err(|error| GpuError::Refused(error.to_string()))?;
         Ok(bytemuck::pod_collect_to_vec(&view))
     }
-}
-
-/// Locks the errors, poisoned or not: they stay consistent, as every write is a single assignment.
-fn lock(failures: &Mutex<Failures>) -> MutexGuard<'_, Failures> {
-    failures.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Whether an adapter is software, which runs on the CPU.

@@ -217,7 +217,9 @@ fn seen() -> String {
     normals.reverse();
     format!(
         "fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3f {{\n    \
-         var covers = vec3f(0.0);\n    var below = vec3f(0.0);\n{}    return covers + below;\n}}\n\
+         var covers = vec3f(0.0);\n    var below = vec3f(0.0);\n{}    \
+         if PLAN_COAT_ABSORPTION == 1u {{ below *= coat_tint(material, layers, surface, surface.wo); }}\n    \
+         return covers + below;\n}}\n\
          fn material_normal(material: Material, surface: Surface, layers: Layers) -> vec3f {{\n    \
          var normal = surface.frame.normal;\n{}    return normal;\n}}\n",
         albedos.concat(),

@@ -1,7 +1,7 @@
 //! Single functions asked about inputs of one's own, answered by the shader (`shaders/pass/probe.wgsl`).
 
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use bytemuck::{Pod, Zeroable};
 
@@ -14,6 +14,7 @@ use super::scene_group::{self, SceneForm, SceneGroup};
 use super::scene_pass::ScenePass;
 use super::traversal::Traversal;
 use crate::job::probe::ProbeScene;
+use crate::panics::lock;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: usize = 1 << 20;
@@ -83,7 +84,7 @@ impl Probe {
 
     /// The pipeline of an entry point, compiled at its first use.
     fn pipeline(&self, entry_point: &'static str, form: SceneForm) -> Result<wgpu::ComputePipeline, GpuError> {
-        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut pipelines = lock(&self.pipelines);
         if let Some(pipeline) = pipelines.get(&(entry_point, form)) {
             return Ok(pipeline.clone());
         }

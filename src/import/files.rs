@@ -6,11 +6,12 @@ use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use zip::ZipArchive;
 
 use crate::budget::Budget;
+use crate::panics::lock;
 use crate::resource::{self, BYTES_MAX, Reach, is_elsewhere};
 use crate::scene::Loading;
 
@@ -68,7 +69,7 @@ pub(super) struct Seen(Arc<Mutex<Vec<PathBuf>>>);
 impl Seen {
     /// Notes a file, once.
     pub fn note(&self, path: &Path) {
-        let mut seen = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut seen = lock(&self.0);
         if !seen.iter().any(|known| known == path) {
             seen.push(path.to_owned());
         }
@@ -76,7 +77,7 @@ impl Seen {
 
     /// What was noted.
     pub fn take(&self) -> Vec<PathBuf> {
-        std::mem::take(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut lock(&self.0))
     }
 }
 
@@ -117,7 +118,7 @@ impl Archive {
         let mut spelled = self.found.iter().zip(spellings(wanted));
         let place = spelled.find_map(|(by, spelling)| by.get(&spelling));
         let name = &self.names[*place.ok_or(ErrorKind::NotFound)?];
-        let mut zip = self.zip.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut zip = lock(&self.zip);
         let file = zip.by_name(name)?;
         let size = file.size();
         if size > PACKED_FROM && size / PACKED_MOST > file.compressed_size() {

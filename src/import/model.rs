@@ -10,6 +10,7 @@ use crate::resource::Reach;
 use crate::scene::Framing;
 use crate::scene::Loading;
 use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::TextureTarget;
 use crate::scene::{LIGHTS_MAX, LightKind, ModelLight};
 use crate::scene::{Model, ModelOptions, ModelSource, Texture};
 
@@ -182,7 +183,7 @@ fn finish(model: &mut Model) {
     for slot in &mut model.slots {
         slot.attenuation_distance /= radius;
         let texture = slot
-            .metallic_roughness_texture
+            .texture(TextureTarget::Roughness)
             .and_then(|place| model.textures.get(place.texture));
         slot.roughest_texel = texture.map_or(1.0, |texture| texture.brightest(1));
     }

@@ -6,8 +6,9 @@
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read as _};
 use std::path::{Component, Path, PathBuf, Prefix};
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
+use crate::panics::lock;
 use crate::scene::Loading;
 
 /// The most bytes of one file.
@@ -25,7 +26,7 @@ struct Permits {
 }
 
 fn permits() -> std::sync::MutexGuard<'static, Permits> {
-    PERMITS.lock().unwrap_or_else(PoisonError::into_inner)
+    lock(&PERMITS)
 }
 
 /// Allows files to name any file until the program ends.

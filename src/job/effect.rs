@@ -81,6 +81,9 @@ effects! {
     MultipleScattering "multiple-scattering" flag "PLAN_MULTIPLE_SCATTERING";
     Fuzz "fuzz" flag "PLAN_FUZZ";
     Coat "coat" flag "PLAN_COAT";
+    CoatGgx "coat-ggx" flag "PLAN_COAT_GGX";
+    CoatDarkening "coat-darkening" flag "PLAN_COAT_DARKENING";
+    CoatAbsorption "coat-absorption" flag "PLAN_COAT_ABSORPTION";
     ThinFilm "thin-film" flag "PLAN_THIN_FILM";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";

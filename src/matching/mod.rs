@@ -49,15 +49,11 @@ pub enum Target {
 
 /// Why a look cannot be matched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MatchError {
     /// The target is a mirror.
     #[error("the target's roughness of {roughness} is a mirror's; a highlight to match needs at least {least}")]
-    Mirror {
-        /// Its roughness.
-        roughness: f64,
-        /// What it must be at least.
-        least: f64,
-    },
+    Mirror { roughness: f64, least: f64 },
     /// The target is anisotropic.
     #[error("the target is anisotropic; only round highlights can be matched: set its anisotropy to 0")]
     Anisotropic,

@@ -11,7 +11,7 @@ use super::fresnel::{
 };
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::Material;
-use super::random::{Sequence, random_pair, random_state};
+use super::random::even_point;
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
@@ -109,9 +109,7 @@ fn node_means<const N: usize>(
     let wo = vec3((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
     let mut sums = [0.0; N];
     for i in 0..samples {
-        let state = random_state(node as u32, 0, 0, i, Sequence::Sobol);
-        let [a, b] = random_pair(state, 0);
-        let [c, _] = random_pair(state, 1);
+        let [a, b, c, _] = even_point(i);
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         let factors = factors(half_vector_cosine(wo, drawn.wi));
         for (sum, factor) in sums.iter_mut().zip(factors) {

@@ -299,6 +299,22 @@ pub fn atan2<T: Single>(y: T, x: T) -> T {
     T::from_bits(angle.to_bits().or(y.to_bits().and(Bits::splat(SIGN))))
 }
 
+/// The functions of this file, which f32 and SIMD lanes use: the same bits.
+macro_rules! by_arithmetic {
+    ($type:ident) => {
+        by_arithmetic! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }
+    };
+    ($type:ident: $($name:ident($($argument:ident)?))*) => {
+        $(
+            #[inline(always)]
+            fn $name(self $(, $argument: Self)?) -> Self {
+                crate::optics::elementary::$name(self $(, $argument)?)
+            }
+        )*
+    };
+}
+pub(super) use by_arithmetic;
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -268,57 +268,21 @@ pub struct Metal {
     pub k: [f64; 3],
 }
 
+const fn metal(name: &'static str, eta: [f64; 3], k: [f64; 3]) -> Metal {
+    Metal { name, eta, k }
+}
+
 /// Measured metals, sampled at the primaries (refractiveindex.info: Johnson and Christy 1972 and 1974, Rakić 1998; brass: Querry
 /// 1985; mercury: Inagaki 1981).
 pub const METALS: &[Metal] = &[
-    Metal {
-        name: "gold",
-        eta: [0.143, 0.375, 1.442],
-        k: [3.983, 2.386, 1.603],
-    },
-    Metal {
-        name: "copper",
-        eta: [0.200, 0.924, 1.102],
-        k: [3.912, 2.452, 2.142],
-    },
-    Metal {
-        name: "silver",
-        eta: [0.155, 0.117, 0.138],
-        k: [4.828, 3.122, 2.147],
-    },
-    Metal {
-        name: "aluminium",
-        eta: [1.657, 0.880, 0.521],
-        k: [9.224, 6.270, 4.837],
-    },
-    Metal {
-        name: "iron",
-        eta: [2.911, 2.950, 2.585],
-        k: [3.089, 2.932, 2.767],
-    },
-    Metal {
-        name: "chromium",
-        eta: [3.108, 3.180, 2.230],
-        k: [3.317, 3.330, 3.147],
-    },
-    Metal {
-        name: "brass",
-        eta: [0.444, 0.527, 1.094],
-        k: [3.695, 2.765, 1.829],
-    },
-    Metal {
-        name: "platinum",
-        eta: [2.376, 2.085, 1.845],
-        k: [4.266, 3.715, 3.137],
-    },
-    Metal {
-        name: "titanium",
-        eta: [2.741, 2.542, 2.237],
-        k: [3.814, 3.435, 3.024],
-    },
-    Metal {
-        name: "mercury",
-        eta: [2.073, 1.552, 1.061],
-        k: [5.338, 4.651, 3.863],
-    },
+    metal("gold", [0.143, 0.375, 1.442], [3.983, 2.386, 1.603]),
+    metal("copper", [0.200, 0.924, 1.102], [3.912, 2.452, 2.142]),
+    metal("silver", [0.155, 0.117, 0.138], [4.828, 3.122, 2.147]),
+    metal("aluminium", [1.657, 0.880, 0.521], [9.224, 6.270, 4.837]),
+    metal("iron", [2.911, 2.950, 2.585], [3.089, 2.932, 2.767]),
+    metal("chromium", [3.108, 3.180, 2.230], [3.317, 3.330, 3.147]),
+    metal("brass", [0.444, 0.527, 1.094], [3.695, 2.765, 1.829]),
+    metal("platinum", [2.376, 2.085, 1.845], [4.266, 3.715, 3.137]),
+    metal("titanium", [2.741, 2.542, 2.237], [3.814, 3.435, 3.024]),
+    metal("mercury", [2.073, 1.552, 1.061], [5.338, 4.651, 3.863]),
 ];

@@ -9,8 +9,8 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, SimdMask};
 
-use super::elementary::{self, Bits, Single};
-use super::real::{Mask, Real, by_arithmetic};
+use super::elementary::{Bits, Single, by_arithmetic};
+use super::real::{Mask, Real};
 
 /// A computation that is generic over SIMD lanes. A trait, because closures cannot be generic.
 pub trait InLanes {

@@ -8,7 +8,7 @@
 
 use super::curve::Curve;
 use super::frame::{Frame, frame_from_normal};
-use super::fresnel::{Fresnel, FresnelTerms};
+use super::fresnel::{Fresnel, FresnelTerms, fresnel_f0};
 use super::lobe::{Horizon, Lobe, LobeShape};
 use super::real::{Mask, Real, Scalar};
 use super::thin_film::FilmTerms;
@@ -31,6 +31,12 @@ pub const SPARES_METAL: u32 = 8;
 pub const COMPENSATES: u32 = 16;
 /// Flag: the dielectric's index has the weight of the reflection in it, and only a metal's is multiplied by it.
 pub const WEIGHS_INDEX: u32 = 64;
+/// Flag: the coat changes what lies below it, by its index and its roughness.
+pub const COATS_BASE: u32 = 128;
+/// Flag: the coat takes more light of some colour the longer the way through it.
+pub const COAT_ABSORBS: u32 = 256;
+/// Flag: the coat's lobe is GGX, not the geometric lobe.
+pub const COAT_IS_GGX: u32 = 512;
 /// Flag: a texture uses box projection.
 pub const HAS_BOX: u32 = 32;
 
@@ -214,6 +220,22 @@ material! {
         fuzz_width: T,
         /// What fuzz reflects of every view.
         fuzz_floor: T,
+        /// The dielectric's index for what it reflects, seen from outside: relative to the coat over it.
+        reflecting_ior: T,
+        /// The dielectric's index without a coat, and its weight not in it.
+        bare_ior: T,
+        /// The same over or below that of a coat, at least 1.
+        coated_ior: T,
+        /// What a coat of weight 1 adds to the fourth power of GGX's roughness below it.
+        coat_blur: T,
+        /// GGX's roughness of the specular lobe without a coat.
+        ggx_roughness: T,
+        /// How much of the coat's darkening of what lies below shows, in [0, 1].
+        coat_darkening: T,
+        /// What the coat reflects back inside of light in all directions.
+        coat_inner: T,
+        /// Stretch of the coat's lobe in [−1, 1].
+        coat_anisotropy: T,
         /// Phase of a crossing of the thin film at normal incidence over its index, by channel
         /// ([`film_path`](super::thin_film::film_path)).
         film_path: Vec3<T>,
@@ -281,6 +303,48 @@ impl<T: Real> Material<T> {
         T::select(is_inside & self.transmits(), T::one() / self.ior, self.ior)
     }
 
+    /// Relative index of refraction of what is reflected: as [`Self::ior_ahead`], but from outside under the coat.
+    #[inline(always)]
+    fn reflecting_ior_ahead(&self, is_inside: T::Mask) -> T {
+        T::select(is_inside & self.transmits(), T::one() / self.ior, self.reflecting_ior)
+    }
+
+    /// The index of what is reflected under a coat of this weight (OpenPBR 1.1, "Coat"): between the index over air and over
+    /// the coat, whose ratio is inverted where the coat's index is the greater one.
+    #[inline(always)]
+    pub fn ior_under_coat(&self, weight: T) -> T {
+        let one = T::one();
+        let ior = self.bare_ior + (self.coated_ior - self.bare_ior) * weight;
+        if !self.has_flag(WEIGHS_INDEX) {
+            return ior;
+        }
+        let root = (fresnel_f0(ior) * self.specular_weight)
+            .min(T::from_f64(0.99))
+            .safe_sqrt();
+        (one + root) / (one - root)
+    }
+
+    /// GGX's roughness under a coat of this weight: facets of both spread the light (OpenPBR 1.1, "Roughening").
+    #[inline(always)]
+    pub fn roughness_under_coat(&self, roughness: T, weight: T) -> T {
+        let square = roughness * roughness;
+        let blurred = (square * square + self.coat_blur).min(T::one()).sqrt().sqrt();
+        roughness + (blurred - roughness) * weight
+    }
+
+    /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
+    #[inline(always)]
+    pub fn has_coated_table(&self) -> bool {
+        self.has_flag(COATS_BASE) && self.coat_texture != NO_TEXTURE
+    }
+
+    /// True where textures change how the coat changes the roughness below it.
+    #[inline(always)]
+    pub fn has_varied_blur(&self) -> bool {
+        let is_varied = self.textures[1] != NO_TEXTURE || self.coat_texture != NO_TEXTURE;
+        is_varied && T::zero().less(self.coat_blur).any()
+    }
+
     /// Terms of the Fresnel factor. From within, weight and tint have no effect: the interface is the bare dielectric, so
     /// that total reflection conserves energy.
     #[inline(always)]
@@ -299,7 +363,7 @@ impl<T: Real> Material<T> {
             tint,
             metal_tint: if spares_metal { white } else { tint * weight },
             weight: if is_in_index { T::one() } else { weight },
-            ior: self.ior_ahead(is_inside),
+            ior: self.reflecting_ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,
             has_film: self.has_film == 1,
@@ -307,13 +371,13 @@ impl<T: Real> Material<T> {
         }
     }
 
-    /// The thin film, before it the interior where that is `within`.
+    /// The thin film, before it the interior where that is `within`, else air, or the coat as far as it counts.
     #[inline(always)]
     fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
         if self.has_film == 0 {
             return FilmTerms::none();
         }
-        let before = T::select(within, self.ior, T::one());
+        let before = T::select(within, self.ior, self.ior / self.reflecting_ior);
         FilmTerms {
             weight: self.film_weight,
             ior: self.film_ior / before,
@@ -417,5 +481,11 @@ impl<T: Real> Surface<T> {
             coat_normal: normal,
             is_inside: T::Mask::splat(false),
         }
+    }
+
+    /// Lanes where the viewer is within a solid that light passes through.
+    #[inline(always)]
+    pub fn is_within(&self, material: &Material<T>) -> T::Mask {
+        self.is_inside & material.transmits()
     }
 }

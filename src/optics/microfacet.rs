@@ -3,7 +3,6 @@
 
 use super::frame::{Frame, local_from_world};
 use super::fresnel::half_vector_cosine;
-use super::lobe::{LobeShape, alpha_from_roughness, stretch_from_anisotropy};
 use super::numeric::normalize_or;
 use super::real::Real;
 use super::vector::Vec3;
@@ -15,24 +14,6 @@ pub struct Alpha<T> {
     pub x: T,
     /// α along the bitangent.
     pub y: T,
-}
-
-/// The widths of a shape, anisotropy applied.
-#[inline(always)]
-pub fn microfacet_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
-    let alpha = alpha_from_roughness(shape.roughness);
-    let stretch = stretch_from_anisotropy(shape.anisotropy);
-    Alpha {
-        x: alpha * stretch,
-        y: alpha / stretch,
-    }
-}
-
-/// Equal widths.
-#[inline(always)]
-pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
-    let alpha = alpha_from_roughness(shape.roughness);
-    Alpha { x: alpha, y: alpha }
 }
 
 /// View, light and half vector in the local frame.
@@ -93,8 +74,7 @@ pub fn smith_g2_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, wi: Vec3<T>) 
 
 /// The density of a direction whose facet was drawn by visible normals: D G1/(4 cosθo).
 #[inline(always)]
-pub fn visible_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let alpha = microfacet_alpha(shape);
+pub fn visible_density<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let facet = facet(frame, wo, wi);
     let value = T::from_f64(0.25) * ggx_distribution(alpha, facet.h) * smith_g1_over_cosine(alpha, facet.wo);
     T::select(T::zero().less(facet.h.z), value, T::zero())
@@ -102,8 +82,7 @@ pub fn visible_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: 
 
 /// The weight of such a direction: G2/G1.
 #[inline(always)]
-pub fn visible_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let alpha = microfacet_alpha(shape);
+pub fn visible_weight<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
     smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo)
 }

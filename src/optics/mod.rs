@@ -8,6 +8,7 @@
 pub mod albedo;
 pub mod blackbody;
 pub mod chord;
+pub mod coat_medium;
 pub mod curve;
 pub mod elementary;
 pub mod frame;
@@ -23,6 +24,7 @@ pub mod random;
 pub mod real;
 pub mod refraction;
 pub mod rough_diffuse;
+mod scalar;
 pub mod scattering;
 pub mod table;
 pub mod thin_film;

@@ -8,8 +8,6 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use super::elementary;
-
 /// The outcome of a comparison: `bool`, or one truth value a lane.
 pub trait Mask:
     Copy + Debug + Send + Sync + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
@@ -24,29 +22,6 @@ pub trait Mask:
     fn any(self) -> bool;
     /// True where all lanes are.
     fn all(self) -> bool;
-}
-
-impl Mask for bool {
-    #[inline(always)]
-    fn splat(value: bool) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn from_bits(bits: u32) -> Self {
-        bits & 1 == 1
-    }
-    #[inline(always)]
-    fn to_bits(self) -> u32 {
-        u32::from(self)
-    }
-    #[inline(always)]
-    fn any(self) -> bool {
-        self
-    }
-    #[inline(always)]
-    fn all(self) -> bool {
-        self
-    }
 }
 
 /// A real number, or one per lane, with the elementary functions that the optics need.
@@ -186,116 +161,3 @@ pub trait Scalar: Real<Mask = bool, Scalar = Self, Each<Self> = [Self; 1]> + Par
     /// The value as f64, exact for f32.
     fn to_f64(self) -> f64;
 }
-
-macro_rules! real {
-    ($type:ident, $functions:path) => {
-        impl Scalar for $type {
-            #[inline(always)]
-            fn to_f64(self) -> f64 {
-                f64::from(self)
-            }
-        }
-
-        impl Real for $type {
-            type Mask = bool;
-            type Scalar = Self;
-            type Each<E: Copy + Default> = [E; 1];
-            const LANES: usize = 1;
-            #[inline(always)]
-            fn from_f64(value: f64) -> Self {
-                value as $type
-            }
-            #[inline(always)]
-            fn from_count(value: u32) -> Self {
-                value as $type
-            }
-            #[inline(always)]
-            fn less(self, other: Self) -> bool {
-                self < other
-            }
-            #[inline(always)]
-            fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
-                if mask { if_true } else { if_false }
-            }
-            #[inline(always)]
-            fn min(self, other: Self) -> Self {
-                if self < other { self } else { other }
-            }
-            #[inline(always)]
-            fn max(self, other: Self) -> Self {
-                if self > other { self } else { other }
-            }
-            #[inline(always)]
-            fn abs(self) -> Self {
-                $type::abs(self)
-            }
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                $type::sqrt(self)
-            }
-            #[inline(always)]
-            fn floor(self) -> Self {
-                $type::floor(self)
-            }
-            #[inline(always)]
-            fn each<E: Copy + Default>(mut f: impl FnMut(usize) -> E) -> [E; 1] {
-                [f(0)]
-            }
-            #[inline(always)]
-            fn from_each(numbers: &[Self; 1]) -> Self {
-                numbers[0]
-            }
-            #[inline(always)]
-            fn to_each(self) -> [Self; 1] {
-                [self]
-            }
-            #[inline(always)]
-            fn load(numbers: &[Self]) -> Self {
-                numbers[0]
-            }
-            #[inline(always)]
-            fn store(self, numbers: &mut [Self]) {
-                numbers[0] = self;
-            }
-            #[inline(always)]
-            fn vectorize<R>(f: impl FnOnce() -> R) -> R {
-                f()
-            }
-            $functions! { $type }
-        }
-    };
-}
-
-/// The system's functions.
-macro_rules! by_the_system {
-    ($type:ident) => {
-        by_the_system! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }
-    };
-    ($type:ident: $($name:ident($($argument:ident)?))*) => {
-        $(
-            #[inline(always)]
-            fn $name(self $(, $argument: Self)?) -> Self {
-                $type::$name(self $(, $argument)?)
-            }
-        )*
-    };
-}
-
-/// The functions of [`elementary`], which SIMD lanes use as well: the same bits.
-macro_rules! by_arithmetic {
-    ($type:ident) => {
-        by_arithmetic! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }
-    };
-    ($type:ident: $($name:ident($($argument:ident)?))*) => {
-        $(
-            #[inline(always)]
-            fn $name(self $(, $argument: Self)?) -> Self {
-                elementary::$name(self $(, $argument)?)
-            }
-        )*
-    };
-}
-pub(super) use by_arithmetic;
-
-real!(f32, by_arithmetic);
-real!(f64, by_the_system);

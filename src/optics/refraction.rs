@@ -5,9 +5,7 @@
 //! appears (Nicodemus 1963; Veach 1997, section 5.2). Source of the facets' density and weight: Walter et al., "Microfacet
 //! models for refraction through rough surfaces", EGSR 2007, equations 16, 17 and 21.
 
-use super::frame::{Frame, local_from_world};
-use super::lobe::{Facets, LobeShape};
-use super::microfacet::{facet, isotropic_alpha, microfacet_alpha, smith_g1_over_cosine};
+use super::frame::Frame;
 use super::numeric::normalize_or;
 use super::real::Real;
 use super::vector::Vec3;
@@ -81,34 +79,4 @@ pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>,
     let is_seen = T::zero().less(before) & T::zero().less(frame.normal.dot(h));
     let is_refracted = is_behind & is_seen & T::zero().less(behind);
     T::select(is_refracted, value, T::zero())
-}
-
-/// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
-/// directions, separately as they are on different sides, over that of the sampled normals. 0 if `wi` is not below the
-/// shading normal's horizon. `mirrored`: [`facet_mirror`].
-#[inline(always)]
-pub fn facet_weight<T: Real>(
-    shape: &LobeShape<'_, T>,
-    frame: &Frame<T>,
-    wo: Vec3<T>,
-    wi: Vec3<T>,
-    mirrored: Vec3<T>,
-) -> T {
-    let alpha = if shape.lobe.is_anisotropic() {
-        microfacet_alpha(shape)
-    } else {
-        isotropic_alpha(shape)
-    };
-    let (wo_local, wi_local) = (local_from_world(frame, wo), local_from_world(frame, wi));
-    let mut weight = smith_g1_over_cosine(alpha, wi_local) * wi_local.z.abs();
-    if shape.lobe.facets() == Facets::All {
-        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
-        let facet = facet(frame, wo, mirrored);
-        let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
-        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
-        let ratio = T::select(T::zero().less(facet.h.z), ratio, T::zero());
-        weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
-    }
-    let is_behind = wi_local.z.less(T::zero()) & T::zero().less(wo_local.z);
-    T::select(is_behind, weight, T::zero())
 }

@@ -15,6 +15,7 @@ use super::fresnel::{
 };
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
+use super::random::even_point;
 use super::real::Real;
 use super::refraction::{refracted_square, refracting_cosines};
 use super::thin_film::film_passed;
@@ -27,7 +28,7 @@ pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, sha
         return T::one();
     }
     let [_, outside, inside] = kept_energies(material, surface, shape);
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     T::one() / T::select(is_within, inside, outside)
 }
 
@@ -128,23 +129,26 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 /// Energy that reflection and refraction of a clear interface keep together.
 fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
     let eta = material.ior_ahead(is_inside);
+    // Under a coat the reflection has another index than the refraction.
     let terms = FresnelTerms {
         tint: Vec3::splat(1.0),
         ..material.fresnel_terms(is_inside)
     };
     // A film shares the light otherwise, by its mean over the channels.
-    let film = |cosine: f64, height: f64| match terms.has_film {
-        true => film_passed(&terms, cosine, height).dot(Vec3::splat(1.0 / 3.0)),
+    let film = |cosine: f64| match terms.has_film {
+        true => film_passed(&terms, cosine, refracted_square(cosine, terms.ior).safe_sqrt()).dot(Vec3::splat(1.0 / 3.0)),
         false => 0.0,
     };
-    let reflected = reflected_energy(material, cosine, samples, |cosine| {
-        let height = refracted_square(cosine, eta).safe_sqrt();
-        fresnel_dielectric(cosine, eta) - film(cosine, height)
-    });
+    let reflects = |cosine: f64| fresnel_dielectric(cosine, terms.ior) - film(cosine);
+    let reflected = reflected_energy(material, cosine, samples, reflects);
     let shape = material.transmission_shape(&[], is_inside);
     let refracted = mean_weight(&shape, cosine, samples, |wo, wi| {
         let [before, behind] = refracting_cosines(wo, wi, eta);
-        fresnel_transmitted(before, behind, eta) + film(before, eta * behind)
+        if terms.ior == eta {
+            fresnel_transmitted(before, behind, eta) + film(before)
+        } else {
+            1.0 - reflects(before)
+        }
     });
     reflected + refracted
 }
@@ -155,15 +159,6 @@ fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor:
         factor(half_vector_cosine(wo, wi))
     })
 }
-
-/// Steps of a sequence that covers the unit square evenly, and of two further numbers. At 8192 samples its error is a tenth
-/// of the Sobol sequence's. Source: Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018).
-const STEPS: [f64; 4] = [
-    0.754_877_666_246_692_7,
-    0.569_840_290_998_053_2,
-    0.414_213_562_373_095_1,
-    0.732_050_807_568_877_2,
-];
 
 /// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
 const STRETCHED_SAMPLES: u32 = 4;
@@ -186,7 +181,7 @@ fn mean_weight(
     };
     let mut sum = 0.0;
     for sample in 0..samples {
-        let [a, b, c, turn] = STEPS.map(|step| ((f64::from(sample) + 0.5) * step).fract());
+        let [a, b, c, turn] = even_point(sample);
         let azimuth = if is_stretched {
             std::f64::consts::TAU * turn
         } else {

@@ -2,12 +2,13 @@
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::error::SessionError;
 use crate::import;
 use crate::import::picture::read_texture;
 use crate::import::{Budget, ModelError};
+use crate::panics::lock;
 use crate::scene::AreaShape;
 use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
@@ -106,7 +107,7 @@ impl Assets {
 
     /// A panic leaves consistent state behind: every change is a single assignment.
     fn kept(&self) -> MutexGuard<'_, Kept> {
-        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.kept)
     }
 
     /// The model of a source, loaded if not cached.

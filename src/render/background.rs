@@ -2,10 +2,10 @@
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
-use crate::panics::caught;
+use crate::panics::{caught, lock};
 
 /// Interval at which held work checks whether to continue.
 const HOLD_STEP: Duration = Duration::from_millis(25);
@@ -26,10 +26,6 @@ struct Orders<Q> {
     query: Option<Q>,
     is_busy: bool,
     quit: bool,
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Handle through which the work reports.

@@ -251,7 +251,7 @@ fn cosine_and_sine(angle_deg: f32) -> [f64; 2] {
 
 /// One material per slot: the document's (the last one repeated if there are too few), the ground's if there is one, and
 /// those of the area lights.
-pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
+pub(crate) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();
     materials.resize(slots, last);

@@ -24,13 +24,11 @@ use crate::store::replace::save_by;
 
 /// Errors of image output.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum OutputError {
     /// The extension is not that of a format that can be written.
     #[error("{}: images are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-    },
+    Format { path: PathBuf },
     /// The file could not be written.
     #[error(transparent)]
     File(#[from] FileError),

@@ -15,7 +15,7 @@ use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use super::turntable::{self, Turntable, TurntableError};
 use crate::document::Document;
-use crate::panics::caught;
+use crate::panics::{caught, lock};
 use crate::store::FileError;
 use crate::store::replace::check_saving;
 
@@ -112,7 +112,7 @@ enum TaskError {
 impl Shared {
     /// Locks the list, poisoned or not: it stays consistent, as every change is a single assignment.
     fn book(&self) -> MutexGuard<'_, Book> {
-        self.book.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.book)
     }
 
     /// The next task, once there is one; `None` when it is time to go.

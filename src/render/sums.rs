@@ -52,23 +52,14 @@ pub struct KeptFilm {
 
 /// Why films cannot be read, joined or written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum SumsError {
     /// Not an EXR file, or damaged.
     #[error("{}: cannot be read as an image: {reason}; render it again with --keep-sums", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The fault.
-        reason: String,
-    },
+    Read { path: PathBuf, reason: String },
     /// An image without sums.
     #[error("{}: has no sums ({missing} is missing); render it with --keep-sums", path.display())]
-    NoSums {
-        /// The file.
-        path: PathBuf,
-        /// The missing channel.
-        missing: String,
-    },
+    NoSums { path: PathBuf, missing: String },
     /// The document inside is damaged.
     #[error(transparent)]
     Document(#[from] FileError),
@@ -81,23 +72,16 @@ pub enum SumsError {
     /// Sums of another image.
     #[error("{}: of another image than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
     Differs {
-        /// The file.
         path: PathBuf,
-        /// The one that it is compared with.
         first: PathBuf,
-        /// The difference.
         differs: String,
     },
     /// Samples that are in both.
     #[error("{}: samples {from} to {to} are in {} too; render others by --samples-from and --samples-to", path.display(), first.display())]
     Twice {
-        /// The file.
         path: PathBuf,
-        /// The one that has them already.
         first: PathBuf,
-        /// The first of the file's samples.
         from: u32,
-        /// The one after its last.
         to: u32,
     },
 }

@@ -16,8 +16,9 @@ use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, emission_at, uvs_at, vertex_factors};
-use crate::optics::material::{HAS_BOX, Material};
+use super::texture::{Textures, coat_weight_at, emission_at, uvs_at, vertex_factors};
+use crate::optics::coat_medium::coat_over_emission;
+use crate::optics::material::{COAT_ABSORBS, HAS_BOX, Material};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
@@ -213,13 +214,19 @@ pub fn light_sample<T: Scalar>(
     let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
     let material = &emitters.materials[geometry.slot(triangle) as usize];
     let mut radiance = material.emission;
+    let mut coated = *material;
     if material.is_varied() || material.has_holes() {
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
+        coated.coat_weight = coat_weight_at(emitters.textures, material, uvs);
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));
+    }
+    if material.has_flag(COAT_ABSORBS) {
+        let facing = -normal.dot(direction);
+        radiance = radiance * coat_over_emission(&coated, facing, facing.less(T::zero()));
     }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;

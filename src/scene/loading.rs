@@ -1,9 +1,10 @@
 //! Progress and cancellation of loading, and the files that it was refused.
 
+use crate::panics::lock;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Progress and cancellation of one task; clones share them.
 #[derive(Clone, Debug, Default)]
@@ -58,12 +59,12 @@ impl Loading {
 
     /// The current step; empty if none.
     pub fn doing(&self) -> String {
-        self.0.doing.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        lock(&self.0.doing).clone()
     }
 
     /// Keeps the name of a file that was not allowed, once.
     pub fn refuse(&self, file: &Path) {
-        let mut refused = self.0.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut refused = lock(&self.0.refused);
         if !refused.iter().any(|known| known == file) {
             refused.push(file.to_owned());
         }
@@ -71,7 +72,7 @@ impl Loading {
 
     /// The files that were refused since this was last asked: of these loads alone, not of others beside them.
     pub fn take_refused(&self) -> Vec<PathBuf> {
-        std::mem::take(&mut self.0.refused.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut lock(&self.0.refused))
     }
 
     /// The items until cancelled: for long loops whose result is discarded then.
@@ -88,7 +89,7 @@ impl Loading {
     }
 
     fn publish(&self, doing: String) {
-        *self.0.doing.lock().unwrap_or_else(PoisonError::into_inner) = doing;
+        *lock(&self.0.doing) = doing;
     }
 }
 

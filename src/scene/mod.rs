@@ -29,6 +29,7 @@ mod stage;
 mod still_life;
 pub mod surface;
 mod tangents;
+mod target;
 pub mod teapot;
 pub mod texture;
 pub mod transform;

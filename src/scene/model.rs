@@ -10,6 +10,7 @@ use super::mesh::{Mesh, MeshInstance};
 use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
+use super::target::TextureTarget;
 use super::{shapes, still_life, teapot};
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
@@ -175,8 +176,8 @@ impl Model {
         }));
         self.repeated.append(&mut other.repeated);
         for slot in &mut other.slots {
-            slot.texture_refs_mut()
-                .for_each(|reference| reference.texture += textures);
+            let references = slot.textures.iter_mut().flatten();
+            references.for_each(|reference| reference.texture += textures);
         }
         let first = self.mesh.triangles.len();
         other.name_its_whole();
@@ -278,24 +279,12 @@ pub struct Slot {
     pub attenuation_color: [f32; 3],
     /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
     pub attenuation_distance: f32,
-    /// Colour (sRGB-encoded) and opacity.
-    pub base_color_texture: Option<TextureRef>,
-    /// Roughness in green, metalness in blue (linear values).
-    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Textures by target, colours in sRGB, normals with green upwards; [`Slot::texture`] knows those that share one.
+    pub textures: [Option<TextureRef>; TextureTarget::ALL.len()],
     /// Largest roughness in the texture, in [0, 1]; 1 without one.
     pub roughest_texel: f32,
-    /// Tangent-space normals (linear values, 0…255 for −1…1, green upwards).
-    pub normal_texture: Option<TextureRef>,
     /// Scales x and y of the normal texture's vectors.
     pub normal_scale: f32,
-    /// Emission (sRGB-encoded).
-    pub emissive_texture: Option<TextureRef>,
-    /// Coat map; its red channel multiplies `coat`.
-    pub coat_texture: Option<TextureRef>,
-    /// Film map; its red channel multiplies `film`.
-    pub film_texture: Option<TextureRef>,
-    /// Thickness of the film, in the green channel.
-    pub film_thickness_texture: Option<TextureRef>,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
     /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
@@ -340,15 +329,9 @@ impl Default for Slot {
             film_thickness_min: 0.1,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
-            base_color_texture: None,
-            metallic_roughness_texture: None,
+            textures: [None; TextureTarget::ALL.len()],
             roughest_texel: 1.0,
-            normal_texture: None,
             normal_scale: 1.0,
-            emissive_texture: None,
-            coat_texture: None,
-            film_texture: None,
-            film_thickness_texture: None,
             specular: 1.0,
             specular_color: [1.0; 3],
             anisotropy: 0.0,
@@ -373,32 +356,15 @@ impl Slot {
         }
     }
 
-    /// The texture references that are set.
-    pub fn texture_refs(&self) -> impl Iterator<Item = &TextureRef> {
-        let refs = [
-            &self.base_color_texture,
-            &self.metallic_roughness_texture,
-            &self.normal_texture,
-            &self.emissive_texture,
-            &self.coat_texture,
-            &self.film_texture,
-            &self.film_thickness_texture,
-        ];
-        refs.into_iter().flatten()
+    /// The texture that a target looks up.
+    pub fn texture(&self, target: TextureTarget) -> Option<TextureRef> {
+        let is_looked_up = target != TextureTarget::Opacity || self.alpha_mode != AlphaMode::Opaque;
+        self.textures[target.home() as usize].filter(|_| is_looked_up)
     }
 
-    /// The same to be changed.
-    fn texture_refs_mut(&mut self) -> impl Iterator<Item = &mut TextureRef> {
-        let refs = [
-            &mut self.base_color_texture,
-            &mut self.metallic_roughness_texture,
-            &mut self.normal_texture,
-            &mut self.emissive_texture,
-            &mut self.coat_texture,
-            &mut self.film_texture,
-            &mut self.film_thickness_texture,
-        ];
-        refs.into_iter().flatten()
+    /// The texture of a target, and of those that share it, to be changed.
+    pub fn texture_mut(&mut self, target: TextureTarget) -> &mut Option<TextureRef> {
+        &mut self.textures[target.home() as usize]
     }
 }
 

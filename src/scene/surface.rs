@@ -245,7 +245,8 @@ pub fn surfaces_at<T: Real>(
         vertex_color = between(&colors, &weights);
     }
     let has_map = of_lane.textures[2] != NO_TEXTURE;
-    let is_stretched = material.anisotropy.differs(T::zero()).any();
+    let stretches = [material.anisotropy, material.coat_anisotropy];
+    let is_stretched = stretches.iter().any(|stretch| stretch.differs(T::zero()).any());
     let mut tangent = Vec3::zero();
     let mut side = T::one();
     if has_map || is_stretched {

@@ -8,77 +8,39 @@ pub(super) const SIZE_MAX: u64 = 16 << 20;
 
 /// Why a material or project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum FileError {
     /// The system can't read it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    Read { path: PathBuf, source: io::Error },
     /// Too large to be one.
     #[error("{}: too large for a material or project (over {} MiB); choose another file", path.display(), SIZE_MAX >> 20)]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-    },
+    TooLarge { path: PathBuf },
     /// Not JSON, or cut short.
     #[error("{}: not valid JSON: {reason}; correct it there or save the file again", path.display())]
-    NotJson {
-        /// The file.
-        path: PathBuf,
-        /// What and where.
-        reason: String,
-    },
+    NotJson { path: PathBuf, reason: String },
     /// JSON of something else.
     #[error("{}: not a Glossmith {expected}: it has no \"{mark}\" number; choose a file saved as {expected}", path.display())]
     WrongKind {
-        /// The file.
         path: PathBuf,
-        /// `material` or `project`.
         expected: &'static str,
-        /// The key that says so.
         mark: &'static str,
     },
     /// An image that was not saved by Glossmith, or whose text another program left out.
     #[error("{}: an image without a Glossmith document inside; open one that was saved here", path.display())]
-    NoDocument {
-        /// The file.
-        path: PathBuf,
-    },
+    NoDocument { path: PathBuf },
     /// Contents out of range, with what would be right.
     #[error("{}: {reason}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what would be right.
-        reason: String,
-    },
+    Content { path: PathBuf, reason: String },
     /// It names files that lie elsewhere.
     #[error("{}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)", path.display(), list(files))]
-    Outside {
-        /// The file.
-        path: PathBuf,
-        /// What it names.
-        files: Vec<PathBuf>,
-    },
+    Outside { path: PathBuf, files: Vec<PathBuf> },
     /// No such preset, no such file.
     #[error("no material is called {name} and there is no such file; the shipped ones are {known}")]
-    UnknownMaterial {
-        /// What was asked for.
-        name: String,
-        /// The names that there are.
-        known: String,
-    },
+    UnknownMaterial { name: String, known: String },
     /// The file cannot be written.
     #[error("{}: cannot be saved: {source}; check the folder's permissions and free space", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    Write { path: PathBuf, source: io::Error },
 }
 
 fn list(files: &[PathBuf]) -> String {

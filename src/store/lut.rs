@@ -3,11 +3,12 @@
 //! The crate that exists (`lut_parser` 2.1) refuses tables without a title, and most tables have none.
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::SystemTime;
 
 use super::{FileError, file};
 use crate::optics::tone::Lut;
+use crate::panics::lock;
 
 /// Most entries along a side, of a cube and of curves.
 const SIZES: [usize; 2] = [129, 65536];
@@ -87,7 +88,7 @@ static TABLES: Mutex<Vec<Remembered>> = Mutex::new(Vec::new());
 /// The table in a file, read again if the file was saved since. `None`, logged once, if it can't be read.
 pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
     let saved = std::fs::metadata(path).and_then(|file| file.modified()).ok();
-    let mut tables = TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut tables = lock(&TABLES);
     if let Some((.., table)) = tables.iter().find(|(of, at, _)| of == path && *at == saved) {
         return table.clone();
     }

@@ -30,28 +30,50 @@ pub const MARK: &str = "glossmith";
 const MIGRATIONS: [fn(&mut Map<String, Json>); VERSION as usize] = [migrate_0];
 
 macro_rules! shipped {
-    ($($file:literal)*) => { &[$(include_str!(concat!("../../assets/presets/", $file, ".json")),)*] };
+    ($($group:literal: $($file:literal)*;)*) => {
+        &[$(($group, &[$(include_str!(concat!("../../assets/presets/", $file, ".json")),)*]),)*]
+    };
 }
 
-/// The files of the shipped materials, in the order of the menus.
-pub const SHIPPED: &[&str] = shipped! {
-    "plastic-blue" "plastic-red" "plastic-white" "plastic-yellow" "rubber" "satin-black" "soft-touch-black"
-    "lambert-white" "clay" "chalk" "eggshell-paint" "matt-green-paint" "terracotta" "stoneware" "porcelain"
-    "celadon-glaze" "cobalt-glaze" "obsidian" "jade" "pearl" "lacquered-walnut" "lacquered-oak"
-    "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red"
-    "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass" "diamond"
-    "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
-    "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel" "soap-film"
+/// The files of the shipped materials in their groups, in the order of the menus.
+pub const SHIPPED: &[(&str, &[&str])] = shipped! {
+    "Plastics and rubber":
+        "plastic-blue" "plastic-red" "plastic-white" "plastic-yellow" "rubber" "satin-black" "soft-touch-black";
+    "Paint, clay and stone":
+        "lambert-white" "clay" "chalk" "eggshell-paint" "matt-green-paint" "terracotta" "stoneware" "obsidian" "jade";
+    "Ceramics and pearl": "porcelain" "celadon-glaze" "cobalt-glaze" "pearl";
+    "Cloth": "velvet-burgundy" "velvet-navy" "cotton-white" "denim" "felt-grey" "suede-tan";
+    "Lacquer and car paint":
+        "lacquered-walnut" "lacquered-oak" "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red";
+    "Metals":
+        "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
+        "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel";
+    "Glass and liquids":
+        "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass"
+        "diamond" "soap-film";
 };
 
 /// The shipped materials, in the order of the menus.
 pub static PRESETS: LazyLock<Vec<MaterialSettings>> = LazyLock::new(|| {
-    let parse = |text: &&str| parse_material(Path::new("assets/presets"), text.as_bytes());
-    let parsed = SHIPPED
-        .iter()
-        .map(|text| parse(text).expect("shipped materials are valid").value);
-    parsed.collect()
+    let parse = |text: &&str| {
+        let parsed = parse_material(Path::new("assets/presets"), text.as_bytes());
+        let mut material = parsed.expect("shipped materials are valid").value;
+        material.file_extra.shift_remove(SOURCE);
+        material
+    };
+    SHIPPED.iter().flat_map(|(_, files)| *files).map(parse).collect()
 });
+
+/// The key in a shipped file that says where its values come from.
+const SOURCE: &str = "source";
+
+/// Where a shipped material's values come from, one or two sentences; `None` for a material that is not shipped.
+pub fn source_of_values(name: &str) -> Option<String> {
+    let index = PRESETS.iter().position(|material| material.name == name)?;
+    let text = SHIPPED.iter().flat_map(|(_, files)| *files).nth(index)?;
+    let object = file::object(Path::new("assets/presets"), text.as_bytes()).ok()?;
+    Some(object.get(SOURCE)?.as_str()?.to_owned())
+}
 
 /// A material's name as it is written on the command line: lower case, hyphens for spaces.
 pub fn command_line_name(name: &str) -> String {
@@ -277,6 +299,11 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             None => Map::new(),
         };
         show_iridescence(&mut values);
+        let has_coat = values.get("coat.weight").and_then(Json::as_f64) > Some(0.0);
+        if has_coat && !values.contains_key("coat.on_base") {
+            // From before coats changed what lies below them.
+            material.keep_below_coat();
+        }
         for parameter in PARAMETERS.iter() {
             if let Some(json) = values.shift_remove(parameter.key) {
                 parameter.set(&mut material, parameter.value_from_json(&json)?)?;

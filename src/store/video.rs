@@ -16,29 +16,20 @@ const OPAQUE_FROM: u8 = 128;
 
 /// Why a video can't be written.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum VideoError {
     /// The extension is not that of a format that can be written.
     #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
-    Format {
-        /// The file.
-        path: PathBuf,
-    },
+    Format { path: PathBuf },
     /// The program was built without the encoder.
     #[error("{}: this program was built without H.264 (the feature `video`); give the file the ending .gif", path.display())]
-    NotBuilt {
-        /// The file.
-        path: PathBuf,
-    },
+    NotBuilt { path: PathBuf },
     /// The encoder refuses, mostly for its size.
     #[error("{}: no video of {width} × {height} pixels: {why}; choose another size", path.display())]
     Encoder {
-        /// The file.
         path: PathBuf,
-        /// Columns.
         width: u32,
-        /// Rows.
         height: u32,
-        /// What it says.
         why: String,
     },
     /// The file could not be written.

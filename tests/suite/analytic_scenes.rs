@@ -10,6 +10,7 @@ use glossmith::optics::random::Sequence;
 use glossmith::render::Assets;
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use glossmith::scene::mesh::Mesh;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
 use crate::analytic_bodies::bodies;
@@ -201,7 +202,14 @@ pub fn cases() -> Vec<Case> {
 /// Matt, coated and clamped surfaces that see the environment alone.
 fn planes() -> Vec<Case> {
     let colored = ["base.color=0.6,0.3,0.1"];
-    let coated = ["base.color=1,1,1", "coat.weight=0.5", "coat.color=0.2,0.5,0.8"];
+    // A coat that leaves what is below it as it is; the other has its closed forms in coat_base.rs.
+    let coated = [
+        "base.color=1,1,1",
+        "coat.weight=0.5",
+        "coat.color=0.2,0.5,0.8",
+        "coat.on_base=off",
+        "coat.darkening=0",
+    ];
     // What the coat reflects of this view is lost to what is below it: seen from above by an ior of 1.5, 4 %.
     let coat = |share: f64| [0.2, 0.5, 0.8].map(|color| share + (1.0 - share) * (0.5 + 0.5 * color));
     vec![
@@ -529,7 +537,7 @@ fn tilts() -> Vec<Case> {
         rgba8: [codes[0], codes[1], codes[2], 255].repeat(4),
         rgba16: Vec::new(),
     }];
-    model.slots[0].normal_texture = Some(TextureRef {
+    *model.slots[0].texture_mut(TextureTarget::Normal) = Some(TextureRef {
         texture: 0,
         uv_set: 0,
         texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],

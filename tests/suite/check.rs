@@ -6,7 +6,7 @@ use glossmith::cpu;
 use glossmith::job::scatter::ScatterRequest;
 use glossmith::optics::lobe::model::LobeModel;
 use glossmith::render::EngineChoice;
-use glossmith::render::check::{CheckOptions, chi_square, run, sample_cases};
+use glossmith::study::check::{CheckOptions, chi_square, run, sample_cases};
 use rayon::prelude::*;
 
 use crate::lobe_cases::lobes_and_curves;

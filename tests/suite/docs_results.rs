@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glossmith::render::study::benchmark::report::{EngineReport, Report, number};
+use glossmith::study::benchmark::report::{EngineReport, Report, number};
 
 use super::docs::root;
 use super::docs_tables::table;

@@ -16,7 +16,7 @@ use glossmith::optics::vector::Vec3;
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
 use glossmith::store::file_kind::FileKind;
-use glossmith::store::preset::command_line_name;
+use glossmith::store::preset::{command_line_name, source_of_values};
 
 use super::docs::{pages, root, text_of};
 
@@ -122,10 +122,18 @@ fn presets() -> String {
             } else {
                 "–".to_owned()
             },
+            source_of_values(&material.name).unwrap_or_default(),
         ]
     };
     table(
-        &["name", "base colour", "metalness", "roughness", "Fresnel"],
+        &[
+            "name",
+            "base colour",
+            "metalness",
+            "roughness",
+            "Fresnel",
+            "where its values come from",
+        ],
         PRESETS.iter().map(row),
     )
 }

@@ -114,7 +114,7 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
                 m.base_weight * m.base_color[0],
                 m.base_weight * m.base_color[1],
                 m.base_weight * m.base_color[2],
-                m.coat_roughness,
+                m.coat_ggx_roughness(),
                 m.metalness,
                 m.roughness,
                 m.anisotropy,

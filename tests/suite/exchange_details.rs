@@ -1,17 +1,17 @@
 //! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
 
-use glossmith::document::MaterialSettings;
+use glossmith::document::{CoatLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::store::exchange::report::Outcome;
 use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
-use glossmith::store::{save_document, save_material};
+use glossmith::store::{load_material, save_document, save_material};
 use serde_json::Value as Json;
 
 use crate::cli_support::Workplace;
-use crate::exchange::read_surface;
 use crate::gltf_builder::Folder;
 use crate::textures::all_at_once;
 
@@ -117,37 +117,34 @@ fn usd_has_the_surface_for_programs_that_know_open_pbr() {
     assert!(shader.contains("color3f inputs:base_color = ("), "{shader}");
 }
 
-/// `1 - K` over `1 - base K`, K the share that a coat keeps inside (OpenPBR 1.1, "Coat darkening").
+/// OpenPBR's coat comes back as it went, and one that leaves the base as it is does not without a word.
 #[test]
-fn a_coat_that_darkens_is_a_tinted_one() {
+fn what_a_coat_does_to_the_base_is_in_open_pbr() {
     let place = Workplace::new();
-    let color = |numbers: &[(&str, f32)]| {
-        let numbers = [&[("coat_ior", 1.6)], numbers].concat();
-        let material = read_surface(&place, "open_pbr_surface", &numbers);
-        (material.coat_weight, material.coat_color)
+    let coated = MaterialSettings {
+        coat_weight: 0.5,
+        coat_darkening: 0.25,
+        coat_anisotropy: 0.5,
+        coat_lobe: CoatLobe::Ggx,
+        coat_roughness: 0.3,
+        ..metal()
     };
-    let head_on = (0.6_f64 / 2.6).powi(2);
-    let inside = 1.0 - (1.0 - head_on) / (1.6 * 1.6);
-    let darkened = |base: f64| (1.0 - inside) / (1.0 - base * inside);
-    // A node without a colour of its own is of 0.8, and a metal's has the weight of its reflection.
-    let of_metal: &[(&str, f32)] = &[("base_metalness", 1.0), ("specular_weight", 0.5)];
-    for (weight, darkening, more, base) in [
-        (1.0, 1.0, &[][..], 0.8),
-        (0.5, 1.0, &[], 0.8),
-        (0.5, 0.5, &[], 0.8),
-        (1.0, 0.0, &[], 0.8),
-        (1.0, 1.0, of_metal, 0.4),
-    ] {
-        let numbers = [&[("coat_weight", weight), ("coat_darkening", darkening)], more].concat();
-        let (found, [red, green, blue]) = color(&numbers);
-        let expected = 1.0 + (darkened(base) - 1.0) * f64::from(darkening);
-        assert_eq!(found, weight);
-        assert_eq!([red, green], [green, blue]);
-        assert!(
-            (f64::from(red) - expected).abs() < 1e-5,
-            "{weight} {darkening} {base}: {red} {expected}"
-        );
-    }
+    let report_of = |material: &MaterialSettings, ending: &str| {
+        save_material(&place.path("a.json"), material).unwrap();
+        place.done(&format!("convert a.json a.{ending} --report -")).stdout
+    };
+    assert!(!report_of(&coated, "mtlx").contains("share in the base"));
+    place.done("convert a.mtlx b.json --without-exact --import-lobe ggx");
+    let back = load_material(&place.path("b.json")).unwrap().value;
+    let coat = |m: &MaterialSettings| (m.coat_on_base, m.coat_darkening, m.coat_lobe);
+    assert_eq!(coat(&back), coat(&coated));
+    assert!((back.coat_anisotropy - 0.5).abs() < 1e-4, "{}", back.coat_anisotropy);
+    assert!((back.coat_roughness - 0.3).abs() < 1e-4, "{}", back.coat_roughness);
+    assert!(report_of(&coated, "glb").contains("what the coat changes below it"));
+    let mut plain = coated;
+    plain.keep_below_coat();
+    assert!(report_of(&plain, "mtlx").contains("share in the base"));
+    assert!(!report_of(&plain, "glb").contains("what the coat changes below it"));
 }
 
 #[test]
@@ -242,25 +239,26 @@ fn textures_travel_in_gltf() {
         [document.model.clone(), ModelSource::File(place.path("scene.glb"))].map(|source| load(&source).unwrap());
     assert_eq!(after.textures.len(), before.textures.len());
     let [old, new] = [&before, &after].map(|model| &model.slots[0]);
-    let pixels = |model: &glossmith::scene::Model, place: &Option<glossmith::scene::TextureRef>| {
-        let picture = &model.textures[place.as_ref().expect("a texture").texture];
+    let pixels = |model: &glossmith::scene::Model, target| {
+        let place = model.slots[0].texture(target).expect("a texture");
+        let picture = &model.textures[place.texture];
         (picture.width, picture.height, picture.rgba8.clone())
     };
-    let of_both = [
-        (&old.base_color_texture, &new.base_color_texture),
-        (&old.metallic_roughness_texture, &new.metallic_roughness_texture),
-        (&old.normal_texture, &new.normal_texture),
-        (&old.emissive_texture, &new.emissive_texture),
+    let maps = [
+        TextureTarget::BaseColor,
+        TextureTarget::Roughness,
+        TextureTarget::Normal,
+        TextureTarget::Emission,
     ];
-    for (old, new) in of_both {
-        assert_eq!(pixels(&before, old), pixels(&after, new));
+    for target in maps {
+        assert_eq!(pixels(&before, target), pixels(&after, target));
     }
     assert_eq!((old.alpha_mode, old.alpha_cutoff), (new.alpha_mode, new.alpha_cutoff));
     assert_eq!(old.normal_scale, new.normal_scale);
     assert!((0.0..=1.0).contains(&new.roughness), "{}", new.roughness);
     // What a file has one number for is that of the texture's mean.
     let mean = {
-        let (width, height, rgba8) = pixels(&before, &old.metallic_roughness_texture);
+        let (width, height, rgba8) = pixels(&before, TextureTarget::Roughness);
         let greens = rgba8.chunks(4).map(|texel| f32::from(texel[1]));
         greens.sum::<f32>() / (255 * width * height) as f32
     };

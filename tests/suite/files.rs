@@ -21,15 +21,13 @@ use crate::parameters::is_in_range;
 #[test]
 fn shipped_materials_are_in_the_format_that_is_saved() {
     assert!(PRESETS.len() >= 12);
-    for (material, text) in PRESETS.iter().zip(SHIPPED) {
-        assert_eq!(
-            preset::material_text(std::path::Path::new(""), material),
-            *text,
-            "{}",
-            material.name
-        );
+    for (material, text) in PRESETS.iter().zip(SHIPPED.iter().flat_map(|(_, files)| *files)) {
         let loaded = preset::parse_material("x.json".as_ref(), text.as_bytes()).expect("valid");
         assert_eq!(loaded.warnings, Vec::<String>::new());
+        let written = preset::material_text(std::path::Path::new(""), &loaded.value);
+        assert_eq!(written, *text, "{}", material.name);
+        let source = preset::source_of_values(&material.name).expect("a source");
+        assert!(text.contains(&source) && source.ends_with('.'), "{}", material.name);
         assert!(is_in_range(material), "{}", material.name);
         let name = preset::command_line_name(&material.name);
         assert_eq!(
@@ -387,7 +385,8 @@ proptest! {
         file in any::<prop::sample::Index>(),
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0..8_u8), 1..5),
     ) {
-        let mut bytes = file.get(SHIPPED).as_bytes().to_vec();
+        let (_, group) = file.get(SHIPPED);
+        let mut bytes = file.get(group).as_bytes().to_vec();
         for (place, byte, edit) in edits {
             let place = place.index(bytes.len());
             match edit {

@@ -7,8 +7,8 @@ use glossmith::optics::layer::{MaterialNumbers, material_density, material_layer
 use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::study::evaluate::Evaluator;
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),

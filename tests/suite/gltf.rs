@@ -7,6 +7,7 @@ use glam::{DVec3, Vec2, Vec3};
 use glossmith::document::Document;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::mesh::plane_normal;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{AlphaMode, Fate, Geometry, ModelSource, Wrap};
 use serde_json::{Value, json};
 
@@ -294,7 +295,7 @@ fn materials_and_textures_become_slots() {
     assert!(default.attenuation_distance.is_infinite());
     assert_eq!(model.report.lines().len(), 1, "{:?}", model.report);
     assert!(lamp.double_sided && !default.double_sided);
-    let color = lamp.base_color_texture.expect("a colour texture");
+    let color = lamp.texture(TextureTarget::BaseColor).expect("a colour texture");
     assert_eq!(
         (color.wrap, color.texture_from_mesh_uv),
         (
@@ -302,7 +303,7 @@ fn materials_and_textures_become_slots() {
             [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
         )
     );
-    let normal = lamp.normal_texture.expect("a normal texture");
+    let normal = lamp.texture(TextureTarget::Normal).expect("a normal texture");
     let (sin, cos) = 0.5f32.sin_cos();
     let expected = [2.0 * cos, 3.0 * sin, 0.25, -2.0 * sin, 3.0 * cos, 0.5];
     assert_eq!(

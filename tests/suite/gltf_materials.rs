@@ -5,7 +5,7 @@ use glossmith::document::{ImportLobe, MaterialSettings, compile_textured};
 use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
 use glossmith::optics::thin_film::film_path;
-use glossmith::scene::texture::Textures;
+use glossmith::scene::texture::{TextureTarget, Textures};
 use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ fn material_extensions_reach_the_slots() {
     assert_eq!((slot.anisotropy_rotation_rad, slot.ior), (0.5, 4.0));
     has_widths(&materials_of(&model, ImportLobe::Ggx)[0], 0.5, 0.75);
     assert!(
-        slot.coat == 0.5 && slot.coat_texture.is_some(),
+        slot.coat == 0.5 && slot.texture(TextureTarget::Coat).is_some(),
         "its texture is looked up"
     );
     // Both texels of the picture are (10, 20, 30).
@@ -112,7 +112,7 @@ fn a_texture_of_the_roughness_widens_with_it() {
         "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.2}},
     }));
     let slot = &model.slots[0];
-    let texture = &model.textures[slot.metallic_roughness_texture.as_ref().unwrap().texture];
+    let texture = &model.textures[slot.texture(TextureTarget::Roughness).unwrap().texture];
     let mut material = materials_of(&model, ImportLobe::Ggx)[0].clone();
     assert_eq!(material.roughness, 1.0);
     material.roughness *= f32::from(texture.rgba8[1]) / 255.0;
@@ -150,7 +150,7 @@ fn unlit_materials_shine_and_reflect_nothing() {
         (slot.emission, slot.base_color, slot.specular),
         ([0.25, 0.5, 0.75], [0.0; 3], 0.0)
     );
-    assert!(slot.emissive_texture.is_some());
+    assert!(slot.texture(TextureTarget::Emission).is_some());
 }
 
 #[test]
@@ -180,8 +180,8 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
     let names: Vec<&str> = model.textures.iter().map(|texture| texture.name.as_str()).collect();
     assert_eq!(model.textures.len(), 3, "{names:?}");
     let slot = &model.slots[0];
-    let color = &model.textures[slot.base_color_texture.unwrap().texture];
-    let surface = &model.textures[slot.metallic_roughness_texture.unwrap().texture];
+    let color = &model.textures[slot.texture(TextureTarget::BaseColor).unwrap().texture];
+    let surface = &model.textures[slot.texture(TextureTarget::Roughness).unwrap().texture];
     assert_eq!(color.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
     assert_eq!(surface.rgba8[..4], [255, 128, 0, 255]);
 }

@@ -5,6 +5,7 @@ use glossmith::import::environment::{load, load_encoded};
 use glossmith::import::{load as load_model, load_with};
 use glossmith::optics::material::NO_TEXTURE;
 use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::{Textures, texture_lookup};
 use glossmith::scene::{Fate, Model, ModelOptions, ModelSource};
 use half::f16;
@@ -259,11 +260,10 @@ fn normals_and_roughness_keep_sixteen_bits_and_colours_have_eight() {
         assert_eq!(model.textures[0].rgba16[..3], [32768 + 77, 32768 - 40, 65535], "{slot}");
         let textures = Textures::new(&model);
         let of_slot = &textures.slots[0];
-        let record = if slot == "normalTexture" {
-            of_slot.normal
-        } else {
-            of_slot.roughness
-        };
+        let record = of_slot.record(match slot {
+            "normalTexture" => TextureTarget::Normal,
+            _ => TextureTarget::Roughness,
+        });
         assert_ne!(record, NO_TEXTURE);
         // The middle of the first texel.
         let (found, alpha) = texture_lookup(&textures, record, [[0.25_f64, 0.5]; 3]);

@@ -6,11 +6,11 @@ use std::time::Duration;
 
 use glossmith::document::Document;
 use glossmith::document::effect::EffectSwitches;
-use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
+use glossmith::study::hard::{HardOptions, catalogue, markdown, run};
 
 fn options(engine: EngineChoice, thorough: bool) -> HardOptions {
     HardOptions {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3};
 use glossmith::import::load;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Entry, Fate, Geometry, Model, ModelSource, Wrap};
 
 use super::gltf_builder::{Folder, glb, png, square};
@@ -39,9 +40,12 @@ fn obj_files_come_with_their_materials() {
         (paint.emission, paint.metalness, paint.roughness),
         ([1.0, 2.0, 3.0], 0.0, 0.5)
     );
-    assert_eq!(model.textures[paint.base_color_texture.expect("wood").texture].width, 2);
     assert_eq!(
-        (bare.metalness, bare.roughness, bare.base_color_texture),
+        model.textures[paint.texture(TextureTarget::BaseColor).expect("wood").texture].width,
+        2
+    );
+    assert_eq!(
+        (bare.metalness, bare.roughness, bare.texture(TextureTarget::BaseColor)),
         (1.0, 0.25, None)
     );
     let missing: Vec<_> = model.report.of(Fate::Missing).collect();
@@ -91,7 +95,7 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     };
     assert_eq!((clear.name.as_str(), clear.opacity), ("Clear", 0.25));
     assert_eq!(unnamed.base_color, [1.0, 0.0, 0.0]);
-    let texture = clear.base_color_texture.expect("a name with a space");
+    let texture = clear.texture(TextureTarget::BaseColor).expect("a name with a space");
     assert_eq!(texture.texture_from_mesh_uv, [4.0, 0.0, 0.25, 0.0, 2.0, -1.0]);
     assert_eq!(texture.wrap, [Wrap::ClampToEdge; 2]);
     for words in ["-imfchan r", "passes through (Tf)", "Ks spectral steel.rfl"] {

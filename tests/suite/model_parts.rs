@@ -7,6 +7,7 @@ use glossmith::document::Document;
 use glossmith::import::{ModelError, load_watched, load_with};
 use glossmith::render::Assets;
 use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Fate, Geometry, Loading, ModelOptions, ModelSource};
 use glossmith::store::{load_document, save_document};
 use serde_json::json;
@@ -78,7 +79,7 @@ fn models_given_together_are_shown_together() {
         ("square", 5, 3)
     );
     assert_eq!(whole.mesh.slots, [0, 0, 1, 2, 2]);
-    assert_eq!(whole.slots[0].base_color_texture.unwrap().texture, 0);
+    assert_eq!(whole.slots[0].texture(TextureTarget::BaseColor).unwrap().texture, 0);
     let names: Vec<&String> = whole.report.of(Fate::Used).flat_map(|entry| &entry.names).collect();
     assert!(names.iter().any(|name| *name == "part.stl") && names.iter().any(|name| *name == "other.glb"));
     assert!(whole.files.contains(&part) && whole.files.contains(&other));

@@ -8,9 +8,9 @@ use std::fmt::Write as _;
 
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
 use glossmith::optics::vector::Vec3;
-use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::store::exchange::{ReadOptions, find};
+use glossmith::study::evaluate::Evaluator;
 
 use crate::cli_support::Workplace;
 
@@ -82,7 +82,12 @@ fn assert_values(kind: &str, tolerance: f64, reflects: bool) {
         let numbers: Vec<f64> = cells.iter().map(|cell| cell.parse().unwrap()).collect();
         let [wo, wi] = [[0, 1], [2, 3]].map(|[theta, phi]| direction(numbers[theta], numbers[phi]));
         let found = evaluator.evaluate(&[[wo, wi]]).unwrap()[0].value;
-        let alpha = f64::from(material.roughness).powi(2);
+        let alpha = f64::from(if kind == "coat" {
+            material.coat_roughness
+        } else {
+            material.roughness
+        })
+        .powi(2);
         let masking = match reflects {
             true => separable_over_correlated(alpha, [f64::from(wo.z), f64::from(wi.z)]),
             false => 1.0,
@@ -127,6 +132,28 @@ fn peaks_of_metals_have_the_oracle_s_values() {
 #[test]
 fn peaks_of_refraction_have_the_oracle_s_values() {
     assert_values("refracted", 5e-3, false);
+}
+
+#[test]
+fn coats_have_the_oracle_s_lobe() {
+    assert_values("coat", 3e-3, true);
+}
+
+#[test]
+fn coats_over_bases_have_the_oracle_s_albedo() {
+    let place = Workplace::new();
+    for (name, inputs, cells) in rows("coated") {
+        let material = material(&place, inputs, false);
+        let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
+        let numbers: Vec<f64> = cells[1..].iter().map(|cell| cell.parse().unwrap()).collect();
+        let found = evaluator.albedo(numbers[0], 1 << 14, 1).unwrap();
+        let all = found.reflected.into_iter().chain(found.transmitted);
+        let off: Vec<f64> = all
+            .zip(&numbers[1..])
+            .map(|(value, expected)| value - expected)
+            .collect();
+        println!("{name} {} {off:.4?}", numbers[0]);
+    }
 }
 
 #[test]

@@ -85,18 +85,7 @@ fn with(model: &Model, target: TextureTarget, texture: &UserTexture, picture: &R
 /// Red, green, blue and alpha at these texture coordinates.
 fn found(target: TextureTarget, texture: &UserTexture, uv: [f64; 2]) -> [f64; 4] {
     let textures = with(&square(), target, texture, &four_texels());
-    let slot = textures.slots[0];
-    let record = [
-        slot.base_color,
-        slot.roughness,
-        slot.metalness,
-        slot.normal,
-        slot.opacity,
-        slot.emission,
-        slot.coat,
-        slot.film,
-        slot.film_thickness,
-    ][target as usize];
+    let record = textures.slots[0].record(target);
     let (color, alpha) = texture_lookup::<f64>(&textures, record, [uv, [9.0; 2], [9.0; 2]]);
     let [r, g, b] = color.to_f64();
     [r, g, b, alpha]
@@ -223,10 +212,10 @@ fn own_pictures_of_one_value_are_numbers() {
         ..UserTexture::default()
     };
     let slot = with(&square(), TextureTarget::Roughness, &half, &grey).slots[0];
-    let value = slot.constant_roughness.unwrap();
+    let [value, ..] = slot.constant(TextureTarget::Roughness).unwrap();
     assert!((value - (1.0 - 0.5 * 64.0 / 255.0)).abs() < 1e-6, "{value}");
     let colour = with(&square(), TextureTarget::BaseColor, &UserTexture::default(), &grey).slots[0];
-    let [r, ..] = colour.constant_base_color.unwrap();
+    let [r, ..] = colour.constant(TextureTarget::BaseColor).unwrap();
     assert!((f64::from(r) - linear(64)).abs() < 1e-6);
 }
 
@@ -265,7 +254,11 @@ fn normals_turn_with_their_picture() {
             ..UserTexture::default()
         };
         let textures = with(&square(), TextureTarget::Normal, &texture, &up);
-        let (color, _) = texture_lookup::<f64>(&textures, textures.slots[0].normal, [[0.5; 2]; 3]);
+        let (color, _) = texture_lookup::<f64>(
+            &textures,
+            textures.slots[0].record(TextureTarget::Normal),
+            [[0.5; 2]; 3],
+        );
         2.0 * color.y - 1.0
     };
     assert!(direction(false) > 0.6 && direction(true) < -0.6);

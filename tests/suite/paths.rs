@@ -11,10 +11,10 @@ use glossmith::document::{AreaLight, Document, MaterialSettings, Strategy};
 use glossmith::job::tiles::TileGrid;
 use glossmith::optics::layer::decides_by_facet;
 use glossmith::optics::random::Sequence;
-use glossmith::render::explain::explain;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
+use glossmith::study::explain::explain;
 
 use crate::analytic_media::ball_with_inserts;
 use crate::analytic_scenes::room;

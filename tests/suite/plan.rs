@@ -143,6 +143,9 @@ fn needing(effect: &str) -> Document {
     let assignments: &[&str] = match effect {
         "base" => &["specular.fresnel=schlick", "base.metalness=0"],
         "coat" => &["coat.weight=1"],
+        "coat-ggx" => &["coat.weight=1", "coat.lobe=ggx", "coat.roughness=0.9"],
+        "coat-darkening" => &["base.metalness=0", "coat.weight=1", "coat.ior=2"],
+        "coat-absorption" => &["base.metalness=0", "coat.weight=1", "coat.color=0.2,0.5,0.9"],
         "fuzz" => &["fuzz.weight=1", "fuzz.roughness=1"],
         "thin-film" => &["thin_film.weight=1", "thin_film.ior=2"],
         "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],

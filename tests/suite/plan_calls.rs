@@ -2,7 +2,8 @@
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
 use glossmith::document::{
-    AreaLight, AreaLightShape, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy, TextureUse,
+    AreaLight, AreaLightShape, Background, CoatLobe, Denoise, Document, GroundKind, MaterialSettings, Strategy,
+    TextureUse,
 };
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
@@ -237,6 +238,7 @@ fn calls_for(effect: &str) -> Calls {
             &[
                 |d, _| d.materials[0].anisotropy = LEAST,
                 |d, _| d.materials[0].anisotropy = -LEAST,
+                |d, _| (d.materials[0].coat_weight, d.materials[0].coat_anisotropy) = (LEAST, LEAST),
             ],
         ),
         "horizon" => (two_metals, &[|d, _| d.materials[1].horizon = Horizon::Absorb]),
@@ -262,6 +264,21 @@ fn calls_for(effect: &str) -> Calls {
         "fuzz" => (metal, &[|d, _| d.materials[0].fuzz_weight = LEAST]),
         "thin-film" => (metal, &[|d, _| d.materials[0].film_weight = LEAST]),
         "coat" => (metal, &[|d, _| d.materials[0].coat_weight = LEAST]),
+        "coat-ggx" => (
+            metal,
+            &[|d, _| (d.materials[0].coat_weight, d.materials[0].coat_lobe) = (LEAST, CoatLobe::Ggx)],
+        ),
+        "coat-darkening" => (
+            metal,
+            &[|d, _| (d.materials[0].coat_weight, d.materials[0].coat_darkening) = (LEAST, LEAST)],
+        ),
+        "coat-absorption" => (
+            metal,
+            &[
+                |d, c| (d.materials[0].coat_weight, d.materials[0].coat_color) = (LEAST, one(c, MOST, 1.0)),
+                |d, c| (d.materials[0].coat_weight, d.materials[0].coat_color) = (LEAST, one(c, 0.0, 1.0)),
+            ],
+        ),
         "transmission" => (
             metal,
             &[

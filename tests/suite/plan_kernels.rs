@@ -13,7 +13,8 @@ use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
 use glossmith::optics::material::{
-    COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
+    VERTEX_OPACITY,
 };
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
@@ -41,7 +42,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "curve" => |material, curve| material.curve = curve,
         "horizon" => |material, horizon| material.horizon = horizon,
         "fresnel" => |material, fresnel| material.fresnel = fresnel,
-        "anisotropy" => |material, _| material.anisotropy = 0.0,
+        "anisotropy" => |material, _| (material.anisotropy, material.coat_anisotropy) = (0.0, 0.0),
         "base" => |material, _| {
             let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
             // A metal's colour is that of its reflection.
@@ -61,7 +62,10 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
         "fuzz" => |material, _| material.fuzz_weight = 0.0,
         "thin-film" => |material, _| material.has_film = 0,
-        "coat" => |material, _| material.coat_weight = 0.0,
+        "coat" => |material, _| (material.coat_weight, material.reflecting_ior) = (0.0, material.ior),
+        "coat-ggx" => |material, _| material.flags &= !COAT_IS_GGX,
+        "coat-darkening" => |material, _| material.coat_darkening = 0.0,
+        "coat-absorption" => |material, _| material.flags &= !COAT_ABSORBS,
         "color-texture" => |material, _| {
             material.textures[0] = NO_TEXTURE;
             material.flags &= !VERTEX_BASE;

@@ -6,8 +6,8 @@ use glossmith::analysis::quadrature::integrate_hemisphere;
 use glossmith::document::{MaterialSettings, assign};
 use glossmith::optics::rough_diffuse::{rough_diffuse, single_albedo};
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::evaluate::Evaluator;
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::study::evaluate::Evaluator;
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),

@@ -2,8 +2,8 @@
 //! colour takes each time.
 
 use glossmith::document::{MaterialSettings, assign};
-use glossmith::render::evaluate::{Albedo, Evaluator};
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::study::evaluate::{Albedo, Evaluator};
 
 /// Cosines of the views of the table below.
 const COSINES: [f64; 6] = [1.0, 0.8, 0.6, 0.4, 0.2, 0.1];

@@ -9,26 +9,35 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
     ("instructions", &["named"]),
     ("panics", &[]),
-    ("console", &[]),
+    ("console", &["panics"]),
     ("optics", &["named"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
     ("import", &["panics", "optics", "scene"]),
     ("job", &["named", "optics", "scene"]),
-    ("cpu", &["named", "instructions", "optics", "scene", "job"]),
-    ("gpu", &["named", "optics", "scene", "job"]),
+    ("cpu", &["named", "panics", "instructions", "optics", "scene", "job"]),
+    ("gpu", &["named", "panics", "optics", "scene", "job"]),
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
-    ("document", &["named", "optics", "scene", "import", "job"]),
+    ("document", &["named", "panics", "optics", "scene", "import", "job"]),
     ("matching", &["optics", "analysis", "plot", "document"]),
     (
         "store",
-        &["named", "optics", "scene", "import", "analysis", "document", "matching"],
+        &[
+            "named", "panics", "optics", "scene", "import", "analysis", "document", "matching",
+        ],
     ),
     (
         "render",
         &[
             "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
             "store", "import",
+        ],
+    ),
+    (
+        "study",
+        &[
+            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
+            "store", "render",
         ],
     ),
     (
@@ -47,13 +56,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "matching",
             "store",
             "render",
+            "study",
         ],
     ),
     (
         "app",
         &[
             "named", "panics", "optics", "scene", "import", "job", "analysis", "plot", "document", "matching", "store",
-            "render",
+            "render", "study",
         ],
     ),
 ];
@@ -170,7 +180,7 @@ fn every_dependency_is_used() {
 
 /// The parts of the window, each after those that it may use.
 const LAYERS_OF_APP: &[&[&str]] = &[
-    &["kit"],
+    &["kit", "lights"],
     &["services"],
     &["pane"],
     &["actions"],

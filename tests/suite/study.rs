@@ -10,13 +10,13 @@ use glossmith::job::sampling::{SamplingRequest, SamplingStage};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
-use glossmith::render::study::StudyError;
-use glossmith::render::study::ledger::{LedgerOptions, ledger};
-use glossmith::render::study::race::{Race, RaceOptions, Runner, race};
-use glossmith::render::study::references::ReferenceCache;
-use glossmith::render::study::technique::{Setting, Technique, techniques};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
+use glossmith::study::StudyError;
+use glossmith::study::ledger::{LedgerOptions, ledger};
+use glossmith::study::race::{Race, RaceOptions, Runner, race};
+use glossmith::study::references::ReferenceCache;
+use glossmith::study::technique::{Setting, Technique, techniques};
 use serde_json::Value;
 use tempfile::TempDir;
 

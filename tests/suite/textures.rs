@@ -10,6 +10,7 @@ use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::{Textures, opacity_at, texture_lookup};
 use glossmith::scene::{Model, ModelSource};
 use image::{Rgba, RgbaImage};
@@ -79,7 +80,11 @@ fn base_color(sampler: &Value, extension: &Value, uv: [f64; 2], is_srgb: bool) -
     let material = json!({"pbrMetallicRoughness": {kind: {"index": 0, "extensions": extension}}});
     let textures = Textures::new(&load(&material, &[four_texels()], sampler));
     let slot = textures.slots[0];
-    let index = if is_srgb { slot.base_color } else { slot.roughness };
+    let index = slot.record(if is_srgb {
+        TextureTarget::BaseColor
+    } else {
+        TextureTarget::Roughness
+    });
     let (color, alpha) = texture_lookup::<f64>(&textures, index, [uv, [0.0; 2], [0.0; 2]]);
     let [r, g, b] = color.to_f64();
     [r, g, b, alpha]
@@ -174,8 +179,20 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
     let textures = Textures::new(&model);
     let uvs = [[0.25, 0.25], [0.75, 0.25], [0.0; 2]];
     let slot = textures.slots[0];
-    assert!(texture_lookup::<f64>(&textures, slot.base_color, uvs).0.x < 1e-6);
-    assert!((texture_lookup::<f64>(&textures, slot.emission, uvs).0.x - linear(100)).abs() < 1e-6);
+    assert!(
+        texture_lookup::<f64>(&textures, slot.record(TextureTarget::BaseColor), uvs)
+            .0
+            .x
+            < 1e-6
+    );
+    assert!(
+        (texture_lookup::<f64>(&textures, slot.record(TextureTarget::Emission), uvs)
+            .0
+            .x
+            - linear(100))
+        .abs()
+            < 1e-6
+    );
     assert!(model.report.is_clean(), "{:?}", model.report);
 }
 
@@ -222,7 +239,11 @@ fn pictures_that_are_too_large_are_halved() {
     assert_eq!(halved.words.len(), 256 + 32 * 32);
     let warning = halved.warnings.join("");
     assert!(warning.contains("32 × 32 instead of 64 × 64"), "{warning}");
-    let (color, _) = texture_lookup::<f64>(&halved, halved.slots[0].base_color, [[0.3, 0.4], [0.0; 2], [0.0; 2]]);
+    let (color, _) = texture_lookup::<f64>(
+        &halved,
+        halved.slots[0].record(TextureTarget::BaseColor),
+        [[0.3, 0.4], [0.0; 2], [0.0; 2]],
+    );
     assert!(
         (color.x - 0.5).abs() < 5e-3,
         "{color:?}: half the light, not half the code"

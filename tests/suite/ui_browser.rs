@@ -108,6 +108,24 @@ fn favourites_come_first_tags_are_found_and_both_are_kept() {
     assert!(!has(&harness, "Gold"), "nothing is found by a tag that was taken away");
 }
 
+#[test]
+fn presets_are_found_by_their_look() {
+    let mut harness = editor_of(options());
+    harness.run_steps(3);
+    let looks = [
+        ("yellow metal", "Gold", "Silver"),
+        ("glossy blue", "Plastic blue", "Plastic red"),
+        ("red cloth", "Velvet burgundy", "Ruby glass"),
+        ("green glass", "Bottle glass", "Celadon glaze"),
+        ("white matt", "Chalk", "Porcelain"),
+        ("brown lacquered", "Lacquered walnut", "Car paint red"),
+    ];
+    for (words, found, other) in looks {
+        search(&mut harness, words);
+        assert!(has(&harness, found) && !has(&harness, other), "{words}");
+    }
+}
+
 /// What is tagged in the browser is found by its tag in the palette, favourites first.
 #[test]
 fn the_palette_finds_by_the_browsers_tags() {

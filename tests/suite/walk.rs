@@ -17,16 +17,16 @@ use super::ui_files::drop_on;
 use super::worker::small_document;
 
 /// A window, and how often a hand has done something in it.
-struct Walk {
-    harness: Editor,
+pub(super) struct Walk {
+    pub(super) harness: Editor,
     /// Clicks, drags, key presses; a number or a path that is typed counts as one.
-    events: u32,
+    pub(super) events: u32,
     begun: Instant,
-    _folder: tempfile::TempDir,
+    pub(super) _folder: tempfile::TempDir,
 }
 
 impl Walk {
-    fn new(change: impl FnOnce(&mut Document)) -> Self {
+    pub(super) fn new(change: impl FnOnce(&mut Document)) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let mut document = Document {
             model: ModelSource::Teapot,
@@ -49,20 +49,20 @@ impl Walk {
     }
 
     /// Clicks a control where it is seen.
-    fn click(&mut self, role: Role, label: &str) {
+    pub(super) fn click(&mut self, role: Role, label: &str) {
         let at = self.harness.get_by_role_and_label(role, label).rect().center();
         self.click_at(at, PointerButton::Primary);
     }
 
     /// Brings a panel to the front by its tab.
-    fn tab(&mut self, pane: Pane) {
+    pub(super) fn tab(&mut self, pane: Pane) {
         let is_shown = |node: &egui_kittest::Node<'_>| node.accesskit_node().role() != Role::MenuItem;
         let tabs = self.harness.query_all_by_label(pane.title());
         let at = tabs.filter(is_shown).map(|tab| tab.rect().center()).next();
         self.click_at(at.expect("the panel's tab"), PointerButton::Primary);
     }
 
-    fn click_at(&mut self, at: Pos2, button: PointerButton) {
+    pub(super) fn click_at(&mut self, at: Pos2, button: PointerButton) {
         self.harness.hover_at(at);
         self.harness.step();
         for pressed in [true, false] {
@@ -80,30 +80,30 @@ impl Walk {
         self.events += 1;
     }
 
-    fn key(&mut self, key: Key) {
+    pub(super) fn key(&mut self, key: Key) {
         self.harness.key_press(key);
         self.harness.run_steps(3);
         self.events += 1;
     }
 
     /// The middle of what is seen.
-    fn middle(&self) -> Pos2 {
+    pub(super) fn middle(&self) -> Pos2 {
         self.harness.get_by_label("Viewport").rect().center()
     }
 
-    fn app(&self) -> &App {
+    pub(super) fn app(&self) -> &App {
         self.harness.state()
     }
 
     /// A material's tile among the presets, brought into view.
-    fn tile(&mut self, name: &str) -> Pos2 {
+    pub(super) fn tile(&mut self, name: &str) -> Pos2 {
         self.harness.get_by_role_and_label(Role::Button, name).scroll_to_me();
         self.harness.run_steps(3);
         self.harness.get_by_role_and_label(Role::Button, name).rect().center()
     }
 
     /// What the page tells of the task must be what it took.
-    fn ends(mut self, task: &str) {
+    pub(super) fn ends(mut self, task: &str) {
         settle(&mut self.harness);
         let root = env!("CARGO_MANIFEST_DIR");
         let told = std::fs::read_to_string(format!("{root}/docs/WALK.md")).expect("the page");

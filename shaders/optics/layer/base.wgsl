@@ -30,7 +30,7 @@ fn base_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo
 fn base_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
     var color = layers.base.albedo;
     if PLAN_DIFFUSE_ROUGHNESS == 1u && material.diffuse_roughness > 0.0
-        && !(surface.is_inside && material_transmits(material)) {
+        && !is_within(material, surface) {
         let cosines = vec2f(dot(surface.frame.normal, surface.wo), dot(surface.frame.normal, wi));
         color *= rough_diffuse(material.base_color, material.diffuse_roughness, cosines, dot(surface.wo, wi));
     }
@@ -82,7 +82,7 @@ fn base_spread(material: Material, surface: Surface) -> f32 {
     if PLAN_TRANSMISSION == 0u {
         return 1.0;
     }
-    return select(1.0, material_ior_ahead(material, true), surface.is_inside && material_transmits(material));
+    return select(1.0, material_ior_ahead(material, true), is_within(material, surface));
 }
 
 // The density of Lambert's lobe with its sines multiplied by spread.

@@ -22,6 +22,12 @@ fn mirrored_share(reflected: f32, refracted: f32) -> f32 {
 }
 
 fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f {
-    let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
+    let terms = material_fresnel_terms(material, surface.is_inside);
+    var behind = cosines.y;
+    // Under a coat the reflection has another index than the refraction.
+    if PLAN_COAT == 1u && terms.ior != material_ior_ahead(material, surface.is_inside) {
+        behind = safe_sqrt(refracted_square(cosines.x, terms.ior)) / terms.ior;
+    }
+    let left = fresnel_left(terms, cosines.x, behind);
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }

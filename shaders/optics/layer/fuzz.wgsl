@@ -4,7 +4,7 @@
 #import "optics/warp"
 
 fn fuzz_is_there(material: Material, surface: Surface) -> bool {
-    return PLAN_FUZZ == 1u && material.fuzz_weight > 0.0 && !(surface.is_inside && material_transmits(material));
+    return PLAN_FUZZ == 1u && material.fuzz_weight > 0.0 && !is_within(material, surface);
 }
 
 fn fuzz_lobe(material: Material, surface: Surface) -> LayerLobe {

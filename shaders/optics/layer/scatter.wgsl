@@ -112,7 +112,10 @@ fn material_scatter(
             let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
             evaluated = layer_refined(layer, material, surface, wi, of_lobe);
         }
-        let color = toward.color * share.transmittance;
+        var color = toward.color * share.transmittance;
+        if PLAN_COAT_ABSORPTION == 1u && layer > LAYER_COAT {
+            color *= coat_tint(material, layers, surface, wi);
+        }
         let density = share.reached * toward.probability * evaluated.y;
         if draws {
             // After the horizon policy has turned the direction, its selection probability differs from the one used to

@@ -81,17 +81,29 @@ fn has_more(material: Material) -> bool {
 fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
     var place = dot(surface.frame.normal, surface.wo);
     var first = material.albedo_table;
-    if surface.is_inside && material_transmits(material) {
+    if is_within(material, surface) {
         place = albedo_place(place, material_ior_ahead(material, true));
         first = material.inner_albedo_table;
     }
     if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
-        let integrals = rough_albedo_lookup(first, place, material.roughness);
+        var integrals = rough_albedo_lookup(first, place, material.roughness);
+        if first == material.albedo_table && PLAN_COAT_TEXTURES == 1u && has_coated_table(material) {
+            integrals.x = dielectric_under_coat(material, place, integrals.x);
+        }
         let terms = material_fresnel_terms(material, surface.is_inside);
         return SpecularAlbedos(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
     }
     let taken = albedo_lookup(first, place);
     return SpecularAlbedos(taken, taken);
+}
+
+// The dielectric's integral where a texture varies the coat over it.
+fn dielectric_under_coat(material: Material, place: f32, bare: f32) -> f32 {
+    let coated = rough_albedo_lookup(material.albedo_table + ROUGH_ALBEDO_LENGTH, place, material.roughness).x;
+    let least = fresnel_f0(ior_under_coat(material, 0.0));
+    let most = fresnel_f0(ior_under_coat(material, 1.0));
+    let share = (fresnel_f0(material.reflecting_ior) - least) / select(1.0, most - least, most != least);
+    return bare + (coated - bare) * share;
 }
 
 // The probability of sampling the specular lobe for a direction that it mirrors to with this Fresnel factor.

@@ -1,5 +1,5 @@
 // Blinn-Phong as a microfacet lobe. Twin of src/optics/lobe/blinn_phong.rs.
-#import "optics/microfacet"
+#import "optics/lobe/lobe"
 
 fn blinn_phong_exponent(roughness: f32) -> f32 {
     let alpha = alpha_from_roughness(roughness);

@@ -1,5 +1,5 @@
 // GGX, visible normals sampled by spherical caps. Twin of src/optics/lobe/ggx.rs.
-#import "optics/microfacet"
+#import "optics/lobe/lobe"
 
 fn ggx_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
@@ -13,9 +13,9 @@ fn ggx_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec
 }
 
 fn ggx_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
-    return visible_density(shape, frame, wo, wi);
+    return visible_density(microfacet_alpha(shape), frame, wo, wi);
 }
 
 fn ggx_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
-    return visible_weight(shape, frame, wo, wi);
+    return visible_weight(microfacet_alpha(shape), frame, wo, wi);
 }

@@ -1,5 +1,5 @@
 // GGX, all normals sampled in proportion to D cos(theta). Twin of src/optics/lobe/ggx_ndf.rs.
-#import "optics/microfacet"
+#import "optics/lobe/lobe"
 
 fn ggx_ndf_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);

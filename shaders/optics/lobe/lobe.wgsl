@@ -3,6 +3,7 @@
 #import "optics/choices"
 #import "optics/frame"
 #import "optics/lobe/registry"
+#import "optics/microfacet"
 #import "optics/refraction"
 
 const FACETS_NONE: u32 = 0u;
@@ -37,6 +38,16 @@ fn stretch_from_anisotropy(anisotropy: f32) -> f32 {
     return sqrt((1.0 + s) / (1.0 - s));
 }
 
+fn microfacet_alpha(shape: LobeShape) -> vec2f {
+    let alpha = alpha_from_roughness(shape.roughness);
+    let stretch = stretch_from_anisotropy(shape.anisotropy);
+    return vec2f(alpha * stretch, alpha / stretch);
+}
+
+fn isotropic_alpha(shape: LobeShape) -> vec2f {
+    return vec2f(alpha_from_roughness(shape.roughness));
+}
+
 // The roughness at which a lobe whose width goes with it is as wide as facets make it that turn the light by this share.
 fn refracting_roughness_of(roughness: f32, share: f32) -> f32 {
     let square = roughness * roughness;
@@ -60,6 +71,22 @@ fn is_mirror(shape: LobeShape) -> bool {
 
 fn refracts_at_facets(shape: LobeShape) -> bool {
     return shape.eta != 0.0 && facets(shape.lobe) != FACETS_NONE;
+}
+
+fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f, mirrored: vec3f) -> f32 {
+    var alpha = isotropic_alpha(shape);
+    if is_anisotropic(shape.lobe) { alpha = microfacet_alpha(shape); }
+    let wo_local = local_from_world(frame, wo);
+    let wi_local = local_from_world(frame, wi);
+    var weight = smith_g1_over_cosine(alpha, wi_local) * abs(wi_local.z);
+    if facets(shape.lobe) == FACETS_ALL {
+        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
+        let of_mirrored = facet(frame, wo, mirrored);
+        let ratio = of_mirrored.cosine / max(of_mirrored.h.z, 1e-6);
+        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
+        weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, of_mirrored.h.z > 0.0);
+    }
+    return select(0.0, weight, wi_local.z < 0.0 && wo_local.z > 0.0);
 }
 
 struct LobeView {

@@ -29,35 +29,20 @@ pub struct Merl {
 
 /// Why a file is no MERL measurement.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MerlError {
     /// The system does not give it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     /// Not the three numbers that such a file begins with.
     #[error("{}: not a MERL measurement: it does not begin with 90, 90, 180; choose a .binary file of the MERL BRDF database", path.display())]
-    Header {
-        /// The file.
-        path: PathBuf,
-    },
+    Header { path: PathBuf },
     /// Cut short, or too long.
     #[error("{}: {length} bytes instead of {FILE_LENGTH}: cut short or not a MERL measurement; fetch the file again", path.display())]
-    Length {
-        /// The file.
-        path: PathBuf,
-        /// Length of the file in bytes.
-        length: u64,
-    },
+    Length { path: PathBuf, length: u64 },
     /// Nothing in it.
     #[error("{}: reflects nothing: every number is 0, negative or not finite; choose another file", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
+    Empty { path: PathBuf },
 }
 
 impl Merl {

@@ -12,10 +12,10 @@ use crate::app::sheets::palette;
 use crate::app::{App, denoised_by, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::EngineChoice;
-use crate::render::explain::explain;
 use crate::scene::ModelOptions;
 use crate::scene::camera::{Projection, framing_distance};
 use crate::store::examples::{EXAMPLES, Example};
+use crate::study::explain::explain;
 
 /// How many times larger one step of magnification shows the image.
 const MAGNIFICATION: f32 = 2.0;

@@ -1,5 +1,7 @@
 //! What the palette finds beside commands and parameters: what can be used, each with what uses it.
 
+use std::fmt::Write as _;
+
 use crate::app::App;
 use crate::app::actions::Action;
 use crate::app::services::environments::environment_label;
@@ -50,10 +52,14 @@ impl App {
 
     fn material(&self, key: String, material: &MaterialSettings) -> Findable {
         let label = format!("Material {}", material.name);
-        self.of_browser(
+        let mut found = self.of_browser(
             key,
             Findable::new(label, Action::UseMaterial(Box::new(material.clone()))),
-        )
+        );
+        for word in material.look_words() {
+            let _ = write!(found.tags, " {word}");
+        }
+        found
     }
 
     /// With its tags, and whether it is a favourite, as in the browser.

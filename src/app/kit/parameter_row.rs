@@ -159,22 +159,11 @@ fn number<N: egui::emath::Numeric>(
     let space = if unit.is_empty() || unit == "°" { "" } else { " " };
     let unit = format!("{space}{unit}");
     if !row.is_percent {
-        let style = NumberStyle {
-            range: low..=high,
-            bar: row.bar,
-            unit: &unit,
-            speed: row.step,
-            decimals: row.decimals,
-        };
+        let style = NumberStyle::plain(low..=high, &unit, row.step, row.decimals).with_bar(row.bar);
         return widgets::number(ui, value, &style);
     }
-    let style = NumberStyle {
-        range: 100.0 * low..=100.0 * high,
-        bar: row.bar.map(|bar| bar.map(|end| 100.0 * end)),
-        unit: " %",
-        speed: row.step,
-        decimals: row.decimals,
-    };
+    let style = NumberStyle::plain(100.0 * low..=100.0 * high, " %", row.step, row.decimals)
+        .with_bar(row.bar.map(|bar| bar.map(|end| 100.0 * end)));
     let mut percent = 100.0 * value.to_f64();
     let response = widgets::number(ui, &mut percent, &style);
     if response.changed() {

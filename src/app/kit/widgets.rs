@@ -130,6 +130,25 @@ pub(in crate::app) struct NumberStyle<'a> {
     pub(in crate::app) decimals: usize,
 }
 
+impl<'a> NumberStyle<'a> {
+    /// A number without a bar.
+    pub(in crate::app) fn plain(range: RangeInclusive<f64>, unit: &'a str, speed: f64, decimals: usize) -> Self {
+        Self {
+            range,
+            bar: None,
+            unit,
+            speed,
+            decimals,
+        }
+    }
+
+    /// The same with a bar that spans this, if anything.
+    pub(in crate::app) fn with_bar(self, bar: impl Into<Option<[f64; 2]>>) -> Self {
+        let bar = bar.into();
+        Self { bar, ..self }
+    }
+}
+
 /// A number as a bar to drag (with shift: finely) or to type into.
 pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
     number_or(ui, value, style, None)

@@ -304,13 +304,7 @@ fn selected_point(ui: &mut Ui, state: &mut CurvePanel, points: &mut Vec<[f64; 2]
     let is_end = index == 0 || index + 1 == points.len();
     ui.horizontal(|ui| {
         ui.label(format!("Point {}", index + 1));
-        let style = NumberStyle {
-            range: 0.0..=f64::from(DISTANCE_MAX),
-            bar: None,
-            unit: "",
-            speed: 0.005,
-            decimals: 3,
-        };
+        let style = NumberStyle::plain(0.0..=f64::from(DISTANCE_MAX), "", 0.005, 3);
         for (value, name) in point.iter_mut().zip(["ξ", "D"]) {
             ui.label(name);
             let is_fixed = name == "ξ" && is_end;

@@ -17,8 +17,8 @@ use crate::app::study::{StudyWorker, engine, small_document};
 use crate::document::ViewSettings;
 use crate::job::plan::Plan;
 use crate::render::display::display;
-use crate::render::study::race::{Race, RaceOptions, Runner, race};
-use crate::render::study::technique::{GROUPS, Technique};
+use crate::study::race::{Race, RaceOptions, Runner, race};
+use crate::study::technique::{GROUPS, Technique};
 
 /// Longest side of the raced image, pixels.
 const SIDE_MAX: u32 = 160;
@@ -133,13 +133,7 @@ fn choices(ui: &mut Ui, state: &mut RacePanel) {
             }
         }
     }
-    let style = NumberStyle {
-        range: 0.01..=600.0,
-        bar: None,
-        unit: " s",
-        speed: 0.1,
-        decimals: 2,
-    };
+    let style = NumberStyle::plain(0.01..=600.0, " s", 0.1, 2);
     let name = Name::new(
         "Time per technique",
         "Time per technique",

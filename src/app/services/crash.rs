@@ -8,11 +8,12 @@ use std::fmt::Write as _;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError, Weak};
 use std::thread::ThreadId;
 
 use crate::document::Document;
 use crate::panics;
+use crate::panics::lock;
 use crate::store::recovery;
 
 /// Most actions that a report lists.
@@ -52,7 +53,7 @@ impl Default for Witness {
             reported: Vec::new(),
             window: std::thread::current().id(),
         }));
-        let mut all = WITNESSES.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut all = lock(&WITNESSES);
         all.retain(|witness| witness.strong_count() > 0);
         all.push(Arc::downgrade(&known));
         Self(known)
@@ -61,7 +62,7 @@ impl Default for Witness {
 
 impl Witness {
     fn known(&self) -> MutexGuard<'_, Known> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.0)
     }
 
     /// Takes the document as the frame left it.

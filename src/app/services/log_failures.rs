@@ -1,8 +1,9 @@
 //! Failures that other libraries only write to the log and that the window reports: a file dialog that could not
 //! open, a clipboard that could not be reached. Neither rfd nor egui-winit returns them.
 
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
+use crate::panics::lock;
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
 /// Failures that were logged and not reported yet.
@@ -19,7 +20,7 @@ static FAILURES: Mutex<Failures> = Mutex::new(Failures {
 });
 
 fn failures() -> MutexGuard<'static, Failures> {
-    FAILURES.lock().unwrap_or_else(PoisonError::into_inner)
+    lock(&FAILURES)
 }
 
 /// Installs a logger, whose most verbose level is `level`, and listens to what passes through it.

@@ -1,8 +1,9 @@
 //! Files that other programs may save while they are shown. They are looked at now and then: that works on every disk, and
 //! for programs that replace a file as well as for those that write into it.
 
+use crate::panics::lock;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, SystemTime};
 
 /// From one look to the next. A file counts as saved when it was the same at two looks.
@@ -52,10 +53,6 @@ impl File {
 fn stamp(path: &PathBuf) -> Stamp {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.modified().ok()?, metadata.len()))
-}
-
-fn lock(files: &Mutex<Vec<File>>) -> MutexGuard<'_, Vec<File>> {
-    files.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Watched {

@@ -189,13 +189,7 @@ impl TurntableSheet {
 }
 
 fn style(range: std::ops::RangeInclusive<f64>, decimals: usize) -> widgets::NumberStyle<'static> {
-    widgets::NumberStyle {
-        range,
-        bar: None,
-        unit: "",
-        speed: 0.2,
-        decimals,
-    }
+    widgets::NumberStyle::plain(range, "", 0.2, decimals)
 }
 
 /// A path with another of the endings that turntables have, or with none; as it is while it is being typed.

@@ -318,13 +318,7 @@ fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
     let compared = compare.compared();
     match compare.view {
         View::Flicker => {
-            let style = NumberStyle {
-                range: 0.25..=8.0,
-                bar: None,
-                unit: " Hz",
-                speed: 0.02,
-                decimals: 2,
-            };
+            let style = NumberStyle::plain(0.25..=8.0, " Hz", 0.02, 2);
             super::header::sized(ui, 64.0, |ui| {
                 let response = widgets::number(ui, &mut compare.flicker_hz, &style);
                 response
@@ -334,13 +328,7 @@ fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         View::Difference => {
             let mut scale = compare.scale.or(compared.as_ref().map(|of| of.scale)).unwrap_or(1.0);
-            let style = NumberStyle {
-                range: 1e-4..=1e4,
-                bar: None,
-                unit: "",
-                speed: f64::from(scale) * 0.01,
-                decimals: 4,
-            };
+            let style = NumberStyle::plain(1e-4..=1e4, "", f64::from(scale) * 0.01, 4);
             super::header::sized(ui, 72.0, |ui| {
                 let response = widgets::number(ui, &mut scale, &style);
                 if response.changed() {

@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::srgb_of;
+use crate::app::lights::{LightHandle, Pull, View, handles, nudged, pulled};
 use crate::document::AreaLight;
-use crate::document::light_handle::{LightHandle, Pull, View, handles, nudged, pulled};
 use crate::job::Job;
 use crate::scene::Outline;
 

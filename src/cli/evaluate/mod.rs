@@ -15,10 +15,10 @@ use crate::console::message;
 use crate::document::parameter::assign;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
-use crate::render::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
 use crate::render::{EngineChoice, Precision};
 use crate::store::exchange::{self, ReadOptions};
 use crate::store::replace::save_by;
+use crate::study::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
 
 /// Steps of a grid without a number.
 const GRID: &str = "9";

@@ -13,10 +13,10 @@ use crate::job::film::Image;
 use crate::plot::lobe_view::Axis;
 use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_picture_sheet};
 use crate::render::display::display;
-use crate::render::study::race::{Race, RaceOptions, Runner, race};
-use crate::render::study::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::render::{EngineChoice, Session};
 use crate::store::replace::save_by;
+use crate::study::race::{Race, RaceOptions, Runner, race};
+use crate::study::technique::{Technique, TechniqueError, check_techniques, techniques};
 
 /// Those that take part where none are named.
 const DEFAULT: [&str; 6] = ["strategy", "sequence", "adaptive", "bounces", "fresnel", "lobe"];

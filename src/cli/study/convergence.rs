@@ -7,7 +7,7 @@ use super::{Bar, CacheArguments, CommonArguments, digits};
 use crate::console::output;
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
-use crate::render::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
+use crate::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
 
 /// Longest time for the reference where none is given, seconds; the same quickly.
 const REFERENCE_SECONDS: f64 = 60.0;

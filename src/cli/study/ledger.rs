@@ -8,7 +8,7 @@ use super::folder::Folder;
 use super::{Bar, CommonArguments, digits};
 use crate::console::output;
 use crate::plot::{BarPlot, bar_plot_file};
-use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+use crate::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
 /// Arguments of `glossmith study ledger`.
 #[derive(Debug, Args)]

@@ -16,9 +16,9 @@ use super::answer::Answer;
 use super::render::bar;
 use super::scene::SceneArguments;
 use crate::document::Document;
-use crate::render::study::StudyProgress;
-use crate::render::study::references::ReferenceCache;
 use crate::render::{EngineChoice, Session};
+use crate::study::StudyProgress;
+use crate::study::references::ReferenceCache;
 
 /// Largest side of an image of `--quick`.
 const QUICK_SIDE: u32 = 48;

@@ -11,7 +11,7 @@ use crate::cli::answer::Answer;
 use crate::console::output;
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::EngineChoice;
-use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
+use crate::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
 
 /// The image of `--quick`.
 const QUICK_SIZE: [u32; 2] = [48, 32];

@@ -9,7 +9,7 @@ use super::{Bar, CommonArguments, digits};
 use crate::console::output;
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
-use crate::render::study::scaling::{Growing, ScalingOptions, ScalingPoint, ScalingReport, scaling};
+use crate::study::scaling::{Growing, ScalingOptions, ScalingPoint, ScalingReport, scaling};
 
 /// Arguments of `glossmith study scaling`.
 #[derive(Debug, Args)]

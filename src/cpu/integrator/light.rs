@@ -7,9 +7,10 @@ use super::shadow_rays::{ShadowRay, ShadowRays};
 use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
+use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::layer::{Layers, material_evaluate};
-use crate::optics::material::Material;
+use crate::optics::material::{COAT_ABSORBS, Material};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
@@ -121,6 +122,9 @@ impl<T: Real> Integrator<'_, T> {
         if is_spot(material) {
             let facing = T::select(point.surface.is_inside, -cosine, cosine);
             emission = emission * spot_share(material, facing);
+        }
+        if material.has_flag(COAT_ABSORBS) {
+            emission = emission * coat_over_emission(material, cosine, point.surface.is_inside);
         }
         let density = light_density(
             material.light_luminance,

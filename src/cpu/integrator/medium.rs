@@ -28,7 +28,7 @@ impl<T: Real> Integrator<'_, T> {
         if !self.has_absorption {
             return;
         }
-        let is_within = point.surface.is_inside & material.transmits();
+        let is_within = point.surface.is_within(material);
         let remembered = self.absorption(&vertex.group.each(&paths.state.media));
         let absorption = Vec3::select(is_within, material.absorption, remembered);
         let active = vertex.active & absorption.is_any();

@@ -1,6 +1,7 @@
 //! The table of effects.
 
 use super::{Effect, Switch, horizon};
+use crate::document::import::{ImportLobe, ROUGHNESS_MAX};
 use crate::document::{AreaLight, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy};
 use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
@@ -8,7 +9,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::{
-    COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::vector::Vec3;
 
@@ -227,8 +228,17 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::Anisotropy,
         label: "Anisotropy",
         help: "Lobes stretched along the surface's tangent.",
-        decide: |facts| facts.needed_by(|m| m.has_specular() && m.anisotropy != 0.0, "stretches its lobe"),
-        remove: Some(|document| each_material(document, |material| material.anisotropy = 0.0)),
+        decide: |facts| {
+            facts.needed_by(
+                |m| (m.has_specular() && m.anisotropy != 0.0) || (m.coat_weight > 0.0 && m.coat_anisotropy != 0.0),
+                "stretches its lobe",
+            )
+        },
+        remove: Some(|document| {
+            each_material(document, |material| {
+                (material.anisotropy, material.coat_anisotropy) = (0.0, 0.0);
+            });
+        }),
     },
     Effect {
         id: EffectId::Horizon,
@@ -283,6 +293,43 @@ pub static EFFECTS: &[Effect] = &[
         help: "Interference in a film over the surface that reflects: soap, oil, tempered steel.",
         decide: |facts| facts.needed_by(|m| m.has_film == 1, "has a thin film"),
         remove: Some(|document| each_material(document, |material| material.film_weight = 0.0)),
+    },
+    Effect {
+        id: EffectId::CoatGgx,
+        label: "GGX coat",
+        help: "A coat that spreads its reflection as GGX does.",
+        decide: |facts| facts.needed_by(|m| m.has_flag(COAT_IS_GGX), "has a coat of GGX"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                let roughness = material.coat_ggx_roughness();
+                material.set_coat_ggx_roughness(roughness.min(ROUGHNESS_MAX), ImportLobe::Geometric);
+            });
+        }),
+    },
+    Effect {
+        id: EffectId::CoatDarkening,
+        label: "Coat darkening",
+        help: "Bases that get darker by the light that a coat reflects back onto them (OpenPBR 1.1).",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.coat_weight > 0.0 && m.coat_darkening > 0.0,
+                "is darkened by its coat",
+            )
+        },
+        remove: Some(|document| each_material(document, |material| material.coat_darkening = 0.0)),
+    },
+    Effect {
+        id: EffectId::CoatAbsorption,
+        label: "Coat absorption",
+        help: "Coloured coats that take more light the longer its way through them, and from light that comes from below.",
+        decide: |facts| facts.needed_by(|m| m.has_flag(COAT_ABSORBS), "has a coloured coat"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                if material.coat_on_base {
+                    material.coat_color = [1.0; 3];
+                }
+            });
+        }),
     },
     Effect {
         id: EffectId::Transmission,

@@ -2,6 +2,7 @@
 //! [`PARAMETERS`], those of the rest of a document in [`SETTINGS`].
 
 mod accessors;
+mod line;
 mod of_document;
 mod of_light;
 mod of_material;
@@ -194,37 +195,22 @@ pub struct Parameter<T: 'static = MaterialSettings> {
 
 /// Why a parameter cannot be set.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ParameterError {
     /// Text that is no assignment.
     #[error("{text}: write KEY=VALUE, such as specular.roughness=0.3")]
-    NoAssignment {
-        /// The text.
-        text: String,
-    },
+    NoAssignment { text: String },
     /// No parameter of that name.
     #[error("no parameter is called {key}; {hint}")]
-    UnknownKey {
-        /// The name.
-        key: String,
-        /// The nearest name, or all of them.
-        hint: String,
-    },
+    UnknownKey { key: String, hint: String },
     /// A parameter of a texture that is not there.
     #[error("{key}: there is no such texture; put one there first: --texture {target}=FILE")]
-    NoTexture {
-        /// Key of the parameter that it textures.
-        key: &'static str,
-        /// Name of the parameter that it textures.
-        target: &'static str,
-    },
+    NoTexture { key: &'static str, target: &'static str },
     /// A value that the parameter does not take.
     #[error("{key} does not take {value}; {expected}")]
     Invalid {
-        /// The parameter.
         key: &'static str,
-        /// The value as it was given.
         value: String,
-        /// What it takes.
         expected: String,
     },
 }
@@ -338,44 +324,6 @@ fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
 type Accessors<T> = (fn(&T) -> Value, fn(&mut T, Value));
 
 impl<T> Parameter<T> {
-    /// A parameter in no group, which always has an effect.
-    fn plain(
-        key: &'static str,
-        label: &'static str,
-        help: &'static str,
-        kind: Kind,
-        stage: Stage,
-        (get, set): Accessors<T>,
-    ) -> Self {
-        Self {
-            key,
-            group: "",
-            label,
-            name: "",
-            flag: None,
-            symbol: "",
-            help,
-            kind,
-            row: RowStyle {
-                bar: None,
-                step: 0.01,
-                decimals: 3,
-                is_percent: false,
-            },
-            stage,
-            applies: |_| true,
-            idle: |_| None,
-            get,
-            set,
-        }
-    }
-
-    /// The same with a bar that spans these.
-    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
-        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
-        self
-    }
-
     /// What it is called in the whole window, for the history, the palette, screen readers and tests.
     pub fn full_name(&self) -> String {
         match self.name {

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::accessors::{choice, field, optional};
-use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use super::line::{real, single};
+use super::{Kind, Parameter, Stage, Value, choices};
 use crate::document::{
     Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
 };
@@ -172,62 +173,6 @@ fn of(
     let mut parameter = Parameter::plain(key, label, help, kind, stage, accessors);
     (parameter.group, parameter.row.step) = (group, 1.0);
     parameter
-}
-
-/// What a line of the tables above may add.
-impl Parameter<Document> {
-    fn named(mut self, name: &'static str) -> Self {
-        self.name = name;
-        self
-    }
-
-    fn group(mut self, group: &'static str) -> Self {
-        self.group = group;
-        self
-    }
-
-    fn flag(mut self, flag: &'static str) -> Self {
-        self.flag = Some(flag);
-        self
-    }
-
-    fn applies(mut self, applies: fn(&Document) -> bool) -> Self {
-        self.applies = applies;
-        self
-    }
-
-    fn bar(mut self, low: f64, high: f64) -> Self {
-        self.row.bar = Some([low, high]);
-        self
-    }
-
-    fn decimals(mut self, decimals: usize) -> Self {
-        self.row.decimals = decimals;
-        self
-    }
-
-    /// A share that panels show in per cent.
-    fn percent(mut self) -> Self {
-        self.row = RowStyle {
-            step: 0.01,
-            is_percent: true,
-            ..self.row
-        };
-        self
-    }
-}
-
-fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
-    let (low, high) = range.into_inner();
-    let range = [low, high];
-    Kind::Real { range, unit }
-}
-
-/// A number in single precision.
-fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
-    let (low, high) = range.into_inner();
-    let range = [low as f32, high as f32];
-    Kind::Number { range, unit }
 }
 
 fn count(range: RangeInclusive<f64>) -> Kind {

@@ -1,9 +1,9 @@
 //! The parameters of an area light.
 
-use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::accessors::{choice, field};
+use super::line::{ends, real, single};
 use super::{Kind, Parameter, Stage, Value, choices};
 use crate::document::{AreaLight, AreaLightShape, range};
 
@@ -17,27 +17,27 @@ fn all() -> Vec<Parameter<AreaLight>> {
     vec![
         of("lighting.area_lights.shape", "Shape", "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), choice!(shape), |_| None),
         of("lighting.area_lights.yaw_deg", "Yaw", "Turns the light around its target.", real(range::YAW_DEG, "°"), field!(Real yaw_deg), |_| None)
-            .row([-180.0, 180.0], 1),
+            .bar(-180.0, 180.0).decimals(1),
         of("lighting.area_lights.pitch_deg", "Pitch", "Height of the light above the horizon of its target.", real(range::PITCH_DEG, "°"), field!(Real pitch_deg), |_| None)
-            .row([-90.0, 90.0], 1),
+            .bar(-90.0, 90.0).decimals(1),
         of("lighting.area_lights.distance", "Distance", "From its target, in bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real distance), of_lamps)
-            .row([0.0, 10.0], 3),
+            .bar(0.0, 10.0),
         of("lighting.area_lights.target", "Target", "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii.", Kind::Place { range: ends(range::LIGHT_TARGET) }, field!(Place target), of_lamps),
         of("lighting.area_lights.turn_deg", "Turn", "About the line to its target, clockwise seen from there.", real(range::YAW_DEG, "°"), field!(Real turn_deg), of_lamps)
-            .row([-180.0, 180.0], 1),
+            .bar(-180.0, 180.0).decimals(1),
         of("lighting.area_lights.width", "Width", "In bounding radii of the model. A small light makes sharp shadows.", real(range::AREA_LENGTH, ""), field!(Real width), of_lamps)
-            .row([0.0, 4.0], 3),
+            .bar(0.0, 4.0),
         of("lighting.area_lights.height", "Height", "In bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real height), of_flat)
-            .row([0.0, 4.0], 3),
+            .bar(0.0, 4.0),
         of("lighting.area_lights.cone_deg", "Cone", "The angle across the cone into which a spot shines.", real(range::CONE_DEG, "°"), field!(Real cone_deg), of_spots)
-            .row([1.0, 120.0], 1),
+            .bar(1.0, 120.0).decimals(1),
         of("lighting.area_lights.softness", "Softness", "The share of the cone over which a spot fades to its edge.", real(range::SOFTNESS, ""), field!(Real softness), of_spots)
-            .row([0.0, 1.0], 3),
+            .bar(0.0, 1.0),
         of("lighting.area_lights.angle_deg", "Angle", "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows.", real(range::SUN_ANGLE_DEG, "°"), field!(Real angle_deg), of_suns)
-            .row([0.05, 10.0], 3),
+            .bar(0.05, 10.0),
         of("lighting.area_lights.color", "Colour", "Colour of the light.", Kind::Color, field!(Color color), |_| None),
-        of("lighting.area_lights.strength", "Strength", "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it.", strength(), field!(Number strength), |_| None)
-            .row([0.0, 100.0], 3),
+        of("lighting.area_lights.strength", "Strength", "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it.", single(range::STRENGTH, ""), field!(Number strength), |_| None)
+            .bar(0.0, 100.0),
         of("lighting.area_lights.hidden_from_camera", "Hidden", "It shines, but the camera doesn't see it: only mirrors and glass show it.", Kind::Toggle, field!(Toggle is_hidden), |_| None),
     ]
 }
@@ -91,24 +91,5 @@ impl Parameter<AreaLight> {
             (Value::Color(color), _) => color.map(|x| (key, x.into(), [0.0, 1.0])).to_vec(),
             _ => Vec::new(),
         }
-    }
-}
-
-fn ends(range: RangeInclusive<f64>) -> [f64; 2] {
-    let (low, high) = range.into_inner();
-    [low, high]
-}
-
-fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
-    Kind::Real {
-        range: ends(range),
-        unit,
-    }
-}
-
-fn strength() -> Kind {
-    Kind::Number {
-        range: ends(range::STRENGTH).map(|end| end as f32),
-        unit: "",
     }
 }

@@ -3,16 +3,15 @@
 use std::sync::LazyLock;
 
 use super::accessors::{choice, field};
-use super::{Choice, Kind, Parameter, RowStyle, Stage, Value, choices};
+use super::{Choice, Kind, Parameter, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
 use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
+use crate::document::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
 
-type Get = fn(&MaterialSettings) -> Value;
-type Set = fn(&mut MaterialSettings, Value);
+type Accessors = super::Accessors<MaterialSettings>;
 
 /// Every parameter, in the order of the panels. In files they are read in this order too: a conductor before the η and
 /// k that may replace its own.
@@ -29,412 +28,141 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     all
 });
 
+#[rustfmt::skip]
 fn base() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "Darkens the base: its colour is multiplied by it.",
-            ..of("base.weight", unit_number(), field!(Number base_weight))
-        },
-        Parameter {
-            label: "Colour",
-            help: "Colour of the diffuse base; of a metal, its reflection seen head-on.",
-            idle: |material| {
-                let of_indices = is_conductor(material) && material.metalness >= 1.0;
-                of_indices.then_some(
-                    "The metal's colour follows from its measured η and k. Edit as colours, below Metal, gives it colours to pick.",
-                )
-            },
-            ..of("base.color", Kind::Color, field!(Color base_color))
-        },
-        Parameter {
-            label: "Colour texture",
-            help: "Multiplies the colour by a texture, the model's or one of your own.",
-            ..of("base.color_texture", Kind::Toggle, field!(Toggle textures.color))
-        },
-        Parameter {
-            label: "Diffuse roughness",
-            help: "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.",
-            applies: |material| material.metalness < 1.0,
-            ..of(
-                "base.diffuse_roughness",
-                unit_number(),
-                field!(Number diffuse_roughness),
-            )
-        },
-        Parameter {
-            label: "Metalness",
-            help: "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.",
-            ..of("base.metalness", unit_number(), field!(Number metalness))
-        },
+        of("base.weight", "Weight", "Darkens the base: its colour is multiplied by it.", unit_number(), field!(Number base_weight)),
+        of("base.color", "Colour", "Colour of the diffuse base; of a metal, its reflection seen head-on.", Kind::Color, field!(Color base_color))
+            .idle(of_indices),
+        of("base.color_texture", "Colour texture", "Multiplies the colour by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures.color)),
+        of("base.diffuse_roughness", "Diffuse roughness", "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.", unit_number(), field!(Number diffuse_roughness))
+            .applies(|material| material.metalness < 1.0),
+        of("base.metalness", "Metalness", "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.", unit_number(), field!(Number metalness)),
     ]
 }
 
+#[rustfmt::skip]
 fn specular_shape() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "How much of the reflection is kept; at 0 only the base is left.",
-            applies: |_| true,
-            ..of("specular.weight", unit_number(), field!(Number specular_weight))
-        },
-        Parameter {
-            label: "Weight by index",
-            help: "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF.",
-            applies: |material| {
-                let is_weighed = material.specular_weight < 1.0 && material.metalness < 1.0;
-                is_weighed && has_specular(material) && has_metalness(material) && !transmits(material)
-            },
-            ..of(
-                "specular.weight_in_index",
-                Kind::Toggle,
-                field!(Toggle specular_in_index),
-            )
-        },
-        Parameter {
-            label: "Metals too",
-            help: "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF.",
-            applies: |material| material.metalness > 0.0 && has_metalness(material),
-            ..of("specular.on_metal", Kind::Toggle, field!(Toggle specular_on_metal))
-        },
-        Parameter {
-            label: "Lobe",
-            help: "The model of how reflected light is spread.",
-            ..of("specular.lobe", choices::<Lobe>(), choice!(lobe))
-        },
-        Parameter {
-            label: "Roughness",
-            symbol: "R",
-            help: "0 is a mirror; 1 is fully diffuse for the geometric lobe.",
-            applies: |material| has_specular(material) && material.lobe.has_roughness(),
-            ..of("specular.roughness", unit_number(), field!(Number roughness))
-        },
-        Parameter {
-            label: "Roughness texture",
-            help: "Multiplies roughness and metalness by textures.",
-            ..of(
-                "specular.roughness_texture",
-                Kind::Toggle,
-                field!(Toggle textures.roughness),
-            )
-        },
-        Parameter {
-            label: "Multiple scattering",
-            help: "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.",
-            applies: |material| has_specular(material) && material.lobe.traits().loses_light,
-            ..of(
-                "specular.multiple_scattering",
-                Kind::Toggle,
-                field!(Toggle multiple_scattering),
-            )
-        },
-        Parameter {
-            label: "Curve",
-            symbol: "D(ξ)",
-            help: "The profile of the geometric lobe's highlight, from its middle to its edge.",
-            applies: has_curves,
-            ..of("specular.curve", choices::<Curve>(), choice!(curve))
-        },
-        Parameter {
-            label: "Custom curve",
-            symbol: "D(ξ)",
-            help: "Custom quantile function D(ξ).",
-            applies: |material| has_curves(material) && material.curve.has_table(),
-            ..of("specular.custom_curve", Kind::Curve, custom_curve())
-        },
-        Parameter {
-            label: "Anisotropy",
-            symbol: "Rx, Ry",
-            help: "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.",
-            applies: |material| has_specular(material) && material.lobe.is_anisotropic(),
-            row: bar(-1.0, 1.0),
-            ..of(
-                "specular.anisotropy",
-                number([-1.0, 1.0], ""),
-                field!(Number anisotropy),
-            )
-        },
-        Parameter {
-            label: "Rotation",
-            help: "Turns the direction of the stretch about the normal, anticlockwise seen from outside.",
-            applies: |material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0,
-            row: RowStyle {
-                decimals: 1,
-                ..bar(-180.0, 180.0)
-            },
-            ..of(
-                "specular.rotation",
-                number([-360.0, 360.0], "°"),
-                field!(Number rotation_deg),
-            )
-        },
-        Parameter {
-            label: "Below horizon",
-            help: "What happens to samples that point into the surface.",
-            applies: |material| has_specular(material) && !material.lobe.is_hemispherical(),
-            ..of("specular.horizon", choices::<Horizon>(), choice!(horizon))
-        },
+        of("specular.weight", "Weight", "How much of the reflection is kept; at 0 only the base is left.", unit_number(), field!(Number specular_weight))
+            .applies(|_| true),
+        of("specular.weight_in_index", "Weight by index", "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF.", Kind::Toggle, field!(Toggle specular_in_index))
+            .applies(may_weigh_index),
+        of("specular.on_metal", "Metals too", "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF.", Kind::Toggle, field!(Toggle specular_on_metal))
+            .applies(|material| material.metalness > 0.0 && has_metalness(material)),
+        of("specular.lobe", "Lobe", "The model of how reflected light is spread.", choices::<Lobe>(), choice!(lobe)),
+        of("specular.roughness", "Roughness", "0 is a mirror; 1 is fully diffuse for the geometric lobe.", unit_number(), field!(Number roughness))
+            .symbol("R").applies(|material| has_specular(material) && material.lobe.has_roughness()),
+        of("specular.roughness_texture", "Roughness texture", "Multiplies roughness and metalness by textures.", Kind::Toggle, field!(Toggle textures.roughness)),
+        of("specular.multiple_scattering", "Multiple scattering", "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.", Kind::Toggle, field!(Toggle multiple_scattering))
+            .applies(|material| has_specular(material) && material.lobe.traits().loses_light),
+        of("specular.curve", "Curve", "The profile of the geometric lobe's highlight, from its middle to its edge.", choices::<Curve>(), choice!(curve))
+            .symbol("D(ξ)").applies(has_curves),
+        of("specular.custom_curve", "Custom curve", "Custom quantile function D(ξ).", Kind::Curve, custom_curve())
+            .symbol("D(ξ)").applies(|material| has_curves(material) && material.curve.has_table()),
+        of("specular.anisotropy", "Anisotropy", "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.", number([-1.0, 1.0], ""), field!(Number anisotropy))
+            .symbol("Rx, Ry").bar(-1.0, 1.0).applies(|material| has_specular(material) && material.lobe.is_anisotropic()),
+        of("specular.rotation", "Rotation", "Turns the direction of the stretch about the normal, anticlockwise seen from outside.", number([-360.0, 360.0], "°"), field!(Number rotation_deg))
+            .bar(-180.0, 180.0).decimals(1).applies(|material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0),
+        of("specular.horizon", "Below horizon", "What happens to samples that point into the surface.", choices::<Horizon>(), choice!(horizon))
+            .applies(|material| has_specular(material) && !material.lobe.is_hemispherical()),
     ]
 }
 
+#[rustfmt::skip]
 fn specular_fresnel() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Fresnel",
-            symbol: "F",
-            help: "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.",
-            applies: |material| has_specular(material) && !transmits(material),
-            ..of("specular.fresnel", choices::<Fresnel>(), choice!(fresnel))
-        },
-        Parameter {
-            label: "Index of refraction",
-            symbol: "n",
-            help: "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4.",
-            applies: |material| {
-                if transmits(material) {
-                    return true;
-                }
-                let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
-                has_specular(material) && of_dielectric && material.metalness < 1.0
-            },
-            row: bar(1.0, 2.5),
-            ..of("specular.ior", number([1.0, 4.0], ""), field!(Number ior))
-        },
-        Parameter {
-            label: "Tint",
-            help: "Colours the reflection. Above 1 it raises Schlick's reflectance of a dielectric seen head-on, up to 1.",
-            ..of(
-                "specular.color",
-                Kind::Tint {
-                    most: SPECULAR_COLOR_MAX,
-                },
-                field!(Color specular_color),
-            )
-        },
-        Parameter {
-            label: "Edge tint",
-            help: "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.",
-            applies: |material| has_specular(material) && has_metalness(material) && material.metalness > 0.0,
-            ..of("specular.edge_tint", Kind::Color, field!(Color edge_tint))
-        },
-        Parameter {
-            label: "Metal",
-            help: "Takes the index of refraction of a measured metal.",
-            applies: is_conductor,
-            ..of("specular.conductor", conductor_choices(), conductor())
-        },
-        Parameter {
-            label: "η",
-            symbol: "η",
-            help: "Real part of the metal's index of refraction for red, green and blue, as measured unless changed.",
-            applies: is_conductor,
-            ..of("specular.eta", Kind::Triple { range: [0.0, 20.0] }, eta())
-        },
-        Parameter {
-            label: "k",
-            symbol: "k",
-            help: "Imaginary part: how strongly the metal absorbs red, green and blue, as measured unless changed.",
-            applies: is_conductor,
-            ..of("specular.k", Kind::Triple { range: [0.0, 20.0] }, k())
-        },
+        of("specular.fresnel", "Fresnel", "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.", choices::<Fresnel>(), choice!(fresnel))
+            .symbol("F").applies(|material| has_specular(material) && !transmits(material)),
+        of("specular.ior", "Index of refraction", "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4.", number([1.0, 4.0], ""), field!(Number ior))
+            .symbol("n").bar(1.0, 2.5).applies(has_index),
+        of("specular.color", "Tint", "Colours the reflection. Above 1 it raises Schlick's reflectance of a dielectric seen head-on, up to 1.", Kind::Tint { most: SPECULAR_COLOR_MAX }, field!(Color specular_color)),
+        of("specular.edge_tint", "Edge tint", "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.", Kind::Color, field!(Color edge_tint))
+            .applies(|material| has_specular(material) && has_metalness(material) && material.metalness > 0.0),
+        of("specular.conductor", "Metal", "Takes the index of refraction of a measured metal.", conductor_choices(), conductor())
+            .applies(is_conductor),
+        of("specular.eta", "η", "Real part of the metal's index of refraction for red, green and blue, as measured unless changed.", Kind::Triple { range: [0.0, 20.0] }, eta())
+            .symbol("η").applies(is_conductor),
+        of("specular.k", "k", "Imaginary part: how strongly the metal absorbs red, green and blue, as measured unless changed.", Kind::Triple { range: [0.0, 20.0] }, k())
+            .symbol("k").applies(is_conductor),
     ]
 }
 
+#[rustfmt::skip]
 fn coat() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "A layer of clear lacquer over everything else, by the geometric lobe.",
-            applies: |_| true,
-            ..of("coat.weight", unit_number(), field!(Number coat_weight))
-        },
-        Parameter {
-            label: "Weight texture",
-            help: "Multiplies the weight by a texture.",
-            ..of("coat.weight_texture", Kind::Toggle, field!(Toggle textures.coat))
-        },
-        Parameter {
-            label: "Roughness",
-            symbol: "R",
-            help: "How far the coat spreads its reflection; what is seen through it stays as sharp as it is.",
-            ..of("coat.roughness", unit_number(), field!(Number coat_roughness))
-        },
-        Parameter {
-            label: "Index of refraction",
-            symbol: "n",
-            help: "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.",
-            row: bar(1.0, 2.5),
-            ..of("coat.ior", number([1.0, 4.0], ""), field!(Number coat_ior))
-        },
-        Parameter {
-            label: "Colour",
-            help: "Colours what is seen through the coat.",
-            ..of("coat.color", Kind::Color, field!(Color coat_color))
-        },
+        of("coat.weight", "Weight", "A layer of clear lacquer over everything else.", unit_number(), field!(Number coat_weight))
+            .applies(|_| true),
+        of("coat.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.coat)),
+        of("coat.lobe", "Lobe", "The model of how the coat spreads reflected light.", choices::<CoatLobe>(), choice!(coat_lobe)),
+        of("coat.roughness", "Roughness", "How far the coat spreads its reflection.", unit_number(), field!(Number coat_roughness))
+            .symbol("R"),
+        of("coat.anisotropy", "Anisotropy", "Stretches the coat's reflection along the tangent of what lies below, or across it below 0.", number([-1.0, 1.0], ""), field!(Number coat_anisotropy)),
+        of("coat.ior", "Index of refraction", "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.", number([1.0, 4.0], ""), field!(Number coat_ior))
+            .symbol("n").bar(1.0, 2.5),
+        of("coat.color", "Colour", "Colours what is seen through the coat.", Kind::Color, field!(Color coat_color)),
+        of("coat.darkening", "Darkening", "How much darker a base gets by the light that the coat reflects back onto it: varnish on wood. A white base stays white.", unit_number(), field!(Number coat_darkening)),
+        of("coat.on_base", "On the base", "The coat changes what lies below: less reflection by its index, more blur by its roughness, deeper colour along slanting ways, as in OpenPBR; off, nothing, as in glTF.", Kind::Toggle, field!(Toggle coat_on_base)),
     ]
 }
 
+#[rustfmt::skip]
 fn fuzz() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.",
-            applies: |_| true,
-            ..of("fuzz.weight", unit_number(), field!(Number fuzz_weight))
-        },
-        Parameter {
-            label: "Colour",
-            help: "Colours what the fibres reflect; what lies below loses as much light of every colour.",
-            ..of("fuzz.color", Kind::Color, field!(Color fuzz_color))
-        },
-        Parameter {
-            label: "Roughness",
-            symbol: "R",
-            help: "How far the fibres spread the light: low only at the edge, high as dust all over.",
-            ..of("fuzz.roughness", unit_number(), field!(Number fuzz_roughness))
-        },
+        of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
+            .applies(|_| true),
+        of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
+        of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
+            .symbol("R"),
     ]
 }
 
+#[rustfmt::skip]
 fn thin_film() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours.",
-            applies: |material| has_specular(material) && material.fresnel_model() != Fresnel::None,
-            ..of("thin_film.weight", unit_number(), field!(Number film_weight))
-        },
-        Parameter {
-            label: "Weight texture",
-            help: "Multiplies the weight by a texture.",
-            ..of("thin_film.weight_texture", Kind::Toggle, field!(Toggle textures.film))
-        },
-        Parameter {
-            label: "Thickness",
-            symbol: "d",
-            help: "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.",
-            row: bar(0.0, 1.0),
-            ..of(
-                "thin_film.thickness",
-                number([0.0, FILM_THICKNESS_MAX], "µm"),
-                field!(Number film_thickness),
-            )
-        },
-        Parameter {
-            label: "Thickness texture",
-            help: "Multiplies the thickness by a texture.",
-            ..of(
-                "thin_film.thickness_texture",
-                Kind::Toggle,
-                field!(Toggle textures.film_thickness),
-            )
-        },
-        Parameter {
-            label: "Index of refraction",
-            symbol: "n",
-            help: "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see.",
-            row: bar(1.0, 3.0),
-            ..of("thin_film.ior", number([1.0, 3.0], ""), field!(Number film_ior))
-        },
+        of("thin_film.weight", "Weight", "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours.", unit_number(), field!(Number film_weight))
+            .applies(|material| has_specular(material) && material.fresnel_model() != Fresnel::None),
+        of("thin_film.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.film)),
+        of("thin_film.thickness", "Thickness", "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.", number([0.0, FILM_THICKNESS_MAX], "µm"), field!(Number film_thickness))
+            .symbol("d").bar(0.0, 1.0),
+        of("thin_film.thickness_texture", "Thickness texture", "Multiplies the thickness by a texture.", Kind::Toggle, field!(Toggle textures.film_thickness)),
+        of("thin_film.ior", "Index of refraction", "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see.", number([1.0, 3.0], ""), field!(Number film_ior))
+            .symbol("n").bar(1.0, 3.0),
     ]
 }
 
+#[rustfmt::skip]
 fn transmission() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Weight",
-            help: "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed.",
-            applies: |material| material.metalness < 1.0,
-            ..of("transmission.weight", unit_number(), field!(Number transmission_weight))
-        },
-        Parameter {
-            label: "Colour",
-            help: "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside.",
-            ..of("transmission.color", Kind::Color, field!(Color transmission_color))
-        },
-        Parameter {
-            label: "Depth",
-            help: "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead.",
-            row: bar(0.0, 2.0),
-            ..of(
-                "transmission.depth",
-                number([0.0, 1000.0], ""),
-                field!(Number transmission_depth),
-            )
-        },
-        Parameter {
-            label: "Transmission roughness offset",
-            symbol: "R",
-            help: "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.",
-            row: bar(-1.0, 1.0),
-            ..of(
-                "transmission.roughness",
-                number([-1.0, 1.0], ""),
-                field!(Number transmission_roughness),
-            )
-        },
+        of("transmission.weight", "Weight", "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed.", unit_number(), field!(Number transmission_weight))
+            .applies(|material| material.metalness < 1.0),
+        of("transmission.color", "Colour", "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside.", Kind::Color, field!(Color transmission_color)),
+        of("transmission.depth", "Depth", "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead.", number([0.0, 1000.0], ""), field!(Number transmission_depth))
+            .bar(0.0, 2.0),
+        of("transmission.roughness", "Transmission roughness offset", "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.", number([-1.0, 1.0], ""), field!(Number transmission_roughness))
+            .symbol("R").bar(-1.0, 1.0),
     ]
 }
 
+#[rustfmt::skip]
 fn emission() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Colour",
-            help: "Colour of the light that the surface gives off.",
-            applies: |material| material.emission_strength > 0.0,
-            ..of("emission.color", Kind::Color, field!(Color emission_color))
-        },
-        Parameter {
-            label: "Colour texture",
-            help: "Multiplies the emission by a texture, the model's or one of your own.",
-            ..of("emission.color_texture", Kind::Toggle, field!(Toggle textures.emission))
-        },
-        Parameter {
-            label: "Strength",
-            help: "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.",
-            applies: |_| true,
-            row: bar(0.0, 20.0),
-            ..of(
-                "emission.strength",
-                number([0.0, 1e6], ""),
-                field!(Number emission_strength),
-            )
-        },
+        of("emission.color", "Colour", "Colour of the light that the surface gives off.", Kind::Color, field!(Color emission_color))
+            .applies(|material| material.emission_strength > 0.0),
+        of("emission.color_texture", "Colour texture", "Multiplies the emission by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures.emission)),
+        of("emission.strength", "Strength", "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.", number([0.0, 1e6], ""), field!(Number emission_strength))
+            .bar(0.0, 20.0).applies(|_| true),
     ]
 }
 
+#[rustfmt::skip]
 fn geometry() -> Vec<Parameter> {
     vec![
-        Parameter {
-            label: "Opacity",
-            help: "The share of light that the surface stops; the rest goes straight on, as if nothing were there.",
-            ..of("geometry.opacity", unit_number(), field!(Number opacity))
-        },
-        Parameter {
-            label: "Opacity texture",
-            help: "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.",
-            ..of(
-                "geometry.opacity_texture",
-                Kind::Toggle,
-                field!(Toggle textures.opacity),
-            )
-        },
-        Parameter {
-            label: "Normal strength",
-            help: "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.",
-            applies: |material| material.textures.normal,
-            row: bar(0.0, 2.0),
-            ..of(
-                "geometry.normal_strength",
-                number([-10.0, 10.0], ""),
-                field!(Number normal_strength),
-            )
-        },
-        Parameter {
-            label: "Normal texture",
-            help: "Bends the surface's normal by a texture.",
-            ..of("geometry.normal_texture", Kind::Toggle, field!(Toggle textures.normal))
-        },
+        of("geometry.opacity", "Opacity", "The share of light that the surface stops; the rest goes straight on, as if nothing were there.", unit_number(), field!(Number opacity)),
+        of("geometry.opacity_texture", "Opacity texture", "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.", Kind::Toggle, field!(Toggle textures.opacity)),
+        of("geometry.normal_strength", "Normal strength", "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.", number([-10.0, 10.0], ""), field!(Number normal_strength))
+            .bar(0.0, 2.0).applies(|material| material.textures.normal),
+        of("geometry.normal_texture", "Normal texture", "Bends the surface's normal by a texture.", Kind::Toggle, field!(Toggle textures.normal)),
     ]
 }
 
@@ -452,27 +180,14 @@ const GROUPS: [(&str, &str, Applies); 8] = [
     ("geometry", "Geometry", |_| true),
 ];
 
-/// A parameter that still needs its words.
-fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
+fn of(key: &'static str, label: &'static str, help: &'static str, kind: Kind, accessors: Accessors) -> Parameter {
     let prefix = key.split('.').next();
     let group = GROUPS.iter().find(|(of_keys, ..)| Some(*of_keys) == prefix);
     let &(_, group, applies) = group.expect("a parameter's key begins with that of a group");
-    Parameter {
-        key,
-        group,
-        label: "",
-        name: "",
-        flag: None,
-        symbol: "",
-        help: "",
-        kind,
-        row: bar(0.0, 1.0),
-        stage: Stage::Materials,
-        applies,
-        idle: |_| None,
-        get,
-        set,
-    }
+    Parameter::plain(key, label, help, kind, Stage::Materials, accessors)
+        .group(group)
+        .applies(applies)
+        .bar(0.0, 1.0)
 }
 
 fn number(range: [f32; 2], unit: &'static str) -> Kind {
@@ -481,16 +196,6 @@ fn number(range: [f32; 2], unit: &'static str) -> Kind {
 
 fn unit_number() -> Kind {
     number([0.0, 1.0], "")
-}
-
-/// A bar from `low` to `high`, with three decimals.
-fn bar(low: f64, high: f64) -> RowStyle {
-    RowStyle {
-        bar: Some([low, high]),
-        step: 0.01,
-        decimals: 3,
-        is_percent: false,
-    }
 }
 
 fn has_specular(material: &MaterialSettings) -> bool {
@@ -514,6 +219,23 @@ fn is_conductor(material: &MaterialSettings) -> bool {
     has_specular(material) && material.fresnel == Fresnel::Conductor
 }
 
+fn of_indices(material: &MaterialSettings) -> Option<&'static str> {
+    let is_measured = is_conductor(material) && material.metalness >= 1.0;
+    is_measured.then_some(
+        "The metal's colour follows from its measured η and k. Edit as colours, below Metal, gives it colours to pick.",
+    )
+}
+
+fn may_weigh_index(material: &MaterialSettings) -> bool {
+    let is_weighed = material.specular_weight < 1.0 && material.metalness < 1.0;
+    is_weighed && has_specular(material) && has_metalness(material) && !transmits(material)
+}
+
+fn has_index(material: &MaterialSettings) -> bool {
+    let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
+    transmits(material) || (has_specular(material) && of_dielectric && material.metalness < 1.0)
+}
+
 fn conductor_choices() -> Kind {
     let choice = |conductor: Conductor| Choice {
         name: conductor.name(),
@@ -526,7 +248,7 @@ fn conductor_choices() -> Kind {
     Kind::Choice(Conductor::all().map(choice).collect())
 }
 
-fn conductor() -> (Get, Set) {
+fn conductor() -> Accessors {
     (
         |material| Value::Choice(material.conductor.name()),
         |material, value| {
@@ -537,7 +259,7 @@ fn conductor() -> (Get, Set) {
     )
 }
 
-fn eta() -> (Get, Set) {
+fn eta() -> Accessors {
     (
         |material| Value::Triple(material.eta),
         |material, value| {
@@ -548,7 +270,7 @@ fn eta() -> (Get, Set) {
     )
 }
 
-fn k() -> (Get, Set) {
+fn k() -> Accessors {
     (
         |material| Value::Triple(material.k),
         |material, value| {
@@ -559,7 +281,7 @@ fn k() -> (Get, Set) {
     )
 }
 
-fn custom_curve() -> (Get, Set) {
+fn custom_curve() -> Accessors {
     (
         |material| Value::Curve(material.custom_curve.points().to_vec()),
         |material, value| {

@@ -15,12 +15,12 @@ type Accessors = super::Accessors<UserTexture>;
 #[rustfmt::skip]
 fn all() -> Vec<Parameter<UserTexture>> {
     vec![
-        of("strength", "Strength", "Blend amount. 0 leaves the parameter unchanged. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).row([0.0, 1.0], 3),
-        of("scale", "Scale", "Repetitions across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).row([0.1, 10.0], 3),
-        of("stretch", "Stretch", "Vertical tiling relative to horizontal.", range([1e-2, 1e2], ""), field!(Number stretch)).row([0.1, 10.0], 3),
-        of("rotation", "Rotation", "Turns the image anticlockwise about its centre.", range([-360.0, 360.0], "°"), field!(Number rotation_deg)).row([-180.0, 180.0], 1),
-        of("offset_u", "Offset right", "Offset to the right, in image widths.", range([-100.0, 100.0], ""), field!(Number offset[0])).row([-1.0, 1.0], 3),
-        of("offset_v", "Offset up", "Offset upwards, in image heights.", range([-100.0, 100.0], ""), field!(Number offset[1])).row([-1.0, 1.0], 3),
+        of("strength", "Strength", "Blend amount. 0 leaves the parameter unchanged. Bumps have a strength of their own.", range([0.0, 1.0], ""), field!(Number strength)).bar(0.0, 1.0),
+        of("scale", "Scale", "Repetitions across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), field!(Number scale)).bar(0.1, 10.0),
+        of("stretch", "Stretch", "Vertical tiling relative to horizontal.", range([1e-2, 1e2], ""), field!(Number stretch)).bar(0.1, 10.0),
+        of("rotation", "Rotation", "Turns the image anticlockwise about its centre.", range([-360.0, 360.0], "°"), field!(Number rotation_deg)).bar(-180.0, 180.0).decimals(1),
+        of("offset_u", "Offset right", "Offset to the right, in image widths.", range([-100.0, 100.0], ""), field!(Number offset[0])).bar(-1.0, 1.0),
+        of("offset_v", "Offset up", "Offset upwards, in image heights.", range([-100.0, 100.0], ""), field!(Number offset[1])).bar(-1.0, 1.0),
         of("projection", "Projection", "Projection onto the surface.", choices::<TextureProjection>(), choice!(projection)),
         of("channel", "Channel", "Channel to use for a single number.", choices::<TextureChannel>(), choice!(channel)),
         of("color_space", "Colour space", "Colour space of the image.", choices::<TextureSpace>(), choice!(space)),

@@ -8,70 +8,42 @@ use crate::scene::environment::{MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
 
 /// Errors of an environment. The message names the file, the fault and the remedy.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum EnvironmentError {
     /// The file system refused.
     #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Error of the system.
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     /// An ending that is not known.
     #[error(
         "the environment {} is neither a .hdr nor an .exr, .ktx2, .dds, PNG, JPEG, TIFF or WebP file: convert it to one of them, \
          or use studio, sky or furnace",
         path.display()
     )]
-    UnknownExtension {
-        /// The file.
-        path: PathBuf,
-    },
+    UnknownExtension { path: PathBuf },
     /// A folder without the faces of a cube.
     #[error(
         "the environment {} is a folder without six images whose names end in px, nx, py, ny, pz, nz (or right, left, \
          top, bottom, front, back): name a file in it",
         path.display()
     )]
-    NoFaces {
-        /// The folder.
-        path: PathBuf,
-    },
+    NoFaces { path: PathBuf },
     /// The content does not match the extension.
     #[error(
         "{} is not {expected} file although its name says so: its first bytes are different; check where it came from",
         path.display()
     )]
-    WrongContent {
-        /// The file.
-        path: PathBuf,
-        /// The format, with its article.
-        expected: &'static str,
-    },
+    WrongContent { path: PathBuf, expected: &'static str },
     /// The file ends too early.
     #[error("{} is cut short: {detail}; copy or download it again", path.display())]
-    Truncated {
-        /// The file.
-        path: PathBuf,
-        /// Position of the end.
-        detail: String,
-    },
+    Truncated { path: PathBuf, detail: String },
     /// The decoder found a contradiction.
     #[error("{} is damaged: {detail}; copy or download it again, or re-save it", path.display())]
-    Damaged {
-        /// The file.
-        path: PathBuf,
-        /// Message of the decoder.
-        detail: String,
-    },
+    Damaged { path: PathBuf, detail: String },
     /// A valid file with an unsupported feature.
     #[error("{} uses {feature}, which is not supported: {remedy}", path.display())]
     Unsupported {
-        /// The file.
         path: PathBuf,
-        /// The unsupported feature, in words.
         feature: String,
-        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
     /// Larger than the largest size.
@@ -79,22 +51,10 @@ pub enum EnvironmentError {
         "{} is {width} × {height}, larger than the {} × {} that are read: scale it down",
         path.display(), SOURCE_MAX_WIDTH, SOURCE_MAX_HEIGHT
     )]
-    TooLarge {
-        /// The file.
-        path: PathBuf,
-        /// Width in pixels.
-        width: u64,
-        /// Height in pixels.
-        height: u64,
-    },
+    TooLarge { path: PathBuf, width: u64, height: u64 },
     /// Larger than the memory budget.
     #[error("the environment {} is not loaded: {over}", path.display())]
-    OverBudget {
-        /// The file.
-        path: PathBuf,
-        /// Needed and available memory.
-        over: OverBudget,
-    },
+    OverBudget { path: PathBuf, over: OverBudget },
     /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -3,8 +3,9 @@
 //! Across the direction of anisotropy α is roughness², along it mix(roughness², 1, strength²).
 
 use crate::optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy};
+use crate::scene::texture::TextureTarget;
 use crate::scene::texture::texture_mean;
-use crate::scene::{Slot, Texture};
+use crate::scene::{Slot, Texture, TextureRef};
 
 /// Two widths in one of the two parametrisations.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +63,7 @@ pub fn gltf_from_widths(roughness: f32, anisotropy: f32) -> Widths {
 /// highlight per texel; the anisotropy is that of its mean. Returns whether both widths are exact.
 pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bool {
     let strength = slot.anisotropy;
-    let Some(place) = &mut slot.metallic_roughness_texture else {
+    let Some(place) = slot.texture(TextureTarget::Roughness) else {
         let widths = widths_from_gltf(slot.roughness, strength);
         (slot.roughness, slot.anisotropy) = (widths.roughness, widths.stretch);
         return widths.is_exact;
@@ -74,7 +75,8 @@ pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bo
         let roughness = slot.roughness * f32::from(texel[1]) / 255.0;
         texel[1] = (255.0 * widths_from_gltf(roughness, strength).roughness).round() as u8;
     }
-    place.texture = textures.len();
+    let texture = textures.len();
+    *slot.texture_mut(TextureTarget::Roughness) = Some(TextureRef { texture, ..place });
     textures.push(widened);
     (slot.roughness, slot.anisotropy) = (1.0, mean.stretch);
     mean.is_exact

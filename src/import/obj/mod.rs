@@ -24,6 +24,7 @@ use crate::panics::contained;
 use crate::picture::{Encoded, Wanted};
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::TextureTarget;
 use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
 
 /// Loads the contents of an OBJ file.
@@ -56,7 +57,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
             .loading
             .step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
-        let normal_texture = slots.slots[slot as usize].normal_texture;
+        let normal_texture = slots.slots[slot as usize].texture(TextureTarget::Normal);
         let mut read = read_part(&part.mesh, slot);
         repair(&mut read, &part.name, &mut report);
         let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
@@ -275,18 +276,18 @@ impl<'a> Slots<'a> {
         self.read_color(material, &mut slot, report);
         let normal = material.unknown_param.get("norm").or(material.normal_texture.as_ref());
         let normal = normal.map(|line| Map::parse(line));
-        slot.normal_texture = self.texture(normal.as_ref(), false, report).found();
+        *slot.texture_mut(TextureTarget::Normal) = self.texture(normal.as_ref(), false, report).found();
         slot.normal_scale = normal.map_or(1.0, |map| map.strength);
-        if let Some(reference) = slot.normal_texture
+        if let Some(reference) = slot.texture(TextureTarget::Normal)
             && is_height(&self.textures[reference.texture])
         {
             report.note(Fate::Ignored, "a bump texture, which holds heights", &material.name);
-            slot.normal_texture = None;
+            *slot.texture_mut(TextureTarget::Normal) = None;
         }
         let emissive = material.unknown_param.get("map_Ke").map(|line| Map::parse(line));
         match self.texture(emissive.as_ref(), true, report) {
             Picture::Found(texture) => {
-                slot.emissive_texture = Some(texture);
+                *slot.texture_mut(TextureTarget::Emission) = Some(texture);
                 if slot.emission == [0.0; 3] {
                     slot.emission = [1.0; 3];
                 }
@@ -315,7 +316,7 @@ impl<'a> Slots<'a> {
         if texture == Picture::Missing {
             slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
         }
-        slot.base_color_texture = texture.found();
+        *slot.texture_mut(TextureTarget::BaseColor) = texture.found();
         let Some(opacity) = opacity else { return };
         if color.is_some_and(|color| color.name == opacity.name) {
             slot.alpha_mode = AlphaMode::Blend;

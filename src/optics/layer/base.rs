@@ -1,6 +1,8 @@
-//! The diffuse base: Lambertian, or rough by a factor of both directions. Seen from within it is behind the interface, and its scattered light is refracted into the solid: a
-//! Lambertian lobe with sines divided by the index of refraction. So it fills the cone from which light gets out again, and
-//! none is trapped by total reflection.
+//! The diffuse base: Lambertian, or rough by a factor of both directions.
+//!
+//! Seen from within it is behind the interface, and its scattered light is refracted into the solid: a Lambertian lobe with
+//! sines divided by the index of refraction. So it fills the cone from which light gets out again, and none is trapped by
+//! total reflection.
 
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
 use crate::optics::curve::Curve;
@@ -59,7 +61,7 @@ impl<T: Real> LayerModel<T> for Base {
         let share = &layers[Layer::Base];
         let mut color = share.albedo;
         // From within light fills a cone, for which there is no such model.
-        let is_rough = T::zero().less(material.diffuse_roughness) & !(surface.is_inside & material.transmits());
+        let is_rough = T::zero().less(material.diffuse_roughness) & !surface.is_within(material);
         if is_rough.any() {
             let cosines = [surface.wo, wi].map(|direction| surface.frame.normal.dot(direction));
             let between = surface.wo.dot(wi);
@@ -137,7 +139,7 @@ pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
 /// The sine of the widest angle to which the base scatters: 1 but from within.
 #[inline(always)]
 fn base_spread<T: Real>(material: &Material<T>, surface: &Surface<T>) -> T {
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     T::select(is_within, material.ior_ahead(is_within), T::one())
 }
 

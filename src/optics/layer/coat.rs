@@ -1,19 +1,26 @@
 //! A clear dielectric coat over all other layers: OpenPBR's coat, glTF's clearcoat.
 //!
-//! Its lobe is the isotropic geometric lobe with the curve `smooth`, for any lobe below, with the exact Fresnel equations of
-//! a dielectric. The rest reaches the layers below, tinted by its colour: coat + (1 − albedo of the coat) · colour · below,
-//! so that no energy is created (the layering of OpenPBR 1.1, section on the coat). It neither blurs the layers below nor
-//! follows a normal map. It is absent from within a solid.
+//! Its lobe is the geometric lobe with the curve `smooth`, or GGX, with the exact Fresnel equations of a dielectric. The rest
+//! reaches the layers below: coat + (1 − albedo of the coat) · below, so that no energy is created. It does not follow a
+//! normal map, and is absent from within a solid.
+//!
+//! A coat that changes what lies below ([`COATS_BASE`]) is OpenPBR 1.1's. Its index and roughness are in the material's
+//! own; here are its darkening by light that it reflects back inside, and its absorption along the way of the light. Any
+//! other coat is glTF's: its colour is that of every direction.
 
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
 use crate::optics::albedo::albedo_lookup;
+use crate::optics::coat_medium::{color_over, way_length};
 use crate::optics::curve::Curve;
-use crate::optics::frame::frame_from_normal;
-use crate::optics::fresnel::{fresnel_dielectric, half_vector_cosine};
+use crate::optics::frame::{frame_from_normal, frame_from_tangent};
+use crate::optics::fresnel::{fresnel, fresnel_dielectric, half_vector_cosine};
 use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape};
-use crate::optics::material::{Material, Surface};
-use crate::optics::real::Real;
+use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, Material, Surface};
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
+
+/// Most of the light that a coat reflects back inside: at 1 nothing would get out.
+const INNER_MAX: f64 = 0.9999;
 
 /// The clear coat layer.
 #[derive(Debug)]
@@ -29,14 +36,20 @@ impl<T: Real> LayerModel<T> for Coat {
 
     #[inline(always)]
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
-        T::zero().less(material.coat_weight) & !(surface.is_inside & material.transmits())
+        T::zero().less(material.coat_weight) & !surface.is_within(material)
     }
 
+    /// Stretched along the tangent of the layers below.
     #[inline(always)]
     fn lobe<'a>(material: &Material<T>, _: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+        let is_stretched = material.coat_anisotropy.differs(T::zero()).any();
         LayerLobe {
             shape: coat_shape(material),
-            frame: frame_from_normal(surface.coat_normal),
+            frame: if is_stretched {
+                frame_from_tangent(surface.coat_normal, surface.frame.tangent, T::zero())
+            } else {
+                frame_from_normal(surface.coat_normal)
+            },
         }
     }
 
@@ -44,10 +57,19 @@ impl<T: Real> LayerModel<T> for Coat {
     fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
         let cosine = surface.coat_normal.dot(surface.wo);
         let share = material.coat_weight * albedo_lookup(tables, material.coat_table, cosine).x;
-        let color = Vec3::splat(T::one()).mix(material.coat_color, material.coat_weight);
+        let left = (T::one() - share).max(T::zero());
+        let white = Vec3::splat(T::one());
+        let mut transmittance = if material.has_flag(COATS_BASE) {
+            white * left
+        } else {
+            white.mix(material.coat_color, material.coat_weight) * left
+        };
+        if T::zero().less(material.coat_darkening).any() {
+            transmittance = transmittance * darkened(material, surface, cosine);
+        }
         LayerAlbedo {
             reflected: Vec3::splat(share),
-            transmittance: color * (T::one() - share).max(T::zero()),
+            transmittance,
         }
     }
 
@@ -76,12 +98,13 @@ impl<T: Real> LayerModel<T> for Coat {
 /// The coat's lobe.
 #[inline(always)]
 pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
+    let is_ggx = material.has_flag(COAT_IS_GGX);
     LobeShape {
-        lobe: Lobe::Geometric,
+        lobe: if is_ggx { Lobe::Ggx } else { Lobe::Geometric },
         curve: Curve::Smooth,
         horizon: Horizon::Mirror,
         roughness: material.coat_roughness,
-        anisotropy: T::zero(),
+        anisotropy: material.coat_anisotropy,
         eta: T::zero(),
         table: &[],
     }
@@ -91,4 +114,58 @@ pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
 #[inline(always)]
 fn coat_fresnel<T: Real>(material: &Material<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     material.coat_weight * fresnel_dielectric(half_vector_cosine(wo, wi), material.coat_ior)
+}
+
+/// What the layers below keep of their light if the coat reflects some of it back onto them each time: 1 over a white base.
+/// `cosine` is that of the view (OpenPBR 1.1, "Darkening").
+#[inline(always)]
+pub fn darkened<T: Real>(material: &Material<T>, surface: &Surface<T>, cosine: T) -> Vec3<T> {
+    let (one, white) = (T::one(), Vec3::splat(T::one()));
+    let terms = material.fresnel_terms(surface.is_inside);
+    let of_dielectric = fresnel(&terms.of_dielectric(), one);
+    // What is refracted into the solid is not lost.
+    let deeper = material.base_color.mix(material.transmission_tint, material.transmission_weight);
+    let base = fresnel(&terms, one) + (white - of_dielectric) * deeper * (one - material.metalness);
+    // Light of a rough base meets the coat from all directions, that of a smooth one at the angle of the view.
+    let rough = material.ggx_roughness;
+    let of_gloss = one + (rough - one) * of_dielectric.luminance().min(one);
+    let spread = of_gloss + (rough - of_gloss) * material.metalness;
+    let smooth = fresnel_dielectric(cosine, material.coat_ior);
+    let inner = (smooth + (material.coat_inner - smooth) * spread).min(T::from_f64(INNER_MAX));
+    let kept = base.map(|base: T| (one - inner) / (one - base.min(one) * inner));
+    white.mix(kept, material.coat_weight * material.coat_darkening)
+}
+
+/// What a diffuse base under the coat gets back of its own light: 1 − (1 − F̄)/η², F̄ the mean of the Fresnel factor over
+/// all directions.
+pub fn inner_reflection(ior: f64) -> f64 {
+    const STEPS: u32 = 256;
+    let step = 1.0 / f64::from(STEPS);
+    let mean = (0..STEPS).map(|i| {
+        let cosine = (f64::from(i) + 0.5) * step;
+        2.0 * cosine * fresnel_dielectric(cosine, ior) * step
+    });
+    1.0 - (1.0 - mean.sum::<f64>()) / (ior * ior)
+}
+
+/// What the coat's medium leaves of the light of the layers below, by its directions; for coats that absorb by their length
+/// of way. Light that goes on into the solid takes the way of the view twice, for it finds no coat on its way out.
+#[inline(always)]
+pub fn coat_tint<T: Real>(material: &Material<T>, layers: &Layers<T>, surface: &Surface<T>, wi: Vec3<T>) -> Vec3<T> {
+    let white = Vec3::splat(T::one());
+    let reflected = layers[Layer::Coat].albedo.x;
+    let left = (T::one() - reflected).max(T::from_f64(1e-9));
+    let share = (material.coat_weight - reflected).max(T::zero()) / left;
+    let out = surface.coat_normal.dot(surface.wo);
+    let is_through = surface.normal.dot(wi).less(T::zero());
+    let back = T::select(is_through, out, surface.coat_normal.dot(wi).abs());
+    let way = way_length(material, out) + way_length(material, back);
+    let tint = white.mix(color_over(material, way), share);
+    Vec3::select(Coat::is_there(material, surface), tint, white)
+}
+
+/// True if the coat takes light of a layer below by the way through it.
+#[inline(always)]
+pub fn absorbs_over<T: Real, L: LayerModel<T>>(material: &Material<T>) -> bool {
+    L::LAYER as u32 > Layer::Coat as u32 && material.has_flag(COAT_ABSORBS)
 }

@@ -1,5 +1,6 @@
 //! Evaluation of a material for a sampled light direction.
 
+use super::coat::{absorbs_over, coat_tint};
 use super::{LayerLobe, LayerModel, LayerVisitor, Layers, each_layer};
 use crate::optics::lobe::{is_mirror, lobe_evaluate};
 use crate::optics::material::{Material, Surface};
@@ -76,7 +77,11 @@ impl<T: Real> LayerVisitor<T> for Evaluation<'_, T> {
         let share = &layers[L::LAYER];
         let competing = self.competing * share.reached * toward.probability * density;
         let weight = self.light_density / (self.light_density + competing);
-        let part = toward.color * share.transmittance * (value * weight);
+        let mut color = toward.color * share.transmittance;
+        if absorbs_over::<T, L>(material) {
+            color = color * coat_tint(material, layers, surface, wi);
+        }
+        let part = color * (value * weight);
         let sum = if L::TRAITS.is_cover {
             &mut self.covers
         } else {

@@ -6,6 +6,7 @@ use crate::optics::lobe::{Facets, Lobe};
 use crate::optics::material::{Material, Surface, by_index};
 use crate::optics::numeric::sampled_share;
 use crate::optics::real::{Mask, Real};
+use crate::optics::refraction::refracted_square;
 use crate::optics::vector::Vec3;
 
 /// Lanes where a mirrored direction is sampled first and the rest is passed on: then all weights are 1, however often light
@@ -44,6 +45,14 @@ pub(super) fn left_by_facet<T: Real>(
     surface: &Surface<T>,
     [cosine, behind]: [T; 2],
 ) -> Vec3<T> {
-    let left = fresnel_left(&material.fresnel_terms(surface.is_inside), cosine, behind);
+    let terms = material.fresnel_terms(surface.is_inside);
+    // Under a coat the reflection has another index than the refraction.
+    let is_coated = terms.ior.differs(material.ior_ahead(surface.is_inside));
+    let mut behind = behind;
+    if is_coated.any() {
+        let of_reflection = refracted_square(cosine, terms.ior).safe_sqrt() / terms.ior;
+        behind = T::select(is_coated, of_reflection, behind);
+    }
+    let left = fresnel_left(&terms, cosine, behind);
     material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }

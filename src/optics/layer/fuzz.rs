@@ -32,7 +32,7 @@ impl<T: Real> LayerModel<T> for Fuzz {
 
     #[inline(always)]
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
-        T::zero().less(material.fuzz_weight) & !(surface.is_inside & material.transmits())
+        T::zero().less(material.fuzz_weight) & !surface.is_within(material)
     }
 
     /// Lambert's lobe, whose samples the matrix turns.

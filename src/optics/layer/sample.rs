@@ -1,5 +1,6 @@
 //! Directions drawn from a material.
 
+use super::coat::{absorbs_over, coat_tint};
 use super::evaluate::lobe_of;
 use super::{Layer, LayerLobe, LayerModel, LayerToward, LayerVisitor, Layers, each_layer};
 use crate::optics::lobe::{LobeSample, is_mirror, lobe_sample};
@@ -167,9 +168,13 @@ impl<T: Real> Drawing<'_, T> {
             density = T::select(is_mirror, T::zero(), density_there);
         }
         let scale = drawn.weight / (share.reached * share.probability).max(T::from_f64(1e-20));
+        let mut color = toward.color * share.transmittance;
+        if absorbs_over::<T, L>(self.material) {
+            color = color * coat_tint(self.material, &self.layers, self.surface, drawn.wi);
+        }
         MaterialSample {
             wi: drawn.wi,
-            throughput: toward.color * share.transmittance * scale,
+            throughput: color * scale,
             density,
             is_mirror,
             layer: L::LAYER,

@@ -2,6 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
+use super::coat::{absorbs_over, coat_tint};
 use super::{Layer, LayerAlbedo, LayerModel, LayerVisitor, each_layer, each_layer_upwards};
 use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
@@ -187,6 +188,10 @@ impl<T: Real> LayerVisitor<T> for SeenAlbedo<'_, T> {
         } else {
             self.below += albedo;
             self.transmittance = share.transmittance;
+            if absorbs_over::<T, L>(self.material) {
+                let tint = coat_tint(self.material, self.layers, self.surface, self.surface.wo);
+                self.transmittance = self.transmittance * tint;
+            }
         }
     }
 }

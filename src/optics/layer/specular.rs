@@ -2,8 +2,8 @@
 
 use super::facet::{decides_by_facet, left_by_facet, mirrored_share, passes_on, shares_facets};
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerShare, LayerToward, LayerTraits, Layers};
-use crate::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
-use crate::optics::fresnel::{fresnel, half_vector_cosine};
+use crate::optics::albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
+use crate::optics::fresnel::{fresnel, fresnel_f0, half_vector_cosine};
 use crate::optics::lobe::LobeShape;
 use crate::optics::material::{Material, Surface};
 use crate::optics::numeric::sampled_share;
@@ -123,7 +123,7 @@ fn has_more<T: Real>(material: &Material<T>) -> T::Mask {
 #[inline(always)]
 fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
     let cosine = surface.frame.normal.dot(surface.wo);
-    let is_within = surface.is_inside & material.transmits();
+    let is_within = surface.is_within(material);
     let mut albedos = [Vec3::zero(); 2];
     if is_within.any() {
         let place = albedo_place(cosine, material.ior_ahead(is_within));
@@ -149,7 +149,10 @@ fn albedos_in<T: Real>(
     place: T,
 ) -> [Vec3<T>; 2] {
     if material.has_rough_tables == 1 {
-        let integrals = rough_albedo_lookup(tables, table, place, material.roughness);
+        let mut integrals = rough_albedo_lookup(tables, table, place, material.roughness);
+        if table == material.albedo_table && material.has_coated_table() {
+            integrals[0] = dielectric_under_coat(material, tables, place, integrals[0]);
+        }
         let terms = material.fresnel_terms(surface.is_inside);
         return [
             rough_albedo(&terms, integrals),
@@ -158,6 +161,18 @@ fn albedos_in<T: Real>(
     }
     // A partly metallic material has the other table.
     [albedo_lookup(tables, table, place); 2]
+}
+
+/// The dielectric's integral where a texture varies the coat over it: between those without and under a whole coat, as the
+/// reflectances head-on are.
+#[inline(always)]
+fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], place: T, bare: T) -> T {
+    let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;
+    let [coated, ..] = rough_albedo_lookup(tables, table, place, material.roughness);
+    let [zero, one] = [T::zero(), T::one()].map(|weight| fresnel_f0(material.ior_under_coat(weight)));
+    let there = fresnel_f0(material.reflecting_ior);
+    let share = (there - zero) / T::select(one.differs(zero), one - zero, T::one());
+    bare + (coated - bare) * share
 }
 
 /// Sampling probability of the specular lobe, if no cover is sampled, for a direction that it mirrors to with this Fresnel

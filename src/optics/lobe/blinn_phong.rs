@@ -1,10 +1,9 @@
 //! Blinn-Phong as a microfacet lobe: D = (n + 2)/(2π) cosⁿθh (Blinn 1977), n = 2/α² − 2, masked as GGX of the same α
 //! (Walter et al. 2007 show the two to be close).
 
-use super::{Facets, LobeShape, LobeTraits, Width};
+use super::{Facets, LobeShape, LobeTraits, Width, alpha_from_roughness, isotropic_alpha};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::lobe::alpha_from_roughness;
-use crate::optics::microfacet::{distribution_weight, facet, isotropic_alpha};
+use crate::optics::microfacet::{distribution_weight, facet};
 use crate::optics::numeric::{expm1, log1p};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};

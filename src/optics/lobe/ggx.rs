@@ -1,9 +1,9 @@
 //! GGX with height-correlated Smith masking, single scattering; visible normals sampled by spherical caps.
 //! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
 
-use super::{Facets, LobeShape, LobeTraits, Width};
+use super::{Facets, LobeShape, LobeTraits, Width, microfacet_alpha};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::microfacet::{microfacet_alpha, visible_density, visible_weight};
+use crate::optics::microfacet::{visible_density, visible_weight};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -39,11 +39,11 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
 /// D G1/(4 cosθo).
 #[inline(always)]
 pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    visible_density(shape, frame, wo, wi)
+    visible_density(microfacet_alpha(shape), frame, wo, wi)
 }
 
 /// G2/G1.
 #[inline(always)]
 pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    visible_weight(shape, frame, wo, wi)
+    visible_weight(microfacet_alpha(shape), frame, wo, wi)
 }

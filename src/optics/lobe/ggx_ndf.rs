@@ -1,9 +1,9 @@
 //! GGX as in [`super::ggx`], all normals sampled in proportion to D cosθ (Walter et al. 2007, eqs. 35 and 36): kept to
 //! be compared in noise.
 
-use super::{Facets, LobeShape, LobeTraits, Width};
+use super::{Facets, LobeShape, LobeTraits, Width, microfacet_alpha};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::microfacet::{distribution_weight, facet, ggx_distribution, microfacet_alpha};
+use crate::optics::microfacet::{distribution_weight, facet, ggx_distribution};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};

@@ -9,11 +9,10 @@
 pub mod model;
 
 use super::curve::Curve;
-use super::frame::Frame;
+use super::frame::{Frame, local_from_world};
+use super::microfacet::{Alpha, facet, smith_g1_over_cosine};
 use super::real::{Mask, Real};
-use super::refraction::{
-    facet_density_factor, facet_mirror, facet_refracted, facet_weight, refracted, refracting_normal,
-};
+use super::refraction::{facet_density_factor, facet_mirror, facet_refracted, refracted, refracting_normal};
 use super::vector::Vec3;
 use crate::named::named;
 
@@ -283,6 +282,24 @@ pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
     ((T::one() + s) / (T::one() - s)).sqrt()
 }
 
+/// The widths of a shape, anisotropy applied.
+#[inline(always)]
+pub fn microfacet_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+    let alpha = alpha_from_roughness(shape.roughness);
+    let stretch = stretch_from_anisotropy(shape.anisotropy);
+    Alpha {
+        x: alpha * stretch,
+        y: alpha / stretch,
+    }
+}
+
+/// Equal widths.
+#[inline(always)]
+pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+    let alpha = alpha_from_roughness(shape.roughness);
+    Alpha { x: alpha, y: alpha }
+}
+
 /// Anisotropy in [0, 1] with this ratio of the narrower width to the wider one; 1 for smaller ratios.
 pub fn anisotropy_from_ratio(ratio: f64) -> f64 {
     ((1.0 - ratio) / (0.9 * (1.0 + ratio))).clamp(0.0, 1.0)
@@ -305,6 +322,36 @@ pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
 #[inline(always)]
 pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
     shape.refracts() && shape.lobe.facets() != Facets::None
+}
+
+/// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
+/// directions, separately as they are on different sides, over that of the sampled normals. 0 if `wi` is not below the
+/// shading normal's horizon. `mirrored`: [`facet_mirror`].
+#[inline(always)]
+pub fn facet_weight<T: Real>(
+    shape: &LobeShape<'_, T>,
+    frame: &Frame<T>,
+    wo: Vec3<T>,
+    wi: Vec3<T>,
+    mirrored: Vec3<T>,
+) -> T {
+    let alpha = if shape.lobe.is_anisotropic() {
+        microfacet_alpha(shape)
+    } else {
+        isotropic_alpha(shape)
+    };
+    let (wo_local, wi_local) = (local_from_world(frame, wo), local_from_world(frame, wi));
+    let mut weight = smith_g1_over_cosine(alpha, wi_local) * wi_local.z.abs();
+    if shape.lobe.facets() == Facets::All {
+        // Of the mirror direction, as in the density: otherwise facets near the horizon differ by the rounding of their height.
+        let facet = facet(frame, wo, mirrored);
+        let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
+        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
+        let ratio = T::select(T::zero().less(facet.h.z), ratio, T::zero());
+        weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
+    }
+    let is_behind = wi_local.z.less(T::zero()) & T::zero().less(wo_local.z);
+    T::select(is_behind, weight, T::zero())
 }
 
 /// View of a lobe; if it refracts as a whole, that of a viewer behind the surface.

@@ -25,6 +25,7 @@ const INSTALLERS: [&[&str]; 3] = [&["python3", "-m", "pip"], &["pip3"], &["uv", 
 
 /// Why the denoiser could not be fetched.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum FetchError {
     /// No program is there that installs Python packages.
     #[error("nothing here can download it: install python3-pip, then press the button again")]
@@ -40,12 +41,7 @@ pub enum FetchError {
     NoFolder,
     /// A file can't be written.
     #[error("{}: {error}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The system's words.
-        error: io::Error,
-    },
+    File { path: PathBuf, error: io::Error },
 }
 
 /// Whether the denoiser can be fetched on this system.

@@ -5,12 +5,13 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 
 use super::device_choice::DenoiseDevice;
 use super::filter::Device;
 use super::functions::{Functions, one_line};
 use super::library_error::{FOLDER_VARIABLE, LibraryError, MIN_VERSION, NAME};
+use crate::panics::lock;
 
 /// File name prefixes of the library's own dependencies, in load order. Loaded first if they lie beside it, because the
 /// loader does not search there.
@@ -20,10 +21,6 @@ const DEPENDENCIES: [&str; 2] = ["libtbb.so.12", "libOpenImageDenoise_core.so"];
 static FOUND: OnceLock<Library> = OnceLock::new();
 /// Why it was not found when it was looked for last.
 static FAILED: Mutex<Option<LibraryError>> = Mutex::new(None);
-
-fn lock_failed() -> MutexGuard<'static, Option<LibraryError>> {
-    FAILED.lock().unwrap_or_else(PoisonError::into_inner)
-}
 
 /// The loaded library. It is never unloaded, because its threads do not survive that.
 #[derive(Debug)]
@@ -43,7 +40,7 @@ impl Library {
         if let Some(found) = FOUND.get() {
             return Ok(found);
         }
-        let mut failed = lock_failed();
+        let mut failed = lock(&FAILED);
         if let Some(error) = failed.as_ref() {
             return Err(error.clone());
         }
@@ -58,12 +55,12 @@ impl Library {
 
     /// Whether it was looked for and is not there. Does not look for it.
     pub fn is_missing() -> bool {
-        matches!(*lock_failed(), Some(LibraryError::Missing))
+        matches!(*lock(&FAILED), Some(LibraryError::Missing))
     }
 
     /// Has it looked for again at the next call, after it was installed.
     pub fn look_again() {
-        *lock_failed() = None;
+        *lock(&FAILED) = None;
     }
 
     fn find() -> Result<Self, LibraryError> {

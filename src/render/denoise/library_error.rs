@@ -17,6 +17,7 @@ pub(super) const NAME: &str = "libOpenImageDenoise.so.2";
 
 /// Why there is no denoiser.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum LibraryError {
     /// The library was not found.
     #[error(
@@ -29,20 +30,10 @@ pub enum LibraryError {
     NotInFolder(PathBuf),
     /// The file cannot be loaded.
     #[error("{}: can't be loaded as the denoiser ({reason}); install it again by `scripts/setup denoiser`", path.display())]
-    Broken {
-        /// The file.
-        path: PathBuf,
-        /// The loader's message.
-        reason: String,
-    },
+    Broken { path: PathBuf, reason: String },
     /// The version is too old.
     #[error("{}: Open Image Denoise {found} is too old, {}.{} or newer is needed", path.display(), MIN_VERSION[0], MIN_VERSION[1])]
-    TooOld {
-        /// The file.
-        path: PathBuf,
-        /// Its version.
-        found: String,
-    },
+    TooOld { path: PathBuf, found: String },
     /// The library refuses to work here.
     #[error("the denoiser can't be used here: {0}")]
     Device(String),

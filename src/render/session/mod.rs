@@ -7,10 +7,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::assets::{Assets, Reloaded};
-use super::calibration;
 use super::compile::{self, Compiler};
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision};
+use super::engine::{calibration, choice};
 use super::error::SessionError;
 use super::memory;
 use super::progress::{Progress, StopReason};
@@ -77,7 +77,7 @@ impl Session {
     ///
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        Ok(Self::around(super::choice::open(choice, true)?, assets))
+        Ok(Self::around(choice::open(choice, true)?, assets))
     }
 
     /// Opens an adapter for a kind of traversal.
@@ -87,7 +87,7 @@ impl Session {
     /// [`GpuError`] if the adapter cannot render, or not this way.
     pub fn on_adapter(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, SessionError> {
         let device = adapter.open(traversal)?;
-        let opened = super::choice::on_device(device)?;
+        let opened = choice::on_device(device)?;
         Ok(Self::around(opened, Assets::default()))
     }
 
@@ -124,7 +124,7 @@ impl Session {
     ///
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        let mut session = Self::around(super::choice::open(choice, false)?, assets);
+        let mut session = Self::around(choice::open(choice, false)?, assets);
         session.is_automatic = choice == EngineChoice::Auto;
         let fallback = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, fallback) {

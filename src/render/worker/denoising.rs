@@ -3,9 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Condvar, Mutex};
 
-use super::lock;
 use crate::document::{Denoise, DenoiseWhen, Document};
-use crate::panics::caught;
+use crate::panics::{caught, lock};
 use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
 use crate::render::progress::Progress;
 use crate::render::quiet::at_work;

@@ -10,7 +10,7 @@ mod thread;
 use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -27,6 +27,7 @@ use crate::document::Document;
 use crate::gpu::Moment;
 use crate::job::Job;
 use crate::job::film::Image;
+use crate::panics::lock;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Loading, Model, ModelOptions, ModelSource};
 
@@ -283,12 +284,6 @@ impl Shared {
         let _commands = lock(&self.commands);
         self.command_arrived.notify_one();
     }
-}
-
-/// Locks a mutex, poisoned or not. Data behind these locks stays consistent in a panic: every write is a single assignment
-/// or push.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Worker {

@@ -2,6 +2,7 @@
 
 /// Errors of an environment map.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MapError {
     /// An empty name.
     #[error("no environment was named: give studio, sky, furnace, or an image file")]
@@ -11,10 +12,7 @@ pub enum MapError {
     IsFile(String),
     /// No pixels.
     #[error("the environment {name} has no pixels: it needs at least one; save it again at its full size")]
-    Empty {
-        /// The file or the map's name.
-        name: String,
-    },
+    Empty { name: String },
     /// A sky that cannot be.
     #[error("{0}")]
     SkyParameter(String),

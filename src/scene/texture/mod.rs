@@ -17,15 +17,18 @@ use super::geometry::Geometry;
 use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
-use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::material::{
+    COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
+pub use super::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};
 pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
-pub use user::{TextureChannel, TextureProjection, TextureSpace, TextureTarget, UserTexture};
+pub use user::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 pub use uses::TextureAssignment;
 
 /// Wrap mode: repeat.
@@ -251,12 +254,25 @@ pub fn textured_material<T: Scalar>(
         at_point.base_color = at_point.base_color * color;
         at_point.transmission_tint = at_point.transmission_tint * color;
     }
+    if material.coat_texture != NO_TEXTURE {
+        at_point.coat_weight = coat_weight_at(textures, material, uvs);
+        if material.has_flag(COATS_BASE) {
+            at_point.reflecting_ior = material.ior_under_coat(at_point.coat_weight);
+        }
+    }
     // A map with both is looked up once.
     let mut of_metalness = Vec3::splat(T::one());
-    if roughness != NO_TEXTURE {
-        let (values, _) = texture_lookup(textures, roughness, uvs);
-        of_metalness = values;
-        at_point.roughness = material.texture_roughness * values.y;
+    let blurs = material.has_varied_blur();
+    if roughness != NO_TEXTURE || blurs {
+        at_point.ggx_roughness = material.texture_roughness;
+        if roughness != NO_TEXTURE {
+            (of_metalness, _) = texture_lookup(textures, roughness, uvs);
+            at_point.ggx_roughness = material.texture_roughness * of_metalness.y;
+        }
+        at_point.roughness = at_point.ggx_roughness;
+        if blurs {
+            at_point.roughness = material.roughness_under_coat(at_point.roughness, at_point.coat_weight);
+        }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
@@ -272,9 +288,6 @@ pub fn textured_material<T: Scalar>(
     }
     if emission != NO_TEXTURE {
         at_point.emission = at_point.emission * texture_lookup(textures, emission, uvs).0;
-    }
-    if material.coat_texture != NO_TEXTURE {
-        at_point.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
     }
     if material.film_texture != NO_TEXTURE {
         at_point.film_weight = material.film_weight * texture_lookup(textures, material.film_texture, uvs).0.x;
@@ -304,6 +317,8 @@ pub fn textured_materials<T: Real>(
                 at.roughness,
                 at.transmission_roughness,
                 at.coat_weight,
+                at.reflecting_ior,
+                at.ggx_roughness,
                 at.film_weight,
             ],
         }
@@ -317,8 +332,10 @@ pub fn textured_materials<T: Real>(
         roughness: T::from_lanes(|lane| at[lane].numbers[1]),
         transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
         coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
+        reflecting_ior: T::from_lanes(|lane| at[lane].numbers[4]),
+        ggx_roughness: T::from_lanes(|lane| at[lane].numbers[5]),
         film_path: Vec3::from_lanes(|lane| at[lane].colors[3]),
-        film_weight: T::from_lanes(|lane| at[lane].numbers[4]),
+        film_weight: T::from_lanes(|lane| at[lane].numbers[6]),
         ..*material
     }
 }
@@ -328,8 +345,9 @@ pub fn textured_materials<T: Real>(
 struct TexturedNumbers<T> {
     /// Base colour, tint of the transmission, emission, phase of the thin film.
     colors: [Vec3<T>; 4],
-    /// Metalness, roughness, roughness of the refraction, weights of coat and thin film.
-    numbers: [T; 5],
+    /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
+    /// the coat, weight of the thin film.
+    numbers: [T; 7],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -374,6 +392,14 @@ pub fn emission_at<T: Scalar>(
         return radiance;
     }
     radiance * texture_lookup(textures, emission, uvs).0
+}
+
+/// The weight of the coat at a surface point.
+pub fn coat_weight_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
+    if material.coat_texture == NO_TEXTURE {
+        return material.coat_weight;
+    }
+    material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x
 }
 
 /// The share of light that a surface point stops, in [0, 1]; `alpha` is that of the vertices.

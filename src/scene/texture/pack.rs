@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::mean::{TextureMean, texture_mean};
 use super::scale::{fraction, halved};
-use super::user::TextureTarget;
 use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::{AlphaMode, Model, Slot, Texture};
+use crate::scene::target::{TextureTarget, TextureValues};
 
 /// Words before the first texel: the linear values of sRGB codes.
 const DECODED: usize = 256;
@@ -49,45 +49,17 @@ pub struct Textures {
     pub user_textures: Vec<UserTextureFile>,
 }
 
-/// Textures of a slot, as indices into [`Textures::records`] or [`NO_TEXTURE`]. A map of one value is a constant instead.
+/// Textures of a slot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlotTextures {
-    /// Multiplies the base colour.
-    pub base_color: u32,
-    /// Its green multiplies the roughness.
-    pub roughness: u32,
-    /// Its blue multiplies the metalness.
-    pub metalness: u32,
-    /// Tangent-space normals.
-    pub normal: u32,
-    /// Multiplies the emission.
-    pub emission: u32,
-    /// Its alpha multiplies the opacity.
-    pub opacity: u32,
-    /// Its red multiplies the weight of the coat.
-    pub coat: u32,
-    /// Its red multiplies the weight of the thin film.
-    pub film: u32,
-    /// Its red multiplies the thickness of the thin film.
-    pub film_thickness: u32,
+    /// Indices into [`Textures::records`] by target, or [`NO_TEXTURE`]. A map of one value is a constant instead.
+    records: [u32; TextureTarget::ALL.len()],
+    /// Values of maps of one value, by target: linear RGB, or a number in all three.
+    constants: [Option<[f32; 3]>; TextureTarget::ALL.len()],
     /// Opacity cutoff of a masked material; negative for blended opacity.
     pub alpha_cutoff: f32,
     /// The emission texture's mean, linear.
     pub mean_emission: [f32; 3],
-    /// Linear RGB of a base colour texture of one value.
-    pub constant_base_color: Option<[f32; 3]>,
-    /// Constant value of a uniform opacity map.
-    pub constant_opacity: Option<f32>,
-    /// Constant value of a uniform roughness map.
-    pub constant_roughness: Option<f32>,
-    /// Constant value of a uniform metalness map.
-    pub constant_metalness: Option<f32>,
-    /// Constant value of a uniform coat map.
-    pub constant_coat: Option<f32>,
-    /// Constant value of a uniform map of the thin film's weight.
-    pub constant_film: Option<f32>,
-    /// Constant value of a uniform map of the thin film's thickness.
-    pub constant_film_thickness: Option<f32>,
     /// Parameters that vertex colours multiply, as material flags.
     pub vertex_flags: u32,
     /// Whether each target uses box projection.
@@ -97,27 +69,25 @@ pub struct SlotTextures {
 impl Default for SlotTextures {
     fn default() -> Self {
         Self {
-            base_color: NO_TEXTURE,
-            roughness: NO_TEXTURE,
-            metalness: NO_TEXTURE,
-            normal: NO_TEXTURE,
-            emission: NO_TEXTURE,
-            opacity: NO_TEXTURE,
-            coat: NO_TEXTURE,
-            film: NO_TEXTURE,
-            film_thickness: NO_TEXTURE,
+            records: [NO_TEXTURE; TextureTarget::ALL.len()],
+            constants: [None; TextureTarget::ALL.len()],
             alpha_cutoff: -1.0,
             mean_emission: [1.0; 3],
-            constant_base_color: None,
-            constant_opacity: None,
-            constant_roughness: None,
-            constant_metalness: None,
-            constant_coat: None,
-            constant_film: None,
-            constant_film_thickness: None,
             vertex_flags: 0,
             on_box: [false; TextureTarget::ALL.len()],
         }
+    }
+}
+
+impl SlotTextures {
+    /// A target's index into [`Textures::records`], or [`NO_TEXTURE`].
+    pub fn record(&self, target: TextureTarget) -> u32 {
+        self.records[target as usize]
+    }
+
+    /// Linear RGB of a target's map of one value; a number stands in all three.
+    pub fn constant(&self, target: TextureTarget) -> Option<[f32; 3]> {
+        self.constants[target as usize]
     }
 }
 
@@ -314,39 +284,16 @@ impl Pack {
     /// Assigns a map, or its uniform value, to a slot.
     fn look_up(&self, used: &Use, textures: &mut Textures, slot: &mut SlotTextures) {
         let picture = &self.pictures[used.picture];
-        let value = picture.one_value(used).filter(|_| used.target != TextureTarget::Normal);
-        slot.on_box[used.target as usize] = value.is_none() && used.flags & IS_BOX != 0;
-        let mut number = |constant: fn(&mut SlotTextures) -> &mut Option<f32>,
-                          record: fn(&mut SlotTextures) -> &mut u32| {
-            *constant(slot) = value.map(|value| value.x as f32);
-            if value.is_none() {
-                *record(slot) = textures.add(picture.record(used));
-            }
-        };
-        match used.target {
-            TextureTarget::Roughness => number(|slot| &mut slot.constant_roughness, |slot| &mut slot.roughness),
-            TextureTarget::Metalness => number(|slot| &mut slot.constant_metalness, |slot| &mut slot.metalness),
-            TextureTarget::Opacity => number(|slot| &mut slot.constant_opacity, |slot| &mut slot.opacity),
-            TextureTarget::Coat => number(|slot| &mut slot.constant_coat, |slot| &mut slot.coat),
-            TextureTarget::Film => number(|slot| &mut slot.constant_film, |slot| &mut slot.film),
-            TextureTarget::FilmThickness => number(
-                |slot| &mut slot.constant_film_thickness,
-                |slot| &mut slot.film_thickness,
-            ),
-            TextureTarget::Normal => slot.normal = textures.add(picture.record(used)),
-            TextureTarget::BaseColor => {
-                slot.constant_base_color = value.map(Vec3::to_f32);
-                if value.is_none() {
-                    slot.base_color = textures.add(picture.record(used));
-                }
-            }
-            TextureTarget::Emission => {
-                slot.mean_emission = picture.mean(used);
-                // The mean of a single value is that value.
-                if value.is_none() {
-                    slot.emission = textures.add(picture.record(used));
-                }
-            }
+        let is_vector = used.target.values() == TextureValues::Vector;
+        let value = picture.one_value(used).filter(|_| !is_vector);
+        let index = used.target as usize;
+        slot.on_box[index] = value.is_none() && used.flags & IS_BOX != 0;
+        slot.constants[index] = value.map(Vec3::to_f32);
+        if value.is_none() {
+            slot.records[index] = textures.add(picture.record(used));
+        }
+        if used.target == TextureTarget::Emission {
+            slot.mean_emission = picture.mean(used);
         }
     }
 }
@@ -422,12 +369,9 @@ impl Packed {
             })
         };
         let counts = match (used.flags >> CHANNEL_SHIFT) & 7 {
-            0 => match used.target {
-                TextureTarget::Roughness => Some(1),
-                TextureTarget::Metalness => Some(2),
-                TextureTarget::Opacity => Some(3),
-                TextureTarget::Coat | TextureTarget::Film | TextureTarget::FilmThickness => Some(0),
-                TextureTarget::BaseColor | TextureTarget::Normal | TextureTarget::Emission => None,
+            0 => match used.target.values() {
+                TextureValues::Number(channel) => Some(channel),
+                TextureValues::Color | TextureValues::Vector => None,
             },
             one => Some(one as usize - 1),
         };

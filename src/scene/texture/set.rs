@@ -3,7 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::user::{TextureChannel, TextureTarget, UserTexture};
+use super::user::{TextureChannel, UserTexture};
+use crate::scene::target::TextureTarget;
 
 /// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]

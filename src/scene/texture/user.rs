@@ -5,21 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::named::named;
-
-named! {
-    /// Material parameter of a texture map.
-    TextureTarget {
-        BaseColor, "base-color", "Base colour", "Multiplies the base colour.";
-        Roughness, "roughness", "Roughness", "Multiplies the roughness; its values are meant for GGX, as those of most textures are.";
-        Metalness, "metalness", "Metalness", "Multiplies the metalness.";
-        Normal, "normal", "Normal", "Bends the normal.";
-        Opacity, "opacity", "Opacity", "Multiplies the opacity.";
-        Emission, "emission", "Emission", "Multiplies the emission.";
-        Coat, "coat", "Coat", "Multiplies the weight of the coat.";
-        Film, "film", "Thin film", "Multiplies the weight of the thin film.";
-        FilmThickness, "film-thickness", "Film thickness", "Multiplies the thickness of the thin film.";
-    }
-}
+use crate::scene::target::TextureTarget;
 
 named! {
     /// Channel of a texel for a scalar parameter.
@@ -54,18 +40,6 @@ named! {
         First, "first", "Coordinates", "By the model's first set of texture coordinates.";
         Second, "second", "Second coordinates", "By the model's second set of texture coordinates.";
         Box, "box", "Box", "From six sides, each part of the surface from the side that it faces; at a scale of 1 the texture is as large as the model.";
-    }
-}
-
-impl TextureTarget {
-    /// True for a colour, false for a scalar or a normal.
-    pub fn is_color(self) -> bool {
-        matches!(self, Self::BaseColor | Self::Emission)
-    }
-
-    /// True for a scalar.
-    pub fn is_number(self) -> bool {
-        !self.is_color() && self != Self::Normal
     }
 }
 

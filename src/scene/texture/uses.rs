@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::user::{TextureProjection, TextureTarget, UserTexture};
+use super::user::{TextureProjection, UserTexture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
 use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
-use crate::scene::model::{AlphaMode, Filter, Slot, TextureRef, Wrap};
+use crate::scene::model::{Filter, Slot, TextureRef, Wrap};
+use crate::scene::target::TextureTarget;
 
 /// A user's map assigned to a slot.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,41 +55,29 @@ pub(super) type SlotUses = [Option<Use>; TextureTarget::ALL.len()];
 
 /// A slot's uses of its model's maps.
 pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> SlotUses {
-    let base_color = slot.base_color_texture;
-    let opacity = base_color.filter(|place| slot.alpha_mode != AlphaMode::Opaque && is_translucent(place.texture));
-    let uses = |target| {
-        let reference = match target {
-            TextureTarget::BaseColor => base_color,
-            TextureTarget::Roughness | TextureTarget::Metalness => slot.metallic_roughness_texture,
-            TextureTarget::Normal => slot.normal_texture,
-            TextureTarget::Opacity => opacity,
-            TextureTarget::Emission => slot.emissive_texture,
-            TextureTarget::Coat => slot.coat_texture,
-            TextureTarget::Film => slot.film_texture,
-            TextureTarget::FilmThickness => slot.film_thickness_texture,
-        };
-        let mut used = of_reference(target, &reference?);
+    std::array::from_fn(|index| {
+        let target = TextureTarget::ALL[index];
+        let reference = slot.texture(target)?;
+        let is_seen = target != TextureTarget::Opacity || is_translucent(reference.texture);
+        let mut used = of_reference(target, &reference);
         if target == TextureTarget::FilmThickness && slot.film_thickness > 0.0 {
-            // From the least thickness to the largest, by the green channel.
+            // From the least thickness to the largest.
             used.offset = slot.film_thickness_min / slot.film_thickness;
             used.scale = 1.0 - used.offset;
-            used.flags |= 2 << CHANNEL_SHIFT;
         }
-        Some(used)
-    };
-    std::array::from_fn(|index| uses(TextureTarget::ALL[index]))
+        is_seen.then_some(used)
+    })
 }
 
 fn of_reference(target: TextureTarget, reference: &TextureRef) -> Use {
     let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
-    // Opacity in a base colour map's alpha is read with its colour.
-    let is_srgb = target.is_color() || target == TextureTarget::Opacity;
     Use {
         picture: reference.texture,
         target,
         is_flipped: false,
         picture_from_uv: reference.texture_from_mesh_uv,
-        flags: flag(is_srgb, IS_SRGB)
+        // Opacity in a base colour map's alpha is read with its colour.
+        flags: flag(target.home().is_color(), IS_SRGB)
             | flag(reference.filter == Filter::Nearest, IS_NEAREST)
             | flag(reference.uv_set == 1, IS_SECOND_SET)
             | wrap_flags(reference.wrap),

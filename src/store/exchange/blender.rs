@@ -13,6 +13,8 @@ pub struct Blender;
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
     absorption: false,
+    coat_stretch: false,
+    coat_on_base: false,
     fuzz: false,
     film_weight: false,
     scattering: true,

@@ -65,6 +65,8 @@ impl Kind {
             },
             coat: is_principled,
             coat_details: false,
+            coat_stretch: false,
+            coat_on_base: false,
             transmission: true,
             absorption: false,
             textures: false,

@@ -5,6 +5,7 @@
 
 mod blender;
 pub mod carried;
+mod coat;
 mod gltf;
 mod materialx;
 mod measured;
@@ -174,6 +175,7 @@ pub struct Written {
 
 /// Why a material cannot be taken to or from another program.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ExchangeError {
     /// One of ours.
     #[error(transparent)]
@@ -183,66 +185,32 @@ pub enum ExchangeError {
     Model(#[from] ModelError),
     /// An ending that no format has.
     #[error("{}: no format has this ending; the formats are {known}", path.display())]
-    Ending {
-        /// The file.
-        path: PathBuf,
-        /// Those that there are.
-        known: String,
-    },
+    Ending { path: PathBuf, known: String },
     /// A format that is only read.
     #[error("{}: this format is only read; choose another ending", path.display())]
-    NotWritten {
-        /// The file.
-        path: PathBuf,
-    },
+    NotWritten { path: PathBuf },
     /// A format that is only written.
     #[error("{}: this format is only written; `glossmith fit --target` finds a material that looks like a measurement", path.display())]
-    NotRead {
-        /// The file.
-        path: PathBuf,
-    },
+    NotRead { path: PathBuf },
     /// A file of another program that Glossmith did not write.
     #[error("{}: has no exact parameters of Glossmith, which alone are read of this format; convert the material itself", path.display())]
-    NothingCarried {
-        /// The file.
-        path: PathBuf,
-    },
+    NothingCarried { path: PathBuf },
     /// Not what the ending says.
     #[error("{}: not a {format} document: {reason}; export it again", path.display())]
     Contents {
-        /// The file.
         path: PathBuf,
-        /// What it should be.
         format: &'static str,
-        /// What is wrong.
         reason: String,
     },
     /// No material in it that can be shown.
     #[error("{}: has no material that can be taken: {reason}", path.display())]
-    NoMaterial {
-        /// The file.
-        path: PathBuf,
-        /// What is there instead.
-        reason: String,
-    },
+    NoMaterial { path: PathBuf, reason: String },
     /// Several where one has a place.
     #[error("{}: holds one material, and there are {count}: {names}; choose one with --material", path.display())]
-    Several {
-        /// The file.
-        path: PathBuf,
-        /// How many.
-        count: usize,
-        /// Their names.
-        names: String,
-    },
+    Several { path: PathBuf, count: usize, names: String },
     /// A material that this format cannot hold.
     #[error("{}: {reason}", path.display())]
-    Unsuitable {
-        /// The file.
-        path: PathBuf,
-        /// Why, and what to do.
-        reason: String,
-    },
+    Unsuitable { path: PathBuf, reason: String },
 }
 
 impl Subject {

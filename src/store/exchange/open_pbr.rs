@@ -47,6 +47,8 @@ impl Takes {
         widths,
         coat: true,
         coat_details: true,
+        coat_stretch: true,
+        coat_on_base: true,
         fuzz: true,
         film: true,
         film_weight: true,
@@ -62,6 +64,11 @@ impl Takes {
 pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
     use Value::{Color, Number};
     let (roughness, anisotropy) = roughness_and_anisotropy(surface);
+    let coat_ratio = surface.coat_ratio();
+    let (coat_roughness, coat_anisotropy) = (
+        (surface.coat_roughness * widening(coat_ratio)).min(1.0),
+        1.0 - coat_ratio,
+    );
     let (strength, emission) = surface.strength_and_color();
     vec![
         ("base_weight", Number(1.0)),
@@ -84,10 +91,10 @@ pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
         ("thin_film_ior", Number(surface.film_ior)),
         ("coat_weight", Number(surface.coat_weight)),
         ("coat_color", Color(surface.coat_color)),
-        ("coat_roughness", Number(surface.coat_roughness)),
+        ("coat_roughness", Number(coat_roughness)),
+        ("coat_roughness_anisotropy", Number(coat_anisotropy)),
         ("coat_ior", Number(surface.coat_ior)),
-        // Glossmith's coat leaves what is below it as dark as it is.
-        ("coat_darkening", Number(0.0)),
+        ("coat_darkening", Number(surface.coat_darkening)),
         ("emission_luminance", Number(strength * NITS)),
         ("emission_color", Color(emission)),
         ("geometry_opacity", Number(surface.opacity)),

@@ -1,7 +1,8 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
+use super::coat;
 use super::report::{Entry, Residual};
-use crate::document::import::{ggx_from_geometric, ggx_under_texture};
+use crate::document::import::ggx_under_texture;
 use crate::document::material::{FILM_THICKNESS_MAX, specular_color};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::matching::{lobe_of_material, nearest_ggx};
@@ -55,6 +56,12 @@ pub struct Surface {
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice.
     pub coat_color: [f32; 3],
+    /// The stretch of its widths, as `anisotropy`.
+    pub coat_anisotropy: f32,
+    /// It changes what lies below it.
+    pub coat_on_base: bool,
+    /// How much of its darkening shows, in [0, 1].
+    pub coat_darkening: f32,
     /// In [0, 1].
     pub fuzz_weight: f32,
     /// Tint of the fuzz.
@@ -107,6 +114,10 @@ pub struct Takes {
     pub coat: bool,
     /// The coat's index of refraction and colour.
     pub coat_details: bool,
+    /// The stretch of the coat's highlight.
+    pub coat_stretch: bool,
+    /// What OpenPBR's coat changes below it.
+    pub coat_on_base: bool,
     /// Fuzz.
     pub fuzz: bool,
     /// A thin film.
@@ -153,6 +164,9 @@ impl Default for Surface {
             coat_roughness: 0.0,
             coat_ior: 1.5,
             coat_color: [1.0; 3],
+            coat_anisotropy: 0.0,
+            coat_on_base: false,
+            coat_darkening: 0.0,
             fuzz_weight: 0.0,
             fuzz_color: [1.0; 3],
             fuzz_roughness: 0.5,
@@ -241,9 +255,12 @@ impl Surface {
             transmission_color: material.transmission_color,
             transmission_depth: material.transmission_depth,
             coat_weight: material.coat_weight,
-            coat_roughness: rounded(ggx_from_geometric(material.coat_roughness)),
+            coat_roughness: rounded(material.coat_ggx_roughness()),
             coat_ior: material.coat_ior,
             coat_color: material.coat_color,
+            coat_anisotropy: material.coat_anisotropy,
+            coat_on_base: material.coat_on_base,
+            coat_darkening: material.coat_darkening,
             fuzz_weight: material.fuzz_weight,
             fuzz_color: material.fuzz_color,
             fuzz_roughness: material.fuzz_roughness,
@@ -315,6 +332,7 @@ impl Surface {
             coat_weight: unit(self.coat_weight),
             coat_ior: self.coat_ior.clamp(1.0, 4.0),
             coat_color: self.coat_color.map(unit),
+            coat_anisotropy: self.coat_anisotropy.clamp(-1.0, 1.0),
             fuzz_weight: unit(self.fuzz_weight),
             fuzz_color: self.fuzz_color.map(unit),
             fuzz_roughness: unit(self.fuzz_roughness),
@@ -326,7 +344,8 @@ impl Surface {
         };
         lobe.at_roughest(material.roughness).apply(&mut material);
         if self.coat_weight > 0.0 {
-            material.coat_roughness = crate::document::import::geometric_from_ggx(unit(self.coat_roughness));
+            material.set_coat_ggx_roughness(unit(self.coat_roughness), lobe);
+            (material.coat_on_base, material.coat_darkening) = (self.coat_on_base, unit(self.coat_darkening));
         }
         if brightest > 0.0 {
             material.emission_color = emission.map(unit);
@@ -362,12 +381,7 @@ impl Surface {
         if !takes.ior {
             taken.ior = 1.5;
         }
-        if !takes.coat {
-            taken.coat_weight = 0.0;
-        }
-        if !takes.coat_details {
-            (taken.coat_ior, taken.coat_color) = (1.5, [1.0; 3]);
-        }
+        coat::take(&mut taken, takes);
         if !takes.fuzz {
             taken.fuzz_weight = 0.0;
         }
@@ -523,14 +537,6 @@ impl Surface {
         layer(absorbs, takes.absorption, "absorption inside", none);
         let has_extra = material.transmission_weight > 0.0 && material.transmission_roughness != 0.0;
         layer(has_extra, false, "extra roughness of the refraction", none);
-        let is_coat_tinted =
-            material.coat_weight > 0.0 && (material.coat_ior != 1.5 || material.coat_color != [1.0; 3]);
-        layer(
-            is_coat_tinted && takes.coat,
-            takes.coat_details,
-            "the coat's index and colour",
-            "1.5 and white",
-        );
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
@@ -564,12 +570,7 @@ impl Surface {
             "textures of your own",
             "convert to a glTF model to take them along",
         );
-        if material.coat_weight > 0.0 && takes.coat {
-            let detail = format!("GGX of roughness {} stands for its geometric lobe", self.coat_roughness);
-            entries.push(Entry::approximated("coat", detail, None));
-        } else if material.coat_weight > 0.0 {
-            entries.push(Entry::dropped("coat", none));
-        }
+        entries.extend(coat::losses(self, material, takes));
         entries
     }
 

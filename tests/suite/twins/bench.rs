@@ -15,7 +15,7 @@ use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::layer::fuzz::fuzz_bell;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
+use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::scattering::scattering_table;
@@ -25,6 +25,7 @@ use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
+use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
 use glossmith::scene::{Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -144,6 +145,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             metalness: 0.0,
             ior: material.coat_ior,
             roughness: material.coat_roughness,
+            reflecting_ior: material.coat_ior,
             ..*material
         };
         let coat_table = albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false);
@@ -200,8 +202,8 @@ fn pictures(rng: &mut Rng) -> Model {
         };
         let mut slot = Slot::neutral("pictures");
         match number % 4 {
-            3 => slot.base_color_texture = Some(reference),
-            _ => slot.normal_texture = Some(reference),
+            3 => *slot.texture_mut(TextureTarget::BaseColor) = Some(reference),
+            _ => *slot.texture_mut(TextureTarget::Normal) = Some(reference),
         }
         slot
     });
@@ -255,6 +257,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         },
         of_film.range(1.0, 3.0),
     ];
+    let ior = rng.range(1.01, 2.5);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
         base_color: if rng.chance(0.1) {
@@ -266,7 +269,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         specular_color,
         specular_weight: if rng.chance(0.1) { 0.0 } else { rng.range(0.1, 1.0) },
         eta,
-        ior: rng.range(1.01, 2.5),
+        ior,
         k,
         roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         emission: vec3(0.0, 0.0, 0.0),
@@ -306,6 +309,14 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_film: u32::from(film[1] > 0.0 && fresnel != Fresnel::None),
         film_texture: NO_TEXTURE,
         film_path_texture: NO_TEXTURE,
+        reflecting_ior: if rng.chance(0.5) { rng.range(1.01, 2.5) } else { ior },
+        bare_ior: ior,
+        coated_ior: rng.range(1.01, 2.5),
+        coat_blur: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
+        ggx_roughness: rng.range(0.0, 1.0),
+        coat_darkening: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
+        coat_inner: rng.range(0.0, 0.9),
+        coat_anisotropy: if rng.chance(0.3) { rng.range(-1.0, 1.0) } else { 0.0 },
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,
@@ -314,7 +325,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
-        flags: rng.below(16) as u32,
+        flags: rng.below(16) as u32 | rng.below(8) as u32 * COATS_BASE,
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: NO_TEXTURE,

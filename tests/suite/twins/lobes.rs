@@ -4,12 +4,12 @@ use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::{Frame, frame_from_tangent};
 use glossmith::optics::fresnel::half_vector_cosine;
 use glossmith::optics::lobe::{
-    Horizon, Lobe, LobeShape, alpha_from_roughness, is_mirror, lobe_evaluate, lobe_sample, raw_density, raw_sample,
-    raw_weight, stretch_from_anisotropy,
+    Horizon, Lobe, LobeShape, alpha_from_roughness, is_mirror, isotropic_alpha, lobe_evaluate, lobe_sample,
+    microfacet_alpha, raw_density, raw_sample, raw_weight, stretch_from_anisotropy,
 };
 use glossmith::optics::microfacet::{
-    Alpha, Facet, distribution_weight, facet, ggx_distribution, isotropic_alpha, microfacet_alpha,
-    smith_g1_over_cosine, smith_g2_over_cosine, smith_length, visible_density, visible_weight,
+    Alpha, Facet, distribution_weight, facet, ggx_distribution, smith_g1_over_cosine, smith_g2_over_cosine,
+    smith_length, visible_density, visible_weight,
 };
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
@@ -385,7 +385,7 @@ fn microfacets_agree() {
     const SHAPE: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta); \
         let alpha = microfacet_alpha(shape); let equal = isotropic_alpha(shape);";
     check(
-        &["optics/microfacet"],
+        &["optics/lobe/lobe"],
         &[
             shape_of(
                 "microfacet_alpha",
@@ -489,12 +489,12 @@ fn microfacets_agree() {
                     let shape = read_shape(row);
                     let (frame, _, wo) = read_view(row);
                     let wi = row.vector();
-                    row.put(visible_density(&shape, &frame, wo, wi));
-                    row.put(visible_weight(&shape, &frame, wo, wi));
+                    row.put(visible_density(microfacet_alpha(&shape), &frame, wo, wi));
+                    row.put(visible_weight(microfacet_alpha(&shape), &frame, wo, wi));
                 }),
             )
-            .output("visible_density(shape, frame, wo, wi)", DENSITY)
-            .output("visible_weight(shape, frame, wo, wi)", WEIGHT),
+            .output("visible_density(microfacet_alpha(shape), frame, wo, wi)", DENSITY)
+            .output("visible_weight(microfacet_alpha(shape), frame, wo, wi)", WEIGHT),
         ],
     );
 }

@@ -1,10 +1,10 @@
 //! Snell's law, and what facets refract.
 
 use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::{Lobe, lobe_sample, lobe_view};
+use glossmith::optics::lobe::{Lobe, facet_weight, lobe_sample, lobe_view};
 use glossmith::optics::real::Mask;
 use glossmith::optics::refraction::{
-    facet_density_factor, facet_mirror, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosines,
+    facet_density_factor, facet_mirror, facet_refracted, refracted, refracted_square, refracting_cosines,
     refracting_normal,
 };
 use glossmith::optics::vector::Vec3;

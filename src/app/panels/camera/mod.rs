@@ -94,13 +94,7 @@ fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
         let camera = scene.job.settings.camera;
         (camera.focus_distance - camera.parallel_from) * scene.job.geometry.world_units_per_unit
     });
-    let style = NumberStyle {
-        range: range::DISTANCE,
-        bar: None,
-        unit: "",
-        speed: 0.005 * at_target,
-        decimals: 4,
-    };
+    let style = NumberStyle::plain(range::DISTANCE, "", 0.005 * at_target, 4);
     let mut distance = desk.document.camera.focus_distance.unwrap_or(at_target);
     let name = Name::new(
         "Focus distance",

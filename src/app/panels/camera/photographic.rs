@@ -64,13 +64,12 @@ impl Photographic {
     fn focal_length(&self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let of = |fov_deg: f64| focal_length_mm(fov_deg, self.sensor_height_mm);
         let mut focal_mm = of(desk.document.camera.fov_deg);
-        let style = NumberStyle {
-            range: of(*range::FOV_DEG.end())..=of(*range::FOV_DEG.start()),
-            bar: None,
-            unit: " mm",
-            speed: 0.005 * focal_mm,
-            decimals: 1,
-        };
+        let style = NumberStyle::plain(
+            of(*range::FOV_DEG.end())..=of(*range::FOV_DEG.start()),
+            " mm",
+            0.005 * focal_mm,
+            1,
+        );
         let name = Name::new(
             "Focal length",
             "Focal length",

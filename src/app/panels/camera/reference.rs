@@ -26,13 +26,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     if response.reset {
         reference.place = ReferencePlace::default();
     }
-    let style = NumberStyle {
-        range: 0.0..=1.0,
-        bar: Some([0.0, 1.0]),
-        unit: "",
-        speed: 0.01,
-        decimals: 2,
-    };
+    let style = NumberStyle::plain(0.0..=1.0, "", 0.01, 2).with_bar([0.0, 1.0]);
     let name = Name::new("Opacity of the reference", "Opacity", "How much of it is seen.");
     let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut reference.opacity, &style));
     if response.reset {

@@ -30,13 +30,8 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     ];
     for (side, (full, label, range)) in region.iter_mut().zip(sides) {
         let mut percent = 100.0 * *side;
-        let style = NumberStyle {
-            range: 100.0 * range.start()..=100.0 * range.end(),
-            bar: Some([0.0, 100.0]),
-            unit: " %",
-            speed: 0.5,
-            decimals: 1,
-        };
+        let style =
+            NumberStyle::plain(100.0 * range.start()..=100.0 * range.end(), " %", 0.5, 1).with_bar([0.0, 100.0]);
         let name = Name::new(
             full,
             label,

@@ -8,8 +8,8 @@ use crate::app::desk::Desk;
 use crate::app::kit::widgets;
 use crate::app::study::StudyWorker;
 use crate::render::EngineChoice;
-use crate::render::study::benchmark::report::{EngineReport, Report, number};
-use crate::render::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
+use crate::study::benchmark::report::{EngineReport, Report, number};
+use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
 
 /// Name of the program's file.
 const PROGRAM: &str = "glossmith";

@@ -13,8 +13,8 @@ use crate::document::ViewSettings;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::display::display;
-use crate::render::hard::{HardError, HardOptions, HardRow, Stage, catalogue};
 use crate::render::priority::work_apart;
+use crate::study::hard::{HardError, HardOptions, HardRow, Stage, catalogue};
 
 /// Side of a case's image in points.
 const PICTURE_SIDE: f32 = 40.0;

@@ -19,8 +19,8 @@ use crate::app::kit::widgets;
 use crate::app::kit::words::time_left;
 use crate::app::study::engine;
 use crate::render::background::Background;
-use crate::render::check::{Check, CheckOptions, GroupSummary, run, summaries};
 use crate::render::priority::work_apart;
+use crate::study::check::{Check, CheckOptions, GroupSummary, run, summaries};
 
 /// How a run stands.
 #[derive(Clone)]

@@ -9,7 +9,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::widgets;
 use crate::app::kit::words::about;
 use crate::app::study::{StudyWorker, engine, small_document};
-use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+use crate::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
 /// Longest side of the image that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;

@@ -14,7 +14,7 @@ use crate::app::kit::widgets;
 use crate::app::kit::words::duration;
 use crate::document::effect::{Effect, EffectSwitches, Switch};
 use crate::job::effect::Decision;
-use crate::render::study::ledger::Entry;
+use crate::study::ledger::Entry;
 
 /// Radius of the mark before an effect, points.
 const MARK_RADIUS: f32 = 3.5;

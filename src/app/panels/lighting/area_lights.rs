@@ -6,8 +6,7 @@ use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
-use crate::document::light_handle::View;
-use crate::document::light_move::put_in_view;
+use crate::app::lights::{View, put_in_view};
 use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
@@ -206,13 +205,7 @@ fn parameter_of(
 /// The colour as that of a lamp or a sky.
 fn temperature(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     let [coldest, hottest] = TEMPERATURES_K;
-    let style = NumberStyle {
-        range: coldest..=hottest,
-        bar: Some([coldest, 10000.0]),
-        unit: " K",
-        speed: 20.0,
-        decimals: 0,
-    };
+    let style = NumberStyle::plain(coldest..=hottest, " K", 20.0, 0).with_bar([coldest, 10000.0]);
     let full = format!("{title} temperature");
     let help = "Gives the light the colour of a body that shines at this temperature: 2700 K a light bulb, 5600 K the sun, \
                 10000 K a blue sky.";
@@ -255,13 +248,7 @@ fn power(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     let full = format!("{title} power");
     let row = ui.add_enabled_ui(!of_black, |ui| {
         let mut power = light.power(radius_m);
-        let style = NumberStyle {
-            range: 0.0..=f64::MAX,
-            bar: None,
-            unit,
-            speed: (0.01 * power).max(1e-3),
-            decimals: 2,
-        };
+        let style = NumberStyle::plain(0.0..=f64::MAX, unit, (0.01 * power).max(1e-3), 2);
         let response = widgets::row(ui, Name::new(&full, label, help), |ui| {
             widgets::number(ui, &mut power, &style)
         });

@@ -57,13 +57,7 @@ impl Radii {
         }
         let top = plot.y.range[1].clamp(CUTS[0], CUTS[1]);
         let mut cut = self.cut.unwrap_or(top);
-        let style = NumberStyle {
-            range: CUTS[0]..=CUTS[1],
-            bar: None,
-            unit: " 1/sr",
-            speed: 0.01 * cut,
-            decimals: 3,
-        };
+        let style = NumberStyle::plain(CUTS[0]..=CUTS[1], " 1/sr", 0.01 * cut, 3);
         let help = "What is larger is cut off there. Follows the lobes' peak until it is changed.";
         let name = Name::new("Radius up to", "Shown up to", help);
         let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut cut, &style));

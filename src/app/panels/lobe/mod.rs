@@ -156,13 +156,7 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: V
     }
     if matches!(panel.other, Other::Lobe(_)) {
         let mut roughness = panel.other_roughness.unwrap_or(desk.material().roughness);
-        let style = NumberStyle {
-            range: 0.0..=1.0,
-            bar: Some([0.0, 1.0]),
-            unit: "",
-            speed: 0.005,
-            decimals: 3,
-        };
+        let style = NumberStyle::plain(0.0..=1.0, "", 0.005, 3).with_bar([0.0, 1.0]);
         let name = Name::new(
             "Other roughness",
             "Reference roughness",

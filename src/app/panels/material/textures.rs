@@ -10,9 +10,9 @@ use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::{parameter_row, theme};
-use crate::document::{MaterialSettings, PARAMETERS, Parameter, TEXTURE_PARAMETERS};
+use crate::document::{MaterialSettings, Parameter, TEXTURE_PARAMETERS, map_key, parameter};
 use crate::scene::texture::TextureTarget;
-use crate::scene::{AlphaMode, Model, Texture};
+use crate::scene::{Model, Texture};
 
 /// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;
@@ -31,33 +31,28 @@ enum Asked {
     Remove,
 }
 
-/// The parameter, by its key, at which each target's texture stands. That of the normal has no number beside it.
-const PLACES: [(&str, TextureTarget); 9] = [
-    ("base.color", TextureTarget::BaseColor),
-    ("base.metalness", TextureTarget::Metalness),
-    ("specular.roughness", TextureTarget::Roughness),
-    ("coat.weight", TextureTarget::Coat),
-    ("thin_film.weight", TextureTarget::Film),
-    ("thin_film.thickness", TextureTarget::FilmThickness),
-    ("emission.color", TextureTarget::Emission),
-    ("geometry.opacity", TextureTarget::Opacity),
-    ("geometry.normal_texture", TextureTarget::Normal),
-];
+/// The key of the parameter at which a target's texture stands: `base.color` for `base.color_map`. That of the normal has
+/// no number beside it, and stands at its switch.
+fn place(target: TextureTarget) -> &'static str {
+    let key = map_key(target).trim_end_matches("_map");
+    parameter(key)
+        .ok()
+        .or(switch(target))
+        .map_or(key, |parameter| parameter.key)
+}
 
 /// The target whose texture stands at a parameter.
 pub(super) fn target_of(key: &str) -> Option<TextureTarget> {
-    let place = PLACES.iter().find(|(of, _)| *of == key);
-    place.map(|(_, target)| *target)
+    TextureTarget::ALL.iter().copied().find(|target| place(*target) == key)
 }
 
 /// The targets of a group of parameters.
 pub(super) fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
-    let of_key = |key: &str| PARAMETERS.iter().find(|parameter| parameter.key == key);
-    let is_there = move |key: &str| of_key(key).is_some_and(|parameter| parameter.group == group);
-    PLACES
+    let is_there = move |key: &str| parameter(key).is_ok_and(|parameter| parameter.group == group);
+    TextureTarget::ALL
         .iter()
-        .filter(move |(key, _)| is_there(key))
-        .map(|(_, target)| *target)
+        .copied()
+        .filter(move |target| is_there(place(*target)))
 }
 
 /// Whether the selected slot has a texture there.
@@ -90,21 +85,9 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, mate
     }
 }
 
-/// The switch of a target, where it has one of its own.
+/// The switch of a target, where it has one of its own: metalness has that of the roughness.
 fn switch(target: TextureTarget) -> Option<&'static Parameter> {
-    let key = match target {
-        TextureTarget::BaseColor => "base.color_texture",
-        TextureTarget::Roughness => "specular.roughness_texture",
-        // With that of the roughness.
-        TextureTarget::Metalness => return None,
-        TextureTarget::Normal => "geometry.normal_texture",
-        TextureTarget::Opacity => "geometry.opacity_texture",
-        TextureTarget::Emission => "emission.color_texture",
-        TextureTarget::Coat => "coat.weight_texture",
-        TextureTarget::Film => "thin_film.weight_texture",
-        TextureTarget::FilmThickness => "thin_film.thickness_texture",
-    };
-    PARAMETERS.iter().find(|parameter| parameter.key == key)
+    parameter(&map_key(target).replace("_map", "_texture")).ok()
 }
 
 fn row(
@@ -240,17 +223,8 @@ fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
     }
     let scene = scene?;
     let slot = scene.model.slots.get(desk.shared.slot)?;
-    let reference = match target {
-        TextureTarget::BaseColor => slot.base_color_texture,
-        TextureTarget::Roughness | TextureTarget::Metalness => slot.metallic_roughness_texture,
-        TextureTarget::Normal => slot.normal_texture,
-        TextureTarget::Opacity => slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque),
-        TextureTarget::Emission => slot.emissive_texture,
-        TextureTarget::Coat => slot.coat_texture,
-        TextureTarget::Film => slot.film_texture,
-        TextureTarget::FilmThickness => slot.film_thickness_texture,
-    };
-    Some(Picture::OfModel(scene.model.clone(), reference?.texture))
+    let reference = slot.texture(target)?;
+    Some(Picture::OfModel(scene.model.clone(), reference.texture))
 }
 
 fn name_of(file: &Path) -> String {

@@ -17,20 +17,8 @@ use crate::document::MaterialSettings;
 use crate::scene::environment::{BUILT_IN, EnvironmentSource};
 use crate::store::PRESETS;
 use crate::store::exchange::FORMATS;
+use crate::store::preset::{SHIPPED, source_of_values};
 use crate::store::shelf::{Contents, Item, ItemKind};
-
-/// The groups of the shipped materials, from the top.
-const KINDS: [&str; 4] = ["Plastics and matt", "Coated", "Metals", "Glass and liquids"];
-
-/// The group of a shipped material.
-fn kind_of(material: &MaterialSettings) -> usize {
-    match material {
-        _ if material.transmission_weight > 0.0 => 3,
-        _ if material.metalness >= 0.5 => 2,
-        _ if material.coat_weight > 0.0 => 1,
-        _ => 0,
-    }
-}
 
 /// Things that stand together.
 pub(super) struct Group {
@@ -110,10 +98,16 @@ impl Entry {
         }
     }
 
-    /// Whether its name, its group or one of its tags has what is searched for, in lower case.
+    /// Whether its name, its group, its tags and the words of its look have each word that is searched for, in lower case.
     pub(super) fn is_wanted(&self, search: &str, group: &str, kept: &KeptShelves) -> bool {
-        let has = |text: &str| text.to_lowercase().contains(search);
-        has(&self.name) || has(group) || has(&kept.tags_of(&self.key))
+        let look = match &self.kind {
+            EntryKind::Material(material) => material.look_words().join(" "),
+            EntryKind::Environment(_) | EntryKind::Broken(_) => String::new(),
+        };
+        let texts = [&self.name, group, &kept.tags_of(&self.key), &look].map(str::to_lowercase);
+        search
+            .split_whitespace()
+            .all(|word| texts.iter().any(|text| text.contains(word)))
     }
 
     /// Width of its image over the height.
@@ -161,7 +155,12 @@ impl Entry {
             is_current,
             is_favourite: desk.shared.shelves.kept.favourites.contains(&self.key),
         };
-        let response = tile.show(ui, layout, |ui| self.menu(ui, desk, tagging));
+        let mut response = tile.show(ui, layout, |ui| self.menu(ui, desk, tagging));
+        if let (EntryKind::Material(_), None) = (&self.kind, &self.own)
+            && let Some(source) = source_of_values(&self.full_name)
+        {
+            response = response.on_hover_text(source);
+        }
         match &self.kind {
             EntryKind::Material(material) => {
                 if response.clicked() {
@@ -294,16 +293,12 @@ pub(super) fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
 }
 
 fn shipped(desk: &Desk<'_>) -> Vec<Group> {
-    let mut groups = KINDS.map(|title| Group::new(title, Vec::new()));
-    for (index, material) in PRESETS.iter().enumerate() {
-        let entry = Entry::material(
-            preset_key(material),
-            material,
-            desk.shared.library.shipped_picture(index),
-        );
-        groups[kind_of(material)].entries.push(entry);
-    }
-    groups.into()
+    let mut entries = PRESETS.iter().enumerate().map(|(index, material)| {
+        let picture = desk.shared.library.shipped_picture(index);
+        Entry::material(preset_key(material), material, picture)
+    });
+    let group = |(title, files): &(&str, &[&str])| Group::new(*title, entries.by_ref().take(files.len()).collect());
+    SHIPPED.iter().map(group).collect()
 }
 
 fn own(desk: &Desk<'_>) -> Vec<Entry> {

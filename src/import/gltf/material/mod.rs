@@ -23,6 +23,7 @@ use super::material_extensions::{
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::TextureTarget;
 use crate::scene::texture::{TextureMean, texture_mean};
 use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
 
@@ -262,9 +263,9 @@ impl<'a> Materials<'a> {
         let mut uv_use = UvUse::default();
         if let Some(normal) = &material.normal_texture {
             let reference = (normal.index.value(), normal.tex_coord, self.normal_transform(index));
-            read.normal_texture = self.texture(Some(reference), &mut sets, &read.name);
+            *read.texture_mut(TextureTarget::Normal) = self.texture(Some(reference), &mut sets, &read.name);
             read.normal_scale = normal.scale;
-            if let Some(texture) = &read.normal_texture {
+            if let Some(texture) = read.texture(TextureTarget::Normal) {
                 uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
                 uv_use.has_normal_texture = true;
             }
@@ -272,12 +273,14 @@ impl<'a> Materials<'a> {
         match extension::<SpecularGlossiness>(raw, "KHR_materials_pbrSpecularGlossiness") {
             Some(workflow) => self.read_specular_glossiness((index, slot), &workflow, &mut read, &mut sets),
             None => {
-                read.base_color_texture = self.texture(info(&pbr.base_color_texture), &mut sets, &read.name);
-                read.metallic_roughness_texture =
+                *read.texture_mut(TextureTarget::BaseColor) =
+                    self.texture(info(&pbr.base_color_texture), &mut sets, &read.name);
+                *read.texture_mut(TextureTarget::Roughness) =
                     self.texture(info(&pbr.metallic_roughness_texture), &mut sets, &read.name);
             }
         }
-        read.emissive_texture = self.texture(info(&material.emissive_texture), &mut sets, &read.name);
+        *read.texture_mut(TextureTarget::Emission) =
+            self.texture(info(&material.emissive_texture), &mut sets, &read.name);
         self.read_layers(raw, slot, &mut read, &mut sets);
         self.read_interior(material, raw, slot, &mut read);
         if let Some(base) = extension::<DiffuseRoughness>(raw, "KHR_materials_diffuse_roughness") {
@@ -349,8 +352,8 @@ impl<'a> Materials<'a> {
                 ..placed
             })
         };
-        read.base_color_texture = place(PictureKey::BaseColor(material), &mut self.pictures);
-        read.metallic_roughness_texture = place(PictureKey::Surface(material), &mut self.pictures);
+        *read.texture_mut(TextureTarget::BaseColor) = place(PictureKey::BaseColor(material), &mut self.pictures);
+        *read.texture_mut(TextureTarget::Roughness) = place(PictureKey::Surface(material), &mut self.pictures);
         self.conversions.push(Conversion {
             material,
             factors,
@@ -384,7 +387,7 @@ impl<'a> Materials<'a> {
             (read.coat, read.coat_roughness) = (unit(coat.clearcoat_factor), unit(coat.clearcoat_roughness_factor));
             if read.coat > 0.0 {
                 let reference = coat.clearcoat_texture.as_ref().map(TextureInfo::reference);
-                read.coat_texture = self.texture(reference, sets, &read.name);
+                *read.texture_mut(TextureTarget::Coat) = self.texture(reference, sets, &read.name);
                 means.extend(mean(
                     &coat.clearcoat_roughness_texture,
                     "a coat roughness texture, by its mean",
@@ -422,8 +425,8 @@ impl<'a> Materials<'a> {
         if read.film > 0.0 {
             let [weight, thickness] = [&film.iridescence_texture, &film.iridescence_thickness_texture]
                 .map(|texture| texture.as_ref().map(TextureInfo::reference));
-            read.film_texture = self.texture(weight, sets, &read.name);
-            read.film_thickness_texture = self.texture(thickness, sets, &read.name);
+            *read.texture_mut(TextureTarget::Film) = self.texture(weight, sets, &read.name);
+            *read.texture_mut(TextureTarget::FilmThickness) = self.texture(thickness, sets, &read.name);
         }
     }
 
@@ -510,10 +513,11 @@ fn mean_strength(length: f32) -> f32 {
 fn make_unlit(slot: &mut Slot) {
     slot.is_unlit = true;
     slot.emission = slot.base_color;
-    slot.emissive_texture = slot.base_color_texture;
+    *slot.texture_mut(TextureTarget::Emission) = slot.texture(TextureTarget::BaseColor);
     slot.base_color = [0.0; 3];
     (slot.metalness, slot.specular) = (0.0, 0.0);
-    (slot.metallic_roughness_texture, slot.normal_texture) = (None, None);
+    *slot.texture_mut(TextureTarget::Roughness) = None;
+    *slot.texture_mut(TextureTarget::Normal) = None;
     (slot.coat, slot.transmission) = (0.0, 0.0);
 }
 

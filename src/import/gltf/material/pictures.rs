@@ -13,6 +13,7 @@ use crate::files::Import;
 use crate::gltf::image;
 use crate::picture::{Encoded, Wanted};
 use crate::scene::report::Fate;
+use crate::scene::texture::TextureTarget;
 use crate::scene::{Filter, Slot, Texture, TextureRef, Wrap};
 
 /// An image used by slots.
@@ -84,7 +85,12 @@ impl Materials<'_> {
     /// Whether a slot looks an image up for colours.
     fn is_color(&self, image: usize) -> bool {
         let is_it = |place: &TextureRef| self.pictures[place.texture] == PictureKey::Image(image);
-        let colors = |slot: &Slot| [slot.base_color_texture, slot.emissive_texture];
+        let colors = |slot: &Slot| {
+            [
+                slot.texture(TextureTarget::BaseColor),
+                slot.texture(TextureTarget::Emission),
+            ]
+        };
         let mut slots = self.slots.iter();
         slots.any(|(slot, _)| colors(slot).iter().flatten().any(is_it))
     }
@@ -188,19 +194,17 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
         reference.is_some()
     };
     for slot in slots {
-        if !keep(&mut slot.base_color_texture) {
-            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
+        for &target in TextureTarget::ALL.iter().filter(|target| target.home() == **target) {
+            if keep(slot.texture_mut(target)) {
+                continue;
+            }
+            match target {
+                TextureTarget::BaseColor => slot.base_color = slot.base_color.map(|factor| 0.5 * factor),
+                TextureTarget::Roughness => (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness),
+                TextureTarget::Emission => slot.emission = [0.0; 3],
+                _ => {}
+            }
         }
-        if !keep(&mut slot.metallic_roughness_texture) {
-            (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness);
-        }
-        keep(&mut slot.normal_texture);
-        if !keep(&mut slot.emissive_texture) {
-            slot.emission = [0.0; 3];
-        }
-        keep(&mut slot.coat_texture);
-        keep(&mut slot.film_texture);
-        keep(&mut slot.film_thickness_texture);
     }
     textures.into_iter().flatten().collect()
 }

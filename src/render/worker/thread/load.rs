@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use super::State;
-use crate::panics::caught;
+use crate::panics::{caught, lock};
 use crate::render::error::SessionError;
-use crate::render::worker::{Activity, Event, Level, lock};
+use crate::render::worker::{Activity, Event, Level};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{ModelOptions, ModelSource};
 

@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 
 use super::denoising::Denoising;
 use super::stage::Stage;
-use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission, lock};
+use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission};
 use crate::document::{Change, Document};
 use crate::gpu::GpuError;
 use crate::job::plan::Specialisation;
-use crate::panics::caught;
+use crate::panics::{caught, lock};
 use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::engine::{EngineChoice, EngineKind};

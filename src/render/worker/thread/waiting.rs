@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use super::State;
+use crate::panics::lock;
 use crate::render::quiet::at_work;
 use crate::render::session::Session;
 use crate::render::worker::stage::Stage;
-use crate::render::worker::{Activity, CommandQueue, Commands, lock};
+use crate::render::worker::{Activity, CommandQueue, Commands};
 
 /// Longest sleep without a wake-up.
 const IDLE: Duration = Duration::from_secs(3600);

@@ -2,7 +2,7 @@
 //! the origin, walls and a floor that reflect them. The object is seen from +Z, slightly above.
 
 use super::super::{Environment, MapError};
-use super::soft_box::{SoftBox, mix, room_with, smoothstep};
+use super::soft_box::{SoftBox, mix, room_with, smoothstep, soft_box};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -33,55 +33,15 @@ const PRODUCT_WALLS: Walls = Walls {
 /// For products.
 const PRODUCT: [SoftBox; 5] = [
     // From the left above, in front: large and warm, shapes the object.
-    SoftBox {
-        centre: [-2.6, 2.3, 2.2],
-        half_width: 2.1,
-        half_height: 1.9,
-        radiance: 7.5,
-        corner_share: 0.4,
-        edge: 0.6,
-        tint: [1.0, 0.92, 0.8],
-    },
+    soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [7.5, 0.4, 0.6], [1.0, 0.92, 0.8]),
     // From the right: large and cool, opens the shadows.
-    SoftBox {
-        centre: [3.5, 1.0, 1.2],
-        half_width: 1.8,
-        half_height: 2.2,
-        radiance: 2.0,
-        corner_share: 0.35,
-        edge: 0.7,
-        tint: [0.8, 0.9, 1.0],
-    },
+    soft_box([3.5, 1.0, 1.2], [1.8, 2.2], [2.0, 0.35, 0.7], [0.8, 0.9, 1.0]),
     // Above, a little behind: draws the upper edges.
-    SoftBox {
-        centre: [0.3, 3.8, -1.2],
-        half_width: 2.4,
-        half_height: 1.0,
-        radiance: 4.1,
-        corner_share: 0.5,
-        edge: 0.3,
-        tint: [1.0, 0.98, 0.95],
-    },
+    soft_box([0.3, 3.8, -1.2], [2.4, 1.0], [4.1, 0.5, 0.3], [1.0, 0.98, 0.95]),
     // Behind on the right, narrow and cool.
-    SoftBox {
-        centre: [2.9, 1.2, -2.6],
-        half_width: 0.5,
-        half_height: 2.2,
-        radiance: 8.0,
-        corner_share: 0.5,
-        edge: 0.2,
-        tint: [0.88, 0.94, 1.0],
-    },
+    soft_box([2.9, 1.2, -2.6], [0.5, 2.2], [8.0, 0.5, 0.2], [0.88, 0.94, 1.0]),
     // Behind on the left, narrow and warm.
-    SoftBox {
-        centre: [-3.4, 0.9, -2.0],
-        half_width: 0.4,
-        half_height: 2.0,
-        radiance: 5.8,
-        corner_share: 0.5,
-        edge: 0.2,
-        tint: [1.0, 0.9, 0.78],
-    },
+    soft_box([-3.4, 0.9, -2.0], [0.4, 2.0], [5.8, 0.5, 0.2], [1.0, 0.9, 0.78]),
 ];
 
 /// Dim, so that the lamps alone shape the object.
@@ -94,45 +54,13 @@ const PORTRAIT_WALLS: Walls = Walls {
 /// For faces.
 const PORTRAIT: [SoftBox; 4] = [
     // The main lamp, large, warm and near the camera.
-    SoftBox {
-        centre: [-2.4, 2.0, 2.6],
-        half_width: 1.5,
-        half_height: 1.5,
-        radiance: 13.0,
-        corner_share: 0.35,
-        edge: 0.5,
-        tint: [1.0, 0.9, 0.76],
-    },
+    soft_box([-2.4, 2.0, 2.6], [1.5, 1.5], [13.0, 0.35, 0.5], [1.0, 0.9, 0.76]),
     // A reflector at the side.
-    SoftBox {
-        centre: [3.2, 0.6, 2.2],
-        half_width: 1.5,
-        half_height: 2.0,
-        radiance: 1.1,
-        corner_share: 0.3,
-        edge: 0.7,
-        tint: [0.75, 0.86, 1.0],
-    },
+    soft_box([3.2, 0.6, 2.2], [1.5, 2.0], [1.1, 0.3, 0.7], [0.75, 0.86, 1.0]),
     // A reflector below.
-    SoftBox {
-        centre: [0.0, -2.2, 2.4],
-        half_width: 1.8,
-        half_height: 0.8,
-        radiance: 1.0,
-        corner_share: 0.4,
-        edge: 0.5,
-        tint: [1.0, 0.9, 0.8],
-    },
+    soft_box([0.0, -2.2, 2.4], [1.8, 0.8], [1.0, 0.4, 0.5], [1.0, 0.9, 0.8]),
     // Behind on the right above: parts the object from what is behind it.
-    SoftBox {
-        centre: [2.2, 2.2, -2.6],
-        half_width: 0.9,
-        half_height: 1.1,
-        radiance: 8.0,
-        corner_share: 0.5,
-        edge: 0.3,
-        tint: [0.85, 0.92, 1.0],
-    },
+    soft_box([2.2, 2.2, -2.6], [0.9, 1.1], [8.0, 0.5, 0.3], [0.85, 0.92, 1.0]),
 ];
 
 /// Nearly black.
@@ -145,45 +73,13 @@ const RIM_WALLS: Walls = Walls {
 /// For outlines.
 const RIM: [SoftBox; 4] = [
     // Behind on the left, warm.
-    SoftBox {
-        centre: [-3.2, 1.2, -1.9],
-        half_width: 0.55,
-        half_height: 2.3,
-        radiance: 16.0,
-        corner_share: 0.5,
-        edge: 0.2,
-        tint: [1.0, 0.8, 0.58],
-    },
+    soft_box([-3.2, 1.2, -1.9], [0.55, 2.3], [16.0, 0.5, 0.2], [1.0, 0.8, 0.58]),
     // Behind on the right, cool.
-    SoftBox {
-        centre: [3.2, 1.2, -1.9],
-        half_width: 0.55,
-        half_height: 2.3,
-        radiance: 16.0,
-        corner_share: 0.5,
-        edge: 0.2,
-        tint: [0.62, 0.8, 1.0],
-    },
+    soft_box([3.2, 1.2, -1.9], [0.55, 2.3], [16.0, 0.5, 0.2], [0.62, 0.8, 1.0]),
     // Above.
-    SoftBox {
-        centre: [0.0, 3.8, -0.9],
-        half_width: 2.2,
-        half_height: 0.5,
-        radiance: 5.0,
-        corner_share: 0.5,
-        edge: 0.25,
-        tint: [1.0, 1.0, 1.0],
-    },
+    soft_box([0.0, 3.8, -0.9], [2.2, 0.5], [5.0, 0.5, 0.25], [1.0, 1.0, 1.0]),
     // In front, weak: the side that is seen is not black.
-    SoftBox {
-        centre: [-1.2, 1.6, 3.8],
-        half_width: 1.4,
-        half_height: 0.9,
-        radiance: 0.9,
-        corner_share: 0.4,
-        edge: 0.5,
-        tint: [1.0, 0.96, 0.9],
-    },
+    soft_box([-1.2, 1.6, 3.8], [1.4, 0.9], [0.9, 0.4, 0.5], [1.0, 0.96, 0.9]),
 ];
 
 /// Concrete and wood.
@@ -195,86 +91,17 @@ const WAREHOUSE_WALLS: Walls = Walls {
 };
 /// Skylights, windows, a gate.
 const WAREHOUSE: [SoftBox; 8] = [
-    // A skylight.
-    SoftBox {
-        centre: [-2.2, 3.4, 0.2],
-        half_width: 0.34,
-        half_height: 2.6,
-        radiance: 4.2,
-        corner_share: 0.8,
-        edge: 0.1,
-        tint: [1.0, 0.97, 0.9],
-    },
-    // A skylight.
-    SoftBox {
-        centre: [-0.75, 3.4, 0.2],
-        half_width: 0.34,
-        half_height: 2.6,
-        radiance: 4.2,
-        corner_share: 0.8,
-        edge: 0.1,
-        tint: [1.0, 0.97, 0.9],
-    },
-    // A skylight.
-    SoftBox {
-        centre: [0.75, 3.4, 0.2],
-        half_width: 0.34,
-        half_height: 2.6,
-        radiance: 4.2,
-        corner_share: 0.8,
-        edge: 0.1,
-        tint: [1.0, 0.97, 0.9],
-    },
-    // A skylight.
-    SoftBox {
-        centre: [2.2, 3.4, 0.2],
-        half_width: 0.34,
-        half_height: 2.6,
-        radiance: 4.2,
-        corner_share: 0.8,
-        edge: 0.1,
-        tint: [1.0, 0.97, 0.9],
-    },
-    // A window on the left.
-    SoftBox {
-        centre: [-4.2, 1.0, -1.6],
-        half_width: 0.62,
-        half_height: 1.3,
-        radiance: 5.5,
-        corner_share: 0.8,
-        edge: 0.08,
-        tint: [0.78, 0.89, 1.0],
-    },
-    // A window on the left.
-    SoftBox {
-        centre: [-4.2, 1.0, 0.0],
-        half_width: 0.62,
-        half_height: 1.3,
-        radiance: 5.5,
-        corner_share: 0.8,
-        edge: 0.08,
-        tint: [0.78, 0.89, 1.0],
-    },
-    // A window on the left.
-    SoftBox {
-        centre: [-4.2, 1.0, 1.6],
-        half_width: 0.62,
-        half_height: 1.3,
-        radiance: 5.5,
-        corner_share: 0.8,
-        edge: 0.08,
-        tint: [0.78, 0.89, 1.0],
-    },
+    // The skylights.
+    soft_box([-2.2, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
+    soft_box([-0.75, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
+    soft_box([0.75, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
+    soft_box([2.2, 3.4, 0.2], [0.34, 2.6], [4.2, 0.8, 0.1], [1.0, 0.97, 0.9]),
+    // The windows on the left.
+    soft_box([-4.2, 1.0, -1.6], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
+    soft_box([-4.2, 1.0, 0.0], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
+    soft_box([-4.2, 1.0, 1.6], [0.62, 1.3], [5.5, 0.8, 0.08], [0.78, 0.89, 1.0]),
     // The open gate on the right, in the evening.
-    SoftBox {
-        centre: [4.2, 0.3, 0.4],
-        half_width: 1.6,
-        half_height: 1.5,
-        radiance: 1.3,
-        corner_share: 0.7,
-        edge: 0.15,
-        tint: [1.0, 0.72, 0.45],
-    },
+    soft_box([4.2, 0.3, 0.4], [1.6, 1.5], [1.3, 0.7, 0.15], [1.0, 0.72, 0.45]),
 ];
 
 /// A photographer's table: large warm and cool soft boxes in a bright room. 1024 × 512.

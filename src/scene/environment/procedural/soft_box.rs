@@ -9,16 +9,34 @@ const HEIGHT: u32 = 512;
 
 /// A rectangular soft box with rounded corners, facing the origin, its sides level. Lengths in units of the object.
 pub(super) struct SoftBox {
-    pub(super) centre: [f64; 3],
-    pub(super) half_width: f64,
-    pub(super) half_height: f64,
+    centre: [f64; 3],
+    half_width: f64,
+    half_height: f64,
     /// Radiance in the middle.
-    pub(super) radiance: f64,
+    radiance: f64,
     /// Radiance at the corners as a share of that in the middle: cloth in front of one lamp.
-    pub(super) corner_share: f64,
+    corner_share: f64,
     /// Width of the soft edge.
-    pub(super) edge: f64,
-    pub(super) tint: [f64; 3],
+    edge: f64,
+    tint: [f64; 3],
+}
+
+/// A soft box, in its tables' columns: centre; half of its width and height; radiance, share at the corners and edge; tint.
+pub(super) const fn soft_box(
+    centre: [f64; 3],
+    [half_width, half_height]: [f64; 2],
+    [radiance, corner_share, edge]: [f64; 3],
+    tint: [f64; 3],
+) -> SoftBox {
+    SoftBox {
+        centre,
+        half_width,
+        half_height,
+        radiance,
+        corner_share,
+        edge,
+        tint,
+    }
 }
 
 /// The map of a room, 1024 × 512: soft boxes before its walls, the last one in front.

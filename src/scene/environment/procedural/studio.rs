@@ -2,59 +2,19 @@
 //! that is seen from +Z, slightly above.
 
 use super::super::{Environment, MapError};
-use super::soft_box::{SoftBox, mix, room_with, smoothstep};
+use super::soft_box::{SoftBox, mix, room_with, smoothstep, soft_box};
 use crate::optics::vector::{Vec3, vec3};
 
 /// From the left above, in front: shapes the object.
-const KEY: SoftBox = SoftBox {
-    centre: [-2.9, 2.8, 2.0],
-    half_width: 1.75,
-    half_height: 1.75,
-    radiance: 7.0,
-    corner_share: 0.4,
-    edge: 0.25,
-    tint: [1.0, 0.985, 0.96],
-};
+const KEY: SoftBox = soft_box([-2.9, 2.8, 2.0], [1.75, 1.75], [7.0, 0.4, 0.25], [1.0, 0.985, 0.96]);
 /// From the right, weak and tall: opens the shadows.
-const FILL: SoftBox = SoftBox {
-    centre: [3.7, 0.9, 1.7],
-    half_width: 1.2,
-    half_height: 1.9,
-    radiance: 0.75,
-    corner_share: 0.25,
-    edge: 0.45,
-    tint: [0.97, 0.99, 1.0],
-};
+const FILL: SoftBox = soft_box([3.7, 0.9, 1.7], [1.2, 1.9], [0.75, 0.25, 0.45], [0.97, 0.99, 1.0]);
 /// Above, a little behind: draws the upper edges.
-const TOP: SoftBox = SoftBox {
-    centre: [0.4, 3.6, -1.7],
-    half_width: 1.9,
-    half_height: 0.75,
-    radiance: 3.6,
-    corner_share: 0.5,
-    edge: 0.2,
-    tint: [1.0, 1.0, 1.0],
-};
+const TOP: SoftBox = soft_box([0.4, 3.6, -1.7], [1.9, 0.75], [3.6, 0.5, 0.2], [1.0, 1.0, 1.0]);
 /// Behind on the right, narrow and tall: a rim of light.
-const RIGHT_RIM: SoftBox = SoftBox {
-    centre: [3.3, 1.3, -2.2],
-    half_width: 0.38,
-    half_height: 2.0,
-    radiance: 9.5,
-    corner_share: 0.5,
-    edge: 0.12,
-    tint: [0.97, 0.985, 1.0],
-};
+const RIGHT_RIM: SoftBox = soft_box([3.3, 1.3, -2.2], [0.38, 2.0], [9.5, 0.5, 0.12], [0.97, 0.985, 1.0]);
 /// Behind on the left, narrower.
-const LEFT_RIM: SoftBox = SoftBox {
-    centre: [-3.5, 1.1, -1.7],
-    half_width: 0.28,
-    half_height: 1.9,
-    radiance: 6.5,
-    corner_share: 0.5,
-    edge: 0.12,
-    tint: [0.97, 0.985, 1.0],
-};
+const LEFT_RIM: SoftBox = soft_box([-3.5, 1.1, -1.7], [0.28, 1.9], [6.5, 0.5, 0.12], [0.97, 0.985, 1.0]);
 const BOXES: [SoftBox; 5] = [KEY, FILL, TOP, RIGHT_RIM, LEFT_RIM];
 
 /// The studio's map, 1024 × 512.

@@ -17,6 +17,7 @@ use crate::document::{Document, MaterialSettings};
 use crate::import::Budget;
 use crate::import::resource;
 use crate::import::{gltf_from_widths, load, load_with};
+use crate::scene::texture::TextureTarget;
 use crate::scene::texture::texture_mean;
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
 use crate::store::picture::png_bytes;
@@ -40,6 +41,8 @@ const TAKES: Takes = Takes {
     widths: shown_widths,
     coat: true,
     coat_details: false,
+    coat_stretch: false,
+    coat_on_base: false,
     transmission: true,
     absorption: true,
     textures: true,
@@ -291,20 +294,20 @@ impl Builder {
         };
         // In the place of one's own texture there is none of the model's.
         let uses = material.uses_of_model();
-        let mut texture = |is_used: bool, place: &Option<crate::scene::TextureRef>| {
-            let place = place.as_ref().filter(|_| is_used)?;
-            let index = self.texture(model, place)?;
-            Some(material::texture_info(index, place))
+        let mut texture = |is_used: bool, target| {
+            let place = slot.texture(target).filter(|_| is_used)?;
+            let index = self.texture(model, &place)?;
+            Some(material::texture_info(index, &place))
         };
         SlotTextures {
-            base_color: texture(uses.color || uses.opacity, &slot.base_color_texture),
+            base_color: texture(uses.color || uses.opacity, TextureTarget::BaseColor),
             roughness_mean: uses.roughness.then(|| mean_of_roughness(model, slot)).flatten(),
-            metallic_roughness: texture(uses.roughness, &slot.metallic_roughness_texture),
-            normal: texture(uses.normal, &slot.normal_texture),
-            emissive: texture(uses.emission, &slot.emissive_texture),
-            coat: texture(uses.coat, &slot.coat_texture),
-            film: texture(uses.film, &slot.film_texture),
-            film_thickness: texture(uses.film_thickness, &slot.film_thickness_texture),
+            metallic_roughness: texture(uses.roughness, TextureTarget::Roughness),
+            normal: texture(uses.normal, TextureTarget::Normal),
+            emissive: texture(uses.emission, TextureTarget::Emission),
+            coat: texture(uses.coat, TextureTarget::Coat),
+            film: texture(uses.film, TextureTarget::Film),
+            film_thickness: texture(uses.film_thickness, TextureTarget::FilmThickness),
             thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
@@ -422,7 +425,7 @@ impl Builder {
 
 /// The mean of the roughness that a slot's texture has.
 fn mean_of_roughness(model: &Model, slot: &Slot) -> Option<f32> {
-    let place = slot.metallic_roughness_texture.as_ref()?;
+    let place = slot.texture(TextureTarget::Roughness)?;
     Some(texture_mean(model.textures.get(place.texture)?).codes[1])
 }
 

@@ -5,7 +5,7 @@ use crate::import::Budget;
 use crate::import::picture::read_texture;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
-use crate::scene::texture::{TextureProjection, TextureTarget, UserTexture, slots_with_coordinates};
+use crate::scene::texture::{TextureProjection, TextureTarget, TextureValues, UserTexture, slots_with_coordinates};
 use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
 use crate::store::exchange::report::Entry;
 
@@ -46,7 +46,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             }
         }
         (None, None) => {}
-        _ if model.slots[slot].metallic_roughness_texture.is_some() && material.textures.roughness => {
+        _ if model.slots[slot].texture(TextureTarget::Roughness).is_some() && material.textures.roughness => {
             let why = "the format has one texture for roughness and metalness, and one of them is the model's";
             pictures.retain(|(target, ..)| {
                 let is_half = [TextureTarget::Roughness, TextureTarget::Metalness].contains(target);
@@ -59,7 +59,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
         _ => {}
     }
     let is_dropped = |entries: &[Entry], target| entries.iter().any(|entry| entry.what == words(target));
-    let has_roughness = pictures.iter().any(|(target, ..)| *target == TextureTarget::Roughness);
+    let in_file: Vec<TextureTarget> = pictures.iter().map(|(target, ..)| *target).collect();
     for (target, texture, picture) in pictures {
         if is_dropped(&entries, target) {
             continue;
@@ -71,20 +71,12 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             wrap: [Wrap::Repeat; 2],
             filter: Filter::Linear,
         };
-        let of = &mut model.slots[slot];
-        match target {
-            TextureTarget::BaseColor => of.base_color_texture = Some(place),
-            TextureTarget::Metalness if has_roughness => {}
-            TextureTarget::Roughness | TextureTarget::Metalness => of.metallic_roughness_texture = Some(place),
-            TextureTarget::Normal => of.normal_texture = Some(place),
-            TextureTarget::Emission => of.emissive_texture = Some(place),
-            TextureTarget::Coat => of.coat_texture = Some(place),
-            TextureTarget::Film => of.film_texture = Some(place),
-            TextureTarget::FilmThickness => {
-                of.film_thickness_texture = Some(place);
-                of.film_thickness_min = 0.0;
-            }
-            TextureTarget::Opacity => {}
+        if target == TextureTarget::FilmThickness {
+            model.slots[slot].film_thickness_min = 0.0;
+        }
+        // What shares another's image is joined to it.
+        if target.home() == target || !in_file.contains(&target.home()) {
+            *model.slots[slot].texture_mut(target) = Some(place);
         }
         model.textures.push(picture);
         material.user_textures.set(target, None);
@@ -158,9 +150,9 @@ fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, 
     };
     let code = code(put_on(number));
     // What shares the image with it is left as it is.
-    match target {
-        TextureTarget::Roughness | TextureTarget::FilmThickness => [255, code, 255, 255],
-        TextureTarget::Metalness => [255, 255, code, 255],
-        _ => [code, 255, 255, 255],
+    let mut texel = [255; 4];
+    if let TextureValues::Number(channel) = target.values() {
+        texel[channel] = code;
     }
+    texel
 }

@@ -35,6 +35,7 @@ pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     fuzz: false,
     film_weight: false,
+    coat_on_base: false,
     scattering: true,
     weighs_index: false,
     widths: standard_widths,
@@ -191,6 +192,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
         .child(color("coat_color", surface.coat_color))
         .child(number("coat_roughness", surface.coat_roughness))
         .child(number("coat_IOR", surface.coat_ior))
+        .child(number("coat_anisotropy", 1.0 - surface.coat_ratio()))
         .child(number("thin_film_thickness", film_thickness_nm))
         .child(number("thin_film_IOR", surface.film_ior))
         .child(number("emission", strength))

@@ -69,7 +69,8 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
     } else {
         (specular_color, [1.0; 3])
     };
-    let ratio = 1.0 - inputs.number("specular_roughness_anisotropy").clamp(0.0, 0.999);
+    let [ratio, coat_ratio] = ["specular_roughness_anisotropy", "coat_roughness_anisotropy"]
+        .map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.999));
     Surface {
         base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
         diffuse_roughness: inputs.number("base_diffuse_roughness"),
@@ -87,9 +88,12 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         transmission_color: inputs.color("transmission_color"),
         transmission_depth: inputs.number("transmission_depth"),
         coat_weight: inputs.number("coat_weight"),
-        coat_roughness: inputs.number("coat_roughness"),
+        coat_roughness: inputs.number("coat_roughness") / widening(coat_ratio),
         coat_ior: inputs.number("coat_ior"),
-        coat_color: darkening_coat_color(inputs),
+        coat_color: inputs.color("coat_color"),
+        coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
+        coat_on_base: true,
+        coat_darkening: inputs.number("coat_darkening"),
         fuzz_weight: inputs.number("fuzz_weight"),
         fuzz_color: inputs.color("fuzz_color"),
         fuzz_roughness: inputs.number("fuzz_roughness"),
@@ -105,29 +109,9 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
     }
 }
 
-/// The coat's colour, with what the coat takes besides by reflecting back what comes out of the base (`coat_darkening`).
-fn darkening_coat_color(inputs: &Inputs) -> [f32; 3] {
-    let color = inputs.color("coat_color");
-    let weight = inputs.number("coat_weight").clamp(0.0, 1.0);
-    let darkening = inputs.number("coat_darkening").clamp(0.0, 1.0);
-    if weight * darkening == 0.0 {
-        return color;
-    }
-    let ior = inputs.number("coat_ior");
-    let head_on = ((ior - 1.0) / (ior + 1.0)).powi(2);
-    let kept_inside = 1.0 - (1.0 - head_on) / (ior * ior);
-    let metalness = inputs.number("base_metalness");
-    let of_metal = 1.0 + (inputs.number("specular_weight") - 1.0) * metalness;
-    let base = weighted(inputs.color("base_color"), of_metal);
-    std::array::from_fn(|i| {
-        let darkened = (1.0 - kept_inside) / (1.0 - base[i] * kept_inside);
-        let left = (1.0 + (color[i] - 1.0) * weight) * (1.0 + (darkened - 1.0) * weight * darkening);
-        (1.0 + (left - 1.0) / weight).clamp(0.0, 1.0)
-    })
-}
-
 fn standard_surface(inputs: &mut Inputs) -> Surface {
-    let ratio = 1.0 - inputs.number("specular_anisotropy").clamp(0.0, 0.98);
+    let [ratio, coat_ratio] =
+        ["specular_anisotropy", "coat_anisotropy"].map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.98));
     let base_color = weighted(inputs.color("base_color"), inputs.number("base"));
     let metalness = inputs.number("metalness");
     let (weight, color) = (inputs.number("specular"), inputs.color("specular_color"));
@@ -154,6 +138,7 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         coat_roughness: inputs.number("coat_roughness"),
         coat_ior: inputs.number("coat_IOR"),
         coat_color: inputs.color("coat_color"),
+        coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
         // Every thickness but 0 is a film.
         film_weight: f32::from(inputs.number("thin_film_thickness") > 0.0),
         film_thickness: 1e-3 * inputs.number("thin_film_thickness"),

@@ -7,7 +7,7 @@ use crate::import::Goes::{self, Nowhere, To};
 const DISPERSION: Goes = Nowhere("dispersion is not shown yet");
 const NORMALS: Goes = Nowhere("textures travel with models; here each parameter has one value");
 const OCCLUSION: Goes = Nowhere("path tracing needs no occlusion");
-const ROUND_COAT: Goes = Nowhere("the coat's highlight is round");
+const COAT_ALONG: Goes = Nowhere("the coat's highlight lies along the tangent");
 const SCATTERING: Goes = Nowhere("nothing is scattered inside");
 const SHEEN: Goes = Nowhere("sheen is not shown yet");
 const SUBSURFACE: Goes = Nowhere("subsurface scattering is not shown yet");
@@ -78,9 +78,9 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     unit("coat_weight", "0", "0.5", To("coat.weight")),
     unit("coat_color", WHITE, COLOR, To("coat.color")).of("coat_weight"),
     unit("coat_roughness", "0", "0.5", To("coat.roughness")).of("coat_weight"),
-    row("coat_roughness_anisotropy", "0", "0.5", ROUND_COAT).of("coat_weight"),
+    unit("coat_roughness_anisotropy", "0", "0.5", To("coat.anisotropy")).of("coat_weight"),
     ior("coat_ior", "1.6", To("coat.ior")).of("coat_weight"),
-    unit("coat_darkening", "1", "0.5", To("coat.color")).of("coat_weight"),
+    unit("coat_darkening", "1", "0.5", To("coat.darkening")).of("coat_weight"),
     unit("thin_film_weight", "0", "0.5", To("thin_film.weight")),
     row("thin_film_thickness", "0.5", "0.25", To("thin_film.thickness"))
         .within(0.0, 10.0)
@@ -97,7 +97,7 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     direction("geometry_normal", NORMALS),
     direction("geometry_coat_normal", NORMALS),
     direction("geometry_tangent", TURN).with_note("the turn of a `rotate3d`"),
-    direction("geometry_coat_tangent", ROUND_COAT),
+    direction("geometry_coat_tangent", COAT_ALONG),
 ];
 
 pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
@@ -149,8 +149,8 @@ pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
     unit("coat", "0", "0.5", To("coat.weight")),
     unit("coat_color", WHITE, COLOR, To("coat.color")).of("coat"),
     unit("coat_roughness", "0.1", "0.5", To("coat.roughness")).of("coat"),
-    row("coat_anisotropy", "0", "0.5", ROUND_COAT).of("coat"),
-    row("coat_rotation", "0", "0.125", ROUND_COAT).of("coat_anisotropy"),
+    unit("coat_anisotropy", "0", "0.5", To("coat.anisotropy")).of("coat"),
+    row("coat_rotation", "0", "0.125", COAT_ALONG).of("coat_anisotropy"),
     ior("coat_IOR", "1.5", To("coat.ior")).of("coat"),
     direction("coat_normal", NORMALS),
     row(

@@ -1,0 +1,190 @@
+//! The two engines behind one interface.
+
+pub(super) mod calibration;
+pub(super) mod choice;
+mod ray_queries;
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::cpu::CpuEngine;
+use crate::gpu::{GpuDevice, GpuEngine, GpuError, Traversal};
+use crate::job::Job;
+use crate::job::film::Film;
+use crate::job::tiles::Schedule;
+use crate::named::{Named, named};
+
+pub use choice::Sampler;
+pub(crate) use choice::device_for_functions;
+pub use ray_queries::RayQueries;
+
+named! {
+    /// The engine that a user asks for.
+    #[derive(Default)]
+    EngineChoice {
+        #[default]
+        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the faster of software Vulkan and the CPU.";
+        Gpu, "gpu", "GPU", "The GPU, software Vulkan included.";
+        Cpu, "cpu", "CPU", "The CPU.";
+    }
+}
+
+impl FromStr for EngineChoice {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::by_name(text).ok_or_else(|| format!("no engine is called {text}: auto, gpu or cpu"))
+    }
+}
+
+named! {
+    /// Kind of engine: CPU or GPU.
+    EngineKind {
+        Gpu, "gpu", "GPU", "Compute shaders on an adapter.";
+        Cpu, "cpu", "CPU", "Rust on the cores of the CPU.";
+    }
+}
+
+impl From<EngineKind> for EngineChoice {
+    fn from(kind: EngineKind) -> Self {
+        match kind {
+            EngineKind::Gpu => Self::Gpu,
+            EngineKind::Cpu => Self::Cpu,
+        }
+    }
+}
+
+/// The engine in use, and why it was chosen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EngineInfo {
+    /// Kind of the engine.
+    pub kind: EngineKind,
+    /// Name of the adapter or CPU.
+    pub adapter: String,
+    /// Driver of the adapter; empty for the CPU.
+    pub driver: String,
+    /// Why this engine, in words.
+    pub reason: String,
+    /// How rays are traced on the engine.
+    pub traversal: Traversal,
+    /// True if the CPU does the work, by either engine.
+    pub is_software: bool,
+}
+
+impl fmt::Display for EngineInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} on {}", self.kind.name(), self.adapter)
+    }
+}
+
+/// Precision of shading on the CPU; the GPU has f32 only. Sums are f64 in either case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
+pub enum Precision {
+    /// f32.
+    #[default]
+    #[serde(rename = "f32")]
+    Single,
+    /// f64.
+    #[serde(rename = "f64")]
+    Double,
+}
+
+/// One of the two engines.
+pub(super) enum Engine {
+    Cpu(Box<CpuEngine>),
+    Gpu(Box<GpuEngine>),
+}
+
+impl Engine {
+    pub(super) fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+        match self {
+            Engine::Cpu(engine) => {
+                engine.submit(job);
+                Ok(())
+            }
+            Engine::Gpu(engine) => engine.submit(job),
+        }
+    }
+
+    /// Renders for about `budget` towards a number of samples per pixel for each tile.
+    pub(super) fn step(&mut self, budget: Duration, goals: &[u32], precision: Precision) -> Result<(), GpuError> {
+        match self {
+            Engine::Cpu(engine) => {
+                match precision {
+                    Precision::Single => engine.step_towards(budget, goals),
+                    Precision::Double => engine.step_double_towards(budget, goals),
+                }
+                Ok(())
+            }
+            Engine::Gpu(engine) => engine.step_towards(budget, goals),
+        }
+    }
+
+    /// The GPU's device, if it renders.
+    pub(super) fn device(&self) -> Option<&GpuDevice> {
+        match self {
+            Engine::Cpu(_) => None,
+            Engine::Gpu(engine) => Some(engine.device()),
+        }
+    }
+
+    pub(super) fn schedule(&self) -> &Schedule {
+        match self {
+            Engine::Cpu(engine) => engine.schedule(),
+            Engine::Gpu(engine) => engine.schedule(),
+        }
+    }
+
+    /// GPU time of the job by its own clock, in seconds; `None` without one.
+    pub(super) fn gpu_seconds(&self) -> Option<f64> {
+        match self {
+            Engine::Cpu(_) => None,
+            Engine::Gpu(engine) => engine.gpu_seconds(),
+        }
+    }
+
+    pub(super) fn film(&mut self) -> Result<&Film, GpuError> {
+        match self {
+            Engine::Cpu(engine) => Ok(engine.film()),
+            Engine::Gpu(engine) => engine.film(),
+        }
+    }
+}
+
+pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
+    let threads = rayon::current_num_threads();
+    let info = EngineInfo {
+        kind: EngineKind::Cpu,
+        adapter: format!("{} ({threads} threads)", cpu_name()),
+        driver: String::new(),
+        reason,
+        traversal: Traversal::Own,
+        is_software: true,
+    };
+    (Engine::Cpu(Box::default()), info)
+}
+
+pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), GpuError> {
+    let info = EngineInfo {
+        kind: EngineKind::Gpu,
+        adapter: device.info.name.clone(),
+        driver: device.driver(),
+        reason,
+        traversal: device.traversal,
+        is_software: device.is_software(),
+    };
+    Ok((Engine::Gpu(Box::new(GpuEngine::new(device)?)), info))
+}
+
+/// Name of the CPU, if the system reports it.
+pub(crate) fn cpu_name() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(
+        || format!("{} CPU", std::env::consts::ARCH),
+        |(_, name)| name.trim().to_owned(),
+    )
+}

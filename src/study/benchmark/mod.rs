@@ -1,0 +1,389 @@
+//! The benchmark: speed and soundness of every engine and adapter of a machine, in one report.
+//!
+//! Each step of each engine has a share of the time; what does not fit is left out and named. Turns of a step go through all
+//! scenes in order, so that the spread of a scene's turns holds the drift of the machine.
+
+pub mod compare;
+mod goal;
+pub mod kernel;
+pub mod latency;
+mod proof;
+mod rate;
+pub mod report;
+pub mod scene;
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+use tempfile::TempDir;
+
+use super::sampling::{SamplingOptions, sampling};
+use super::{Steps, StudyError, Watch};
+use crate::document::Document;
+use crate::gpu::{GpuAdapter, GpuError, Traversal};
+use crate::render::denoise::Library;
+use crate::render::{EngineChoice, Session, cpu_name};
+use goal::Goal;
+use report::{EngineReport, Machine, Report, SCHEMA, SCHEMA_VERSION, Spread};
+use scene::Scene;
+
+/// Relative mean squared error of a clean image.
+pub const GOAL: f64 = 0.003;
+/// Time of a run in seconds: a full one, and a quick one.
+pub const SECONDS: [f64; 2] = [180.0, 20.0];
+/// Share of the time for references, which all engines use.
+const REFERENCE_SHARE: f64 = 0.08;
+/// Length of the loop that shows the machine's pace.
+const PACE: Duration = Duration::from_millis(20);
+
+/// Options of a run.
+#[derive(Clone, Debug)]
+pub struct BenchmarkOptions {
+    /// Engine to measure; `auto` stands for the CPU and every adapter.
+    pub engine: EngineChoice,
+    /// Time of the run in seconds, about.
+    pub seconds: f64,
+    /// Small images, few scenes and turns: to see that it works.
+    pub quick: bool,
+    /// The program itself, which compiles kernels in processes of their own; `None` leaves that out.
+    pub program: Option<PathBuf>,
+}
+
+/// How much is measured.
+#[derive(Clone, Copy, Debug)]
+struct Extent {
+    /// Side of images for rates, and for the time to the goal, in pixels.
+    size: u32,
+    goal_size: u32,
+    /// Scenes besides the default one.
+    scenes: usize,
+    /// Length of a turn, and the most turns.
+    turn: Duration,
+    turns: usize,
+    /// Edits of a drag, and the viewport's size in pixels.
+    edits: u32,
+    viewport: [u32; 2],
+    /// Image of the paper's Fig. 8, in pixels.
+    sampling_size: [u32; 2],
+}
+
+const FULL: Extent = Extent {
+    size: 512,
+    goal_size: 256,
+    scenes: 9,
+    turn: Duration::from_millis(250),
+    turns: 9,
+    edits: 30,
+    viewport: latency::VIEWPORT,
+    sampling_size: super::sampling::SIZE,
+};
+const QUICK: Extent = Extent {
+    size: 32,
+    goal_size: 32,
+    scenes: 1,
+    turn: Duration::from_millis(10),
+    turns: 3,
+    edits: 3,
+    viewport: [64, 48],
+    sampling_size: [48, 32],
+};
+
+/// Time of a step: it begins no turn after its end.
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    end: Instant,
+}
+
+impl Slot {
+    fn is_over(self) -> bool {
+        Instant::now() >= self.end
+    }
+
+    /// The same for a turn through several scenes: the first scene is warmed and measured once in any case.
+    fn is_over_at(self, turn: usize, scene: usize) -> bool {
+        self.is_over() && (turn > 1 || scene > 0)
+    }
+
+    /// Turns 0 to `last` with every scene in each; in a turn, those for which there is time.
+    fn turns(self, last: usize, scenes: usize) -> impl Iterator<Item = (usize, usize)> {
+        let of_turn = move |turn| (0..scenes).map(move |scene| (turn, scene));
+        (0..=last).flat_map(move |turn| of_turn(turn).take_while(move |(turn, scene)| !self.is_over_at(*turn, *scene)))
+    }
+
+    fn left(self) -> Duration {
+        self.end.saturating_duration_since(Instant::now())
+    }
+}
+
+/// An engine to measure.
+enum Place {
+    Cpu,
+    Adapter(Box<GpuAdapter>),
+}
+
+impl Place {
+    fn open(&self) -> Result<Session, StudyError> {
+        Ok(match self {
+            Self::Cpu => Session::open(EngineChoice::Cpu)?,
+            Self::Adapter(adapter) => Session::on_adapter(adapter, Traversal::Own)?,
+        })
+    }
+
+    fn choice(&self) -> EngineChoice {
+        match self {
+            Self::Cpu => EngineChoice::Cpu,
+            Self::Adapter(_) => EngineChoice::Gpu,
+        }
+    }
+}
+
+/// Ends the preference of an adapter, however a run ends.
+struct Preference;
+
+impl Drop for Preference {
+    fn drop(&mut self) {
+        GpuAdapter::prefer(None);
+    }
+}
+
+/// A document with its name.
+struct Case {
+    name: String,
+    document: Document,
+}
+
+/// A run in progress.
+struct Run<'a, 'b> {
+    options: &'a BenchmarkOptions,
+    extent: Extent,
+    begun: Instant,
+    steps: Steps<'a, 'b>,
+    cases: Vec<Case>,
+    goals: Vec<Goal>,
+    pace: Vec<f64>,
+}
+
+/// Steps of an engine, with their weights in its time.
+type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, Slot) -> Result<(), StudyError>;
+const STEPS: [(&str, f64, Step); 7] = [
+    ("rate", 0.32, rate::rates),
+    ("to clean", 0.20, goal::goals),
+    ("edit", 0.06, latency::edits),
+    ("kernel", 0.10, kernel::kernels),
+    ("ray queries", 0.06, rate::ray_queries),
+    ("sampling", 0.12, sampling_times),
+    ("proof", 0.14, proof::proofs),
+];
+
+/// Measures the machine. `watch` receives the progress and may stop the run.
+///
+/// # Errors
+/// [`StudyError::Stopped`]; a temporary folder that cannot be written to. An engine that fails is part of the report.
+pub fn benchmark(options: &BenchmarkOptions, watch: &mut Watch<'_>) -> Result<Report, StudyError> {
+    let extent = if options.quick { QUICK } else { FULL };
+    let folder = TempDir::new().map_err(|error| StudyError::Folder(error.to_string()))?;
+    let mut run = Run {
+        options,
+        extent,
+        begun: Instant::now(),
+        steps: Steps::new(watch, options.seconds),
+        cases: Vec::new(),
+        goals: Vec::new(),
+        pace: Vec::new(),
+    };
+    run.report("the scenes")?;
+    Scene::write_files(folder.path()).map_err(|error| StudyError::Folder(error.to_string()))?;
+    run.cases = cases(&folder, extent);
+    run.goals = goal::references(&mut run, &folder)?;
+    let mut report = run.empty_report();
+    let places = places(options.engine);
+    if places.is_empty() {
+        return Err(GpuError::NoAdapter("").into());
+    }
+    let _preference = Preference;
+    for (number, place) in places.iter().enumerate() {
+        let left = Duration::from_secs_f64(options.seconds).saturating_sub(run.begun.elapsed());
+        let share = left.div_f64((places.len() - number) as f64);
+        report.engines.push(run.engine(place, share)?);
+    }
+    report.pace = Spread::of(&run.pace);
+    report.peak_memory_mib = peak_memory_mib();
+    report.seconds = run.begun.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// The default scene, and those of the table in docs/PERFORMANCE.md.
+fn cases(folder: &TempDir, extent: Extent) -> Vec<Case> {
+    let of_scene = |scene: Scene| Case {
+        name: scene.name(),
+        document: scene.document(folder.path(), extent.size),
+    };
+    let default = Case {
+        name: "default".to_owned(),
+        document: default_scene(extent.size),
+    };
+    let scenes = Scene::all().take(extent.scenes).map(of_scene);
+    std::iter::once(default).chain(scenes).collect()
+}
+
+fn default_scene(size: u32) -> Document {
+    let mut document = Document::default();
+    (document.render.width, document.render.height) = (size, size);
+    document.render.adaptive = Some(false);
+    document
+}
+
+fn places(engine: EngineChoice) -> Vec<Place> {
+    let cpu = (engine != EngineChoice::Gpu).then_some(Place::Cpu);
+    let adapters = if engine == EngineChoice::Cpu {
+        Vec::new()
+    } else {
+        GpuAdapter::all()
+    };
+    cpu.into_iter()
+        .chain(adapters.into_iter().map(|adapter| Place::Adapter(Box::new(adapter))))
+        .collect()
+}
+
+impl Run<'_, '_> {
+    /// Reports the current step; fails if the run is stopped.
+    fn report(&mut self, what: &str) -> Result<(), StudyError> {
+        self.steps.report(what, self.begun.elapsed().as_secs_f64())
+    }
+
+    fn empty_report(&self) -> Report {
+        Report {
+            schema: SCHEMA.to_owned(),
+            schema_version: SCHEMA_VERSION,
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            build: if cfg!(debug_assertions) { "debug" } else { "release" }.to_owned(),
+            quick: self.options.quick,
+            seconds: 0.0,
+            machine: machine(),
+            denoiser: Library::get().ok().map(ToString::to_string),
+            peak_memory_mib: None,
+            pace: None,
+            engines: Vec::new(),
+        }
+    }
+
+    /// All steps of an engine within a time.
+    fn engine(&mut self, place: &Place, time: Duration) -> Result<EngineReport, StudyError> {
+        if let Place::Adapter(adapter) = place {
+            GpuAdapter::prefer(Some(adapter));
+        }
+        let mut report = described(place);
+        let begun = Instant::now();
+        let mut share = 0.0;
+        for (name, weight, step) in STEPS {
+            share += weight;
+            let end = begun + time.mul_f64(share);
+            self.report(&format!("{}, {name}", report.name()))?;
+            match step(self, place, &mut report, Slot { end }) {
+                Err(StudyError::Stopped) => return Err(StudyError::Stopped),
+                Err(error) => report.leave_out(name, "", error.to_string()),
+                Ok(()) => {}
+            }
+            self.measure_pace();
+        }
+        Ok(report)
+    }
+
+    /// Measures the pace of the machine with a fixed loop on all threads, in million steps per second.
+    fn measure_pace(&mut self) {
+        let begun = Instant::now();
+        let steps: u64 = rayon::broadcast(|_| {
+            let (mut state, mut steps) = (1_u64, 0);
+            while begun.elapsed() < PACE {
+                for _ in 0..10_000 {
+                    state = std::hint::black_box(state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1));
+                }
+                steps += 10_000;
+            }
+            steps
+        })
+        .into_iter()
+        .sum();
+        self.pace.push(steps as f64 / begun.elapsed().as_secs_f64() / 1e6);
+    }
+}
+
+fn described(place: &Place) -> EngineReport {
+    let [engine, adapter, backend, driver] = match place {
+        Place::Cpu => ["cpu".to_owned(), cpu_name(), String::new(), String::new()],
+        Place::Adapter(adapter) => {
+            let backend = adapter.info.backend.to_string();
+            ["gpu".to_owned(), adapter.info.name.clone(), backend, adapter.driver()]
+        }
+    };
+    EngineReport {
+        engine,
+        adapter,
+        backend,
+        driver,
+        is_software: !matches!(place, Place::Adapter(adapter) if !adapter.is_software()),
+        proofs: Vec::new(),
+        rows: Vec::new(),
+        left_out: Vec::new(),
+    }
+}
+
+fn machine() -> Machine {
+    let system =
+        System::new_with_specifics(RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram()));
+    Machine {
+        cpu: cpu_name(),
+        threads: rayon::current_num_threads(),
+        memory_mib: system.map_or(0, |system| system.total_memory() >> 20),
+        system: System::long_os_version().unwrap_or_else(|_| std::env::consts::OS.to_owned()),
+        instructions: crate::cpu::instruction_set().to_owned(),
+    }
+}
+
+/// Peak memory of the process; `None` if the system does not report it.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// Times of the paper's Fig. 8, without whole frames.
+fn sampling_times(
+    run: &mut Run<'_, '_>,
+    place: &Place,
+    report: &mut EngineReport,
+    slot: Slot,
+) -> Result<(), StudyError> {
+    let mut options = SamplingOptions {
+        size: run.extent.sampling_size,
+        turns: 5,
+        has_frames: false,
+        ..SamplingOptions::new(place.choice())
+    };
+    // Each of about ten lobes draws in three stages, with few and with many directions.
+    let measurements = 10.0 * 3.0 * 2.0 * (options.turns + 1) as f64;
+    options.budget = slot.left().div_f64(measurements).min(options.budget);
+    let begun = run.begun;
+    let steps = &mut run.steps;
+    let found = sampling(&options, &mut |progress| {
+        steps.report(progress.what, begun.elapsed().as_secs_f64()).is_ok()
+    })?;
+    let samples = super::sampling::SAMPLES[1];
+    for row in found.rows.iter().filter(|row| row.samples == samples) {
+        let value = Spread {
+            median: row.sampling_ms,
+            quartiles: row.sampling_quartiles_ms,
+            turns: options.turns,
+        };
+        report.rows.push(report::Row {
+            step: "sampling".to_owned(),
+            case: row.name.clone(),
+            unit: "ms".to_owned(),
+            more_is_better: false,
+            value,
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,192 @@
+//! Hard cases: situations where naive code fails, as data. Each states the failure, the set-up and the requirement.
+//! `glossmith check --hard`, the editor and the tests run them.
+
+mod film;
+mod fresnel;
+mod geometry;
+mod glb;
+mod layer;
+mod light;
+mod lobe;
+mod meshes;
+mod precision;
+mod rays;
+mod stage;
+mod sums;
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use super::check::Check;
+use crate::job::film::Image;
+use crate::render::{EngineChoice, EngineInfo};
+pub use stage::{HardError, Stage};
+
+/// A situation where naive code fails.
+#[derive(Clone, Copy)]
+pub struct HardCase {
+    /// Name on the command line and in tables.
+    pub name: &'static str,
+    /// `lobe`, `fresnel`, `geometry`, `light` or `sums`.
+    pub group: &'static str,
+    /// Failure of naive code.
+    pub danger: &'static str,
+    /// Set-up of the case.
+    pub made: &'static str,
+    /// Requirement.
+    pub must: &'static str,
+    /// Result of the naive form, computed if cheap.
+    pub naive: fn() -> String,
+    /// Measure, as in [`Check::measure`].
+    pub measure: &'static str,
+    /// Limit of the measure.
+    pub limit: f64,
+    /// Runs the measurement.
+    pub find: fn(&mut Stage) -> Result<f64, HardError>,
+}
+
+/// Every case, group by group.
+pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
+    [
+        lobe::CASES,
+        layer::CASES,
+        precision::CASES,
+        film::CASES,
+        fresnel::CASES,
+        geometry::CASES,
+        light::CASES,
+        sums::CASES,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+impl HardCase {
+    /// Runs the case on an engine.
+    ///
+    /// # Errors
+    ///
+    /// If the engine fails, a file of the case cannot be written, or the stage is stopped.
+    pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
+        let begun = Instant::now();
+        stage.check_stop()?;
+        stage.take_picture();
+        let value = (self.find)(stage)?;
+        Ok(HardRow {
+            case: self,
+            check: Check::new(self.group, self.name, self.measure, value, self.limit),
+            seconds: begun.elapsed().as_secs_f64(),
+            picture: stage.take_picture(),
+        })
+    }
+}
+
+/// Result of a case.
+#[derive(Clone)]
+pub struct HardRow {
+    /// The case that was run.
+    pub case: &'static HardCase,
+    /// Outcome.
+    pub check: Check,
+    /// Time in seconds.
+    pub seconds: f64,
+    /// Rendered image, if any.
+    pub picture: Option<Image>,
+}
+
+/// Options of a run.
+#[derive(Clone, Debug)]
+pub struct HardOptions {
+    /// The engine to check.
+    pub engine: EngineChoice,
+    /// A million pairs a lobe and ten million samples, not a part of them.
+    pub thorough: bool,
+    /// Only cases whose names contain this.
+    pub only: String,
+}
+
+/// Runs all cases; `progress` receives each case's name before it starts.
+///
+/// # Errors
+///
+/// If the engine cannot be opened or fails, or a file of a case cannot be written.
+pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), HardError> {
+    let mut stage = Stage::open(options.engine, options.thorough)?;
+    let mut rows = Vec::new();
+    for case in catalogue().filter(|case| case.name.contains(&options.only)) {
+        progress(case.name);
+        rows.push(case.run(&mut stage)?);
+    }
+    Ok((stage.engine().clone(), rows))
+}
+
+/// The rows of several engines as a table in Markdown, engines side by side. All have the same cases.
+pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
+    let mut text =
+        String::from("| case | what goes wrong in naive code | how it is made, what must hold | naive | limit |");
+    for (engine, _) in engines {
+        let _ = write!(text, " {engine} |");
+    }
+    text.push_str("\n| --- | --- | --- | --- | --- |");
+    text.push_str(&" --- |".repeat(engines.len()));
+    text.push('\n');
+    let Some((_, first)) = engines.first() else {
+        return text;
+    };
+    for (index, row) in first.iter().enumerate() {
+        let case = row.case;
+        let _ = write!(
+            text,
+            "| {}: {} | {} | {}: {} | {} | {} {:.0e} |",
+            case.group,
+            case.name,
+            case.danger,
+            case.made,
+            case.must,
+            (case.naive)(),
+            case.measure,
+            case.limit
+        );
+        for check in engines
+            .iter()
+            .filter_map(|(_, rows)| rows.get(index))
+            .map(|row| &row.check)
+        {
+            let verdict = if check.passed { "" } else { "**fails** " };
+            let _ = write!(text, " {verdict}{:.2e} |", check.value);
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A division by zero as naive code makes it, in words.
+fn over_zero(numerator: f32) -> String {
+    (numerator / 0.0).to_string().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use super::*;
+
+    /// Cases that take minutes, begun and stopped by another thread.
+    #[test]
+    fn a_case_stops_within_its_measure() {
+        for name in ["ten-million-samples", "f32-against-f64-geometric"] {
+            let stop = Arc::new(AtomicBool::new(false));
+            let mut stage = Stage::open(EngineChoice::Cpu, true)
+                .expect("a stage")
+                .until(stop.clone());
+            let case = catalogue().find(|case| case.name == name).expect("a case of this name");
+            let stopping = std::thread::spawn(move || {
+                std::thread::sleep(std::time::Duration::from_millis(300));
+                stop.store(true, Ordering::Relaxed);
+            });
+            assert!(matches!(case.run(&mut stage), Err(HardError::Stopped)), "{name}");
+            stopping.join().expect("it only waits");
+        }
+    }
+}

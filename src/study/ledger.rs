@@ -1,0 +1,565 @@
+//! The ledger: cost of each active effect and setting in time, noise and image change, on this scene and machine.
+//!
+//! The document is rendered with and without each, in interleaved trials, with the same random numbers; times are medians
+//! over the trials.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
+use crate::analysis::halves::{Distance, Halves};
+use crate::analysis::noise::noise;
+use crate::document::effect::{Effect, Switch};
+use crate::document::{Document, PixelFilter, Strategy};
+use crate::job::effect::EffectId;
+use crate::job::plan::Plan;
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Lobe;
+use crate::optics::random::Sequence;
+use crate::render::StepDenoiser;
+use crate::render::{EngineChoice, Session};
+use crate::study::technique::{Setting, Technique, converged};
+
+/// Minimum samples per pixel of each render by default: two in either half.
+const SAMPLES_MIN: f64 = 4.0;
+/// Turns are added up to this many times as many until there are as many samples as asked for.
+const TURNS_FACTOR: usize = 50;
+/// Relative change of noise below which it is not reported in words: the estimate is no more precise.
+const NOISE_RESOLVED: f64 = 0.05;
+/// Relative change of time below which no number is reported.
+const TIME_RESOLVED: f64 = 0.005;
+
+/// Name of the line that holds the scene's kernel against the general one.
+const KERNEL: &str = "kernel";
+
+/// Options of a ledger.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LedgerOptions {
+    /// Engine to measure.
+    pub engine: EngineChoice,
+    /// Turns of each pair.
+    pub turns: usize,
+    /// Length of a trial of either side.
+    pub slice: Duration,
+    /// Minimum samples per pixel of each render; more give more precise noise and image differences.
+    pub samples_min: f64,
+}
+
+impl LedgerOptions {
+    /// Two seconds for each entry.
+    pub fn new(engine: EngineChoice) -> Self {
+        Self {
+            engine,
+            turns: 9,
+            slice: Duration::from_millis(110),
+            samples_min: SAMPLES_MIN,
+        }
+    }
+
+    /// Time that this many entries take at least, seconds.
+    pub fn seconds(&self, entries: usize) -> f64 {
+        (2 * entries * self.turns) as f64 * self.slice.as_secs_f64()
+    }
+}
+
+/// Subject of an entry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EntryKind {
+    /// An effect, against the scene without it.
+    Effect,
+    /// A setting, against another value of it.
+    Setting,
+}
+
+/// A line of the ledger.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// Name of the effect or setting.
+    pub name: &'static str,
+    /// The active setting.
+    pub label: String,
+    /// The alternative.
+    pub instead: String,
+    /// Kind of subject.
+    pub kind: EntryKind,
+    /// Milliseconds of one sample of every pixel, as it is.
+    pub ms_with: f64,
+    /// The same with the other.
+    pub ms_without: f64,
+    /// Time in milliseconds that it adds to one sample of all pixels; negative if it saves time.
+    pub ms: f64,
+    /// The quartiles of that over the turns.
+    pub ms_quartiles: [f64; 2],
+    /// Its share of the frame time.
+    pub share_of_frame: f64,
+    /// Relative change of variance at equal samples; negative if it lowers noise.
+    pub noise_share: f64,
+    /// Relative change of the image.
+    pub picture_change: Distance,
+    /// True if it cannot change the image, which then is not measured.
+    pub is_picture_kept: bool,
+    /// Summary in words.
+    pub words: String,
+}
+
+impl Entry {
+    /// Cost in time, in words.
+    pub fn time_words(&self) -> String {
+        let share = self.ms / self.ms_without;
+        if share.abs() < TIME_RESOLVED || !self.is_time_resolved() {
+            return "no measurable cost".to_owned();
+        }
+        let sign = if share > 0.0 { "+" } else { "−" };
+        format!("{sign}{} % time", digits(100.0 * share.abs()))
+    }
+
+    /// Half of the turns agree on whether it costs or saves time.
+    fn is_time_resolved(&self) -> bool {
+        let [low, high] = self.ms_quartiles;
+        low.signum() == high.signum()
+    }
+}
+
+/// Cost of all active effects and settings of a document.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ledger {
+    /// Machine of the measurement.
+    pub machine: Machine,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Milliseconds of one sample of every pixel of the document.
+    pub ms_per_sample: f64,
+    /// Entries: effects in the order of the plan, then settings.
+    pub entries: Vec<Entry>,
+}
+
+impl Ledger {
+    /// The line of an effect.
+    pub fn effect(&self, name: &str) -> Option<&Entry> {
+        let is_it = |entry: &&Entry| entry.kind == EntryKind::Effect && entry.name == name;
+        self.entries.iter().find(is_it)
+    }
+
+    /// Speed of the specialised kernel relative to the über-shader; `None` if not resolved.
+    pub fn kernel_gain(&self) -> Option<f64> {
+        let kernel = self.entries.iter().find(|entry| entry.name == KERNEL)?;
+        kernel.is_time_resolved().then(|| kernel.ms_without / kernel.ms_with)
+    }
+}
+
+/// Something to be held against the document.
+struct Rival {
+    name: &'static str,
+    label: String,
+    instead: String,
+    kind: EntryKind,
+    document: Document,
+}
+
+/// Measures a ledger. `watch` receives the progress and may stop it.
+///
+/// # Errors
+///
+/// Errors of rendering; [`StudyError::Stopped`].
+pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
+    let mut with = Session::open(options.engine)?;
+    let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
+    let document = without_target(document);
+    warmed(&mut with, &document)?;
+    let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());
+    let rivals = rivals(&document, &plan);
+    let mut steps = Steps::new(watch, rivals.len() as f64);
+    let mut entries = Vec::new();
+    for rival in rivals {
+        steps.report(rival.label.clone(), 0.0)?;
+        entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
+        steps.finish(1.0);
+    }
+    let is_of_samples = |entry: &&Entry| entry.name != EffectId::Denoising.name();
+    let times: Vec<f64> = entries
+        .iter()
+        .filter(is_of_samples)
+        .map(|entry| entry.ms_with)
+        .collect();
+    Ok(Ledger {
+        machine: Machine::of(with.engine()),
+        width: document.render.width,
+        height: document.render.height,
+        ms_per_sample: median(&times),
+        entries,
+    })
+}
+
+fn rivals(document: &Document, plan: &Plan) -> Vec<Rival> {
+    let mut rivals = Vec::new();
+    for (effect, decision) in plan.table() {
+        if !decision.is_on || Effect::of(effect).remove.is_none() {
+            continue;
+        }
+        let mut changed = document.clone();
+        changed.render.effects.set(effect, Switch::Off);
+        rivals.push(Rival {
+            name: effect.name(),
+            label: Effect::of(effect).label.to_owned(),
+            instead: "without".to_owned(),
+            kind: EntryKind::Effect,
+            document: changed,
+        });
+    }
+    rivals.extend(setting_rivals(document));
+    rivals
+}
+
+/// For each setting in force the value that it is usually held against.
+fn setting_rivals(document: &Document) -> Vec<Rival> {
+    let render = &document.render;
+    let rival = |name, label: String, instead: String, document| Rival {
+        name,
+        label,
+        instead,
+        kind: EntryKind::Setting,
+        document,
+    };
+    let try_out = |name, label: &str, instead: &str, setting: Setting| {
+        let changed = Technique::of(setting).apply(document);
+        rival(name, label.to_owned(), instead.to_owned(), changed)
+    };
+    let changed = |change: &dyn Fn(&mut Document)| {
+        let mut changed = document.clone();
+        change(&mut changed);
+        changed
+    };
+    let mut rivals = Vec::new();
+    let is_exact = |fresnel| matches!(fresnel, Fresnel::Dielectric | Fresnel::Conductor);
+    let has_exact = document.materials.iter().any(|material| is_exact(material.fresnel));
+    rivals.push(if has_exact {
+        try_out("fresnel", "Exact Fresnel", "Schlick's", Setting::ExactFresnel(false))
+    } else {
+        try_out("fresnel", "Schlick's Fresnel", "exact", Setting::ExactFresnel(true))
+    });
+    let lobe = document
+        .materials
+        .first()
+        .map_or(Lobe::Geometric, |material| material.lobe);
+    let other = if lobe == Lobe::Ggx { Lobe::Geometric } else { Lobe::Ggx };
+    let label = format!("{} lobe", lobe.label());
+    rivals.push(try_out(
+        "lobe",
+        &label,
+        &format!("{} of the same look", other.label()),
+        Setting::Lobe(other),
+    ));
+    let other = if render.strategy == Strategy::Lobe {
+        Strategy::Mis
+    } else {
+        Strategy::Lobe
+    };
+    let label = format!("Light by {}", render.strategy.label().to_lowercase());
+    rivals.push(try_out(
+        "strategy",
+        &label,
+        &other.label().to_lowercase(),
+        Setting::Strategy(other),
+    ));
+    let (label, other) = match render.sequence {
+        Sequence::Sobol => ("Sobol sequence", Sequence::Independent),
+        Sequence::Independent => ("Uniform random numbers", Sequence::Sobol),
+    };
+    rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
+    let fewer = if render.bounces > 4 { 4 } else { 1 };
+    if render.bounces > fewer {
+        let label = format!("{} bounces", render.bounces);
+        rivals.push(try_out("bounces", &label, &fewer.to_string(), Setting::Bounces(fewer)));
+    }
+    if render.filter == PixelFilter::Gaussian {
+        let boxed = changed(&|document| document.render.filter = PixelFilter::Box);
+        rivals.push(rival(
+            "filter",
+            "Gaussian pixel filter".to_owned(),
+            "box".to_owned(),
+            boxed,
+        ));
+    }
+    let general = changed(&|document| {
+        let switches = &mut document.render.effects;
+        for &effect in EffectId::ALL {
+            if switches.get(effect) == Switch::Auto {
+                switches.set(effect, Switch::On);
+            }
+        }
+    });
+    let label = "Specialised kernel".to_owned();
+    rivals.push(rival(KERNEL, label, "the general one".to_owned(), general));
+    // Settings without effect on this scene have no entry.
+    rivals.retain(|rival| rival.document != *document);
+    rivals
+}
+
+fn entry(
+    document: &Document,
+    rival: Rival,
+    [with, without]: [&mut Session; 2],
+    options: &LedgerOptions,
+    steps: &mut Steps<'_, '_>,
+) -> Result<Entry, StudyError> {
+    if rival.name == EffectId::Denoising.name() {
+        return denoising(document, rival, with, options);
+    }
+    warmed(with, document)?;
+    warmed(without, &rival.document)?;
+    let mut times = [const { Vec::new() }; 2];
+    for turn in 0..options.turns * TURNS_FACTOR {
+        let samples = [&*with, &*without].map(|session| session.progress().mean_samples);
+        if turn >= options.turns && samples.iter().all(|samples| *samples >= options.samples_min) {
+            break;
+        }
+        // Each side is first every other time.
+        for side in [turn % 2, 1 - turn % 2] {
+            let session = if side == 0 { &mut *with } else { &mut *without };
+            times[side].push(1e3 * seconds_per_sample(session, options.slice)?);
+        }
+        steps.report(rival.label.clone(), turn as f64 / options.turns as f64)?;
+    }
+    let differences: Vec<f64> = std::iter::zip(&times[0], &times[1]).map(|(a, b)| a - b).collect();
+    let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
+    let ms = median(&differences);
+    let variances = [variance_of_a_sample(with)?, variance_of_a_sample(without)?];
+    let halves = [Halves::of(with.film()?), Halves::of(without.film()?)];
+    let is_picture_kept = converged(document) == converged(&rival.document);
+    let picture_change = if is_picture_kept {
+        Distance::default()
+    } else {
+        halves[1].distance(&halves[0])
+    };
+    let mut entry = Entry {
+        name: rival.name,
+        label: rival.label,
+        instead: rival.instead,
+        kind: rival.kind,
+        ms_with,
+        ms_without,
+        ms,
+        ms_quartiles: [quantile(&differences, 0.25), quantile(&differences, 0.75)],
+        share_of_frame: ms / ms_with,
+        noise_share: share_of_noise(variances),
+        picture_change,
+        is_picture_kept,
+        words: String::new(),
+    };
+    entry.words = words(&entry);
+    Ok(entry)
+}
+
+/// The denoiser's entry, per image rather than per sample: time of one image, remaining share of the squared error, and
+/// bias.
+fn denoising(
+    document: &Document,
+    rival: Rival,
+    session: &mut Session,
+    options: &LedgerOptions,
+) -> Result<Entry, StudyError> {
+    let mut step_denoiser = StepDenoiser::new(document);
+    warmed(session, document)?;
+    let mut times = Vec::new();
+    let (mut last, mut noise) = (None, 0.0);
+    for _ in 0..options.turns {
+        while session.progress().mean_samples < options.samples_min {
+            session.step(options.slice)?;
+        }
+        last = step_denoiser.finish(session)?;
+        times.extend(last.as_ref().map(|denoised| 1e3 * denoised.seconds));
+        noise = crate::analysis::noise::noise(session.film()?).map_or(0.0, |noise| noise.relative);
+    }
+    let estimate = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
+    let share = (estimate.value / noise).powi(2) - 1.0;
+    let mut entry = Entry {
+        name: rival.name,
+        label: rival.label,
+        instead: rival.instead,
+        kind: rival.kind,
+        ms_with: median(&times),
+        ms_without: 0.0,
+        ms: median(&times),
+        ms_quartiles: [quantile(&times, 0.25), quantile(&times, 0.75)],
+        share_of_frame: 1.0,
+        noise_share: if share.is_finite() { share } else { 0.0 },
+        picture_change: last.and_then(|denoised| denoised.bias).unwrap_or_default(),
+        is_picture_kept: false,
+        words: String::new(),
+    };
+    entry.words = format!(
+        "{} ms per image; of the squared error of {:.0} spp {} % is left; bias {} %",
+        digits(entry.ms),
+        session.progress().mean_samples,
+        digits(100.0 * (1.0 + entry.noise_share)),
+        digits(100.0 * entry.picture_change.value),
+    );
+    Ok(entry)
+}
+
+/// Engine time of one sample of every pixel, over a slice.
+fn seconds_per_sample(session: &mut Session, slice: Duration) -> Result<f64, StudyError> {
+    let before = session.progress();
+    let after = session.step(slice)?;
+    let samples = after.mean_samples - before.mean_samples;
+    Ok((after.engine_seconds - before.engine_seconds) / samples.max(1e-12))
+}
+
+/// Mean over the pixels of the variance of one sample's luminance, as the sequence gains.
+fn variance_of_a_sample(session: &mut Session) -> Result<f64, StudyError> {
+    let samples = session.progress().mean_samples;
+    let found = noise(session.film()?);
+    Ok(found.map_or(0.0, |noise| samples * (noise.relative * noise.mean_luminance).powi(2)))
+}
+
+/// Relative increase of the first over the second; 0 if the second is 0.
+fn share_of_noise([with, without]: [f64; 2]) -> f64 {
+    if without > 0.0 { with / without - 1.0 } else { 0.0 }
+}
+
+/// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
+fn words(entry: &Entry) -> String {
+    let mut parts = vec![entry.time_words()];
+    if entry.noise_share.abs() >= NOISE_RESOLVED {
+        let share = entry.noise_share;
+        parts.push(if share > 1.0 {
+            format!("{} × the noise", digits(share + 1.0))
+        } else if share > 0.0 {
+            format!("adds {} % to the noise", digits(100.0 * share))
+        } else {
+            format!("removes {} % of the noise", digits(-100.0 * share))
+        });
+    }
+    let change = &entry.picture_change;
+    parts.push(if entry.is_picture_kept {
+        "leaves the image as it is".to_owned()
+    } else if change.is_resolved() {
+        format!("changes the image by {} %", digits(100.0 * change.value))
+    } else {
+        format!("changes the image by less than {} %", digits(100.0 * change.high))
+    });
+    let against = match entry.kind {
+        EntryKind::Effect => String::new(),
+        EntryKind::Setting => format!(" (instead of {})", entry.instead),
+    };
+    format!("{}{against}: {}", entry.label, parts.join(", "))
+}
+
+/// A number with two digits.
+fn digits(value: f64) -> String {
+    if value <= 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured() -> Entry {
+        Entry {
+            name: "fresnel",
+            label: "Exact Fresnel".to_owned(),
+            instead: "Schlick's".to_owned(),
+            kind: EntryKind::Setting,
+            ms_with: 10.2,
+            ms_without: 10.0,
+            ms: 0.2,
+            ms_quartiles: [0.1, 0.3],
+            share_of_frame: 0.0196,
+            noise_share: 0.0,
+            picture_change: Distance {
+                value: 0.003,
+                low: 0.002,
+                high: 0.004,
+            },
+            is_picture_kept: false,
+            words: String::new(),
+        }
+    }
+
+    #[test]
+    fn lines_are_found_and_what_cannot_be_told_is_not() {
+        let kernel = Entry {
+            name: KERNEL,
+            ms_with: 10.0,
+            ms_without: 18.0,
+            ms: -8.0,
+            ms_quartiles: [-8.5, -7.5],
+            ..measured()
+        };
+        let ground = Entry {
+            name: "ground",
+            kind: EntryKind::Effect,
+            ..measured()
+        };
+        let mut ledger = Ledger {
+            machine: Machine {
+                version: "",
+                engine: "cpu",
+                adapter: String::new(),
+                driver: String::new(),
+            },
+            width: 1,
+            height: 1,
+            ms_per_sample: 10.0,
+            entries: vec![ground, measured(), kernel],
+        };
+        assert_eq!(ledger.kernel_gain(), Some(1.8));
+        assert_eq!(
+            ledger.effect("ground").map(Entry::time_words).as_deref(),
+            Some("+2 % time")
+        );
+        assert_eq!(ledger.effect("fresnel"), None, "a setting of that name");
+        ledger.entries[2].ms_quartiles = [-1.0, 1.0];
+        assert_eq!(ledger.kernel_gain(), None);
+    }
+
+    #[test]
+    fn an_entry_is_told_in_plain_words() {
+        let text = words(&measured());
+        assert_eq!(
+            text,
+            "Exact Fresnel (instead of Schlick's): +2 % time, changes the image by 0.3 %"
+        );
+        let entry = Entry {
+            kind: EntryKind::Effect,
+            label: "Ground".to_owned(),
+            ms: -2.5,
+            ms_quartiles: [-2.6, -2.4],
+            noise_share: -0.8,
+            is_picture_kept: true,
+            ..measured()
+        };
+        assert_eq!(
+            words(&entry),
+            "Ground: −25 % time, removes 80 % of the noise, leaves the image as it is"
+        );
+        let entry = Entry {
+            ms_quartiles: [-0.1, 0.3],
+            noise_share: 4.1,
+            picture_change: Distance {
+                value: 0.001,
+                low: 0.0,
+                high: 0.0021,
+            },
+            ..measured()
+        };
+        assert_eq!(
+            words(&entry),
+            "Exact Fresnel (instead of Schlick's): no measurable cost, 5.1 × the noise, changes the \
+             image by less than 0.21 %"
+        );
+    }
+}

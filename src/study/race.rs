@@ -1,0 +1,454 @@
+//! The race: techniques on the same view, interleaved in time.
+//!
+//! Each has its own session of the same engine and renders in time slices by turns, so that disturbances affect all; the
+//! engine's own clock counts. Two errors are distinguished. *Noise* is the distance of an image from the technique's own
+//! limit; it falls with time. *Bias* is the distance of that limit from the most accurate setting's; it stays.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::references::{Effort, Reference, ReferenceCache};
+use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
+use crate::analysis::halves::Distance;
+use crate::document::Document;
+use crate::job::film::Image;
+use crate::render::Assets;
+use crate::render::StepDenoiser;
+use crate::render::denoise::Denoised;
+use crate::render::{EngineChoice, EngineKind, Precision, Session};
+use crate::study::technique::{Technique, converged, most_accurate};
+
+/// Precision of references relative to the target noise, if time permits.
+const REFERENCE_GAIN: f64 = 8.0;
+/// Minimum samples of the render of equal error: one in either half.
+const SAMPLES_MIN: f64 = 2.0;
+
+/// Options of a race.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RaceOptions {
+    /// The engine, the same for all.
+    pub engine: EngineChoice,
+    /// Techniques that take part; the current document always does.
+    pub techniques: Vec<Technique>,
+    /// Engine time that each has, seconds.
+    pub seconds: f64,
+    /// The noise at which times are compared: 0.02 is 2 %.
+    pub noise: f64,
+    /// Length of a time slice.
+    pub slice: Duration,
+    /// Longest time for one reference, seconds.
+    pub reference_seconds: f64,
+    /// Cache of references.
+    pub cache: ReferenceCache,
+}
+
+impl RaceOptions {
+    /// Ten seconds for each, to 2 %.
+    pub fn new(engine: EngineChoice, techniques: Vec<Technique>) -> Self {
+        Self {
+            engine,
+            techniques,
+            seconds: 10.0,
+            noise: 0.02,
+            slice: Duration::from_millis(250),
+            reference_seconds: 60.0,
+            cache: ReferenceCache::of_user(),
+        }
+    }
+}
+
+/// Result of a race.
+#[derive(Clone, Debug, Serialize)]
+pub struct Race {
+    /// Machine of the race.
+    pub machine: Machine,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Engine time that each had, seconds.
+    pub seconds: f64,
+    /// The noise at which times are compared.
+    pub noise: f64,
+    /// Noise of the renders of equal error: the largest after equal time.
+    pub equal_error: f64,
+    /// Techniques in the given order, the current document first.
+    pub runners: Vec<Runner>,
+}
+
+/// A technique in a race.
+#[derive(Clone, Debug, Serialize)]
+pub struct Runner {
+    /// The technique, as it is written.
+    pub technique: Technique,
+    /// Label in tables and charts.
+    pub label: String,
+    /// Engine time that it had in fact, seconds.
+    pub seconds: f64,
+    /// Samples per pixel after it, in the mean.
+    pub samples_per_pixel: f64,
+    /// Estimated relative error, without a reference.
+    #[serde(rename = "told_noise")]
+    pub estimated_noise: f64,
+    /// Relative error against its own reference.
+    pub error: Distance,
+    /// Engine time in seconds to the race's noise: the error falls with the root of time. (A denoised image's error falls
+    /// more slowly: its time is overestimated if the noise was reached in the race, else underestimated.)
+    pub time_to_noise: f64,
+    /// The noise was not reached in the race: the time is extrapolated.
+    pub is_extrapolated: bool,
+    /// Relative distance of its limit from the most accurate setting's; for a denoised render, the denoiser's bias at the
+    /// race's end.
+    pub bias: Distance,
+    /// True if its limit is the most accurate setting's by construction: the bias is 0 and not measured.
+    pub is_unbiased: bool,
+    /// Estimated relative error of its own reference.
+    pub reference_noise: f64,
+    /// No other one is both less biased and faster.
+    pub is_on_front: bool,
+    /// The image after equal time.
+    #[serde(skip)]
+    pub equal_time: Image,
+    /// The image at the time of equal error.
+    #[serde(skip)]
+    pub equal_error: Image,
+    /// The time that this took, seconds.
+    pub equal_error_seconds: f64,
+}
+
+impl Runner {
+    /// The bias, or 0 if not significant.
+    pub fn resolved_bias(&self) -> f64 {
+        if self.is_unbiased || !self.bias.is_resolved() {
+            0.0
+        } else {
+            self.bias.value
+        }
+    }
+
+    /// Bias in a logarithmic chart: at least the smallest resolvable one.
+    pub fn charted_bias(&self, least: f64) -> f64 {
+        let value = if self.bias.is_resolved() || self.is_unbiased {
+            self.bias.value
+        } else {
+            self.bias.high
+        };
+        value.max(least)
+    }
+}
+
+impl Race {
+    /// Lower end of the chart's bias axis: half the smallest resolvable bias.
+    pub fn least_bias(&self) -> f64 {
+        let resolved = self.runners.iter().filter(|runner| !runner.is_unbiased);
+        let least = resolved
+            .map(|runner| runner.charted_bias(0.0))
+            .filter(|bias| *bias > 0.0);
+        (0.5 * least.fold(f64::INFINITY, f64::min)).clamp(1e-5, 1e-2)
+    }
+}
+
+/// A technique during a race.
+struct Lane {
+    technique: Technique,
+    document: Document,
+    session: Session,
+    step_denoiser: StepDenoiser,
+}
+
+impl Lane {
+    /// Its displayed image, and the denoised one, if any.
+    fn picture(&mut self) -> Result<(Arc<Image>, Option<Denoised>), StudyError> {
+        let denoised = self.step_denoiser.finish(&mut self.session)?;
+        let image = match &denoised {
+            Some(denoised) => denoised.image.clone(),
+            None => Arc::new(self.session.image()?),
+        };
+        Ok((image, denoised))
+    }
+}
+
+/// Runs a race. `watch` receives the progress and may stop it.
+///
+/// # Errors
+///
+/// Errors of rendering; [`StudyError::Stopped`]; [`StudyError::Black`].
+pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
+    let assets = Assets::default();
+    let mut lanes = lanes(document, options, &assets)?;
+    let references = 2.0 * (lanes.len() + 1) as f64;
+    let mut steps = Steps::new(watch, references + 2.0 * lanes.len() as f64);
+    let exact = references_of(document, &mut lanes, options, &mut steps)?;
+    run(&mut lanes, options, &mut steps)?;
+    let mut runners = Vec::new();
+    for (lane, own) in lanes.iter_mut().zip(&exact.own) {
+        runners.push(runner(lane, own, &exact.best, options)?);
+    }
+    let equal_error = runners.iter().map(|runner| runner.error.value).fold(0.0, f64::max);
+    for (lane, runner) in lanes.iter_mut().zip(&mut runners) {
+        let what = format!("Equal error: {}", runner.label);
+        let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
+        let samples = (runner.samples_per_pixel * share).max(SAMPLES_MIN);
+        rerun(lane, samples, &mut |done| steps.report(what.clone(), done))?;
+        let (image, denoised) = lane.picture()?;
+        let denoise_seconds = denoised.map_or(0.0, |denoised| denoised.seconds);
+        runner.equal_error = Image::clone(&image);
+        runner.equal_error_seconds = lane.session.progress().engine_seconds + denoise_seconds;
+        steps.finish(1.0);
+    }
+    mark_front(&mut runners);
+    let machine = lanes.first().map(|lane| Machine::of(lane.session.engine()));
+    Ok(Race {
+        machine: machine.ok_or(StudyError::Stopped)?,
+        width: document.render.width,
+        height: document.render.height,
+        seconds: options.seconds,
+        noise: options.noise,
+        equal_error,
+        runners,
+    })
+}
+
+/// The document as it is, and each technique that makes a difference to it or to another one.
+fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<Vec<Lane>, StudyError> {
+    let mut engine = options.engine;
+    let mut lanes: Vec<Lane> = Vec::new();
+    for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
+        let changed = without_target(&technique.apply(document));
+        let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
+        if lanes.iter().any(is_there) {
+            continue;
+        }
+        let mut session = Session::open_with(engine, assets.clone())?;
+        // All on the same engine.
+        engine = session.engine().kind.into();
+        if technique.is_double() && session.engine().kind == EngineKind::Gpu {
+            log::warn!("{technique}: the GPU shades in f32 only; left out");
+            continue;
+        }
+        session.set_precision(precision(technique));
+        lanes.push(Lane {
+            technique: technique.clone(),
+            step_denoiser: StepDenoiser::new(&changed),
+            document: changed,
+            session,
+        });
+    }
+    Ok(lanes)
+}
+
+fn precision(technique: &Technique) -> Precision {
+    if technique.is_double() {
+        Precision::Double
+    } else {
+        Precision::Single
+    }
+}
+
+/// Limits of several documents.
+struct Converged {
+    reference: Reference,
+    document: Document,
+    precision: Precision,
+}
+
+/// Limits of all techniques, and of the most accurate setting.
+struct Exact {
+    best: Arc<Converged>,
+    own: Vec<Arc<Converged>>,
+}
+
+fn references_of(
+    document: &Document,
+    lanes: &mut [Lane],
+    options: &RaceOptions,
+    steps: &mut Steps<'_, '_>,
+) -> Result<Exact, StudyError> {
+    let effort = Effort {
+        noise: options.noise / REFERENCE_GAIN,
+        seconds: options.reference_seconds,
+    };
+    let mut made: Vec<Arc<Converged>> = Vec::new();
+    let mut make = |session: &mut Session, document: &Document, precision: Precision, what: &str| {
+        let key = converged(document);
+        let known = made
+            .iter()
+            .find(|known| known.document == key && known.precision == precision);
+        if let Some(known) = known {
+            steps.finish(2.0);
+            return Ok::<_, StudyError>(known.clone());
+        }
+        let what = format!("Reference: {what}");
+        let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
+        on_progress(0.0)?;
+        let reference = options
+            .cache
+            .reference(session, document, precision, effort, &mut on_progress)?;
+        steps.finish(2.0);
+        let converged = Arc::new(Converged {
+            reference,
+            document: key,
+            precision,
+        });
+        made.push(converged.clone());
+        Ok(converged)
+    };
+    // In f64 if any technique uses it.
+    let is_double = lanes.iter().any(|lane| lane.technique.is_double());
+    let best_precision = if is_double {
+        Precision::Double
+    } else {
+        Precision::Single
+    };
+    let Some(first) = lanes.first_mut() else {
+        return Err(StudyError::Stopped);
+    };
+    let best = make(
+        &mut first.session,
+        &most_accurate(document),
+        best_precision,
+        "most accurate",
+    )?;
+    let mut own = Vec::new();
+    for lane in lanes {
+        let (precision, label) = (precision(&lane.technique), lane.technique.label());
+        own.push(make(&mut lane.session, &lane.document, precision, &label)?);
+    }
+    Ok(Exact { best, own })
+}
+
+/// Lets all of them take turns rendering until each has used its time.
+fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
+    for lane in lanes.iter_mut() {
+        steps.report(format!("Preparing: {}", lane.technique.label()), 0.0)?;
+        lane.session.set_precision(precision(&lane.technique));
+        warmed(&mut lane.session, &lane.document)?;
+    }
+    let count = lanes.len();
+    for round in 0.. {
+        let mut is_done = true;
+        for place in 0..count {
+            // Everyone is first at some time.
+            let lane = &mut lanes[(place + round) % count];
+            let left = options.seconds - lane.session.progress().engine_seconds;
+            if left <= 0.0 && lane.session.progress().mean_samples >= SAMPLES_MIN {
+                continue;
+            }
+            is_done = false;
+            let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
+            lane.session.step(slice)?;
+            // After each turn, not after each round: who stops it does not wait for the others' turns.
+            steps.report(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
+        }
+        if is_done {
+            break;
+        }
+    }
+    steps.finish(count as f64);
+    Ok(())
+}
+
+/// The sum of the shares of their time that all of them have had.
+fn share_of_all(lanes: &[Lane], seconds: f64) -> f64 {
+    let shares = lanes
+        .iter()
+        .map(|lane| lane.session.progress().engine_seconds / seconds);
+    shares.map(|share| share.min(1.0)).sum()
+}
+
+fn runner(
+    lane: &mut Lane,
+    own: &Arc<Converged>,
+    best: &Arc<Converged>,
+    options: &RaceOptions,
+) -> Result<Runner, StudyError> {
+    let progress = lane.session.progress();
+    let estimate = crate::analysis::noise::noise(lane.session.film()?);
+    let (equal_time, denoised) = lane.picture()?;
+    let error = own.reference.halves.error_of(&equal_time.luminance());
+    let denoised_bias = denoised.as_ref().and_then(|denoised| denoised.bias);
+    let is_unbiased = Arc::ptr_eq(own, best) && denoised.is_none();
+    let bias = match denoised_bias {
+        _ if is_unbiased => Distance::default(),
+        Some(bias) => bias,
+        None => own.reference.halves.distance(&best.reference.halves),
+    };
+    let denoised_error = denoised.as_ref().and_then(|denoised| denoised.error);
+    let seconds = progress.engine_seconds + denoised.as_ref().map_or(0.0, |denoised| denoised.seconds);
+    Ok(Runner {
+        label: lane.technique.label(),
+        technique: lane.technique.clone(),
+        seconds,
+        samples_per_pixel: progress.mean_samples,
+        estimated_noise: denoised_error.map_or(estimate.map_or(0.0, |noise| noise.relative), |error| error.value),
+        error,
+        time_to_noise: seconds * (error.value / options.noise).powi(2),
+        is_extrapolated: error.value > options.noise,
+        bias,
+        is_unbiased,
+        reference_noise: own.reference.noise,
+        is_on_front: false,
+        equal_time: Image::clone(&equal_time),
+        equal_error: Image::default(),
+        equal_error_seconds: 0.0,
+    })
+}
+
+/// Renders again up to `samples` per pixel on average; `report` receives the finished share.
+fn rerun(
+    lane: &mut Lane,
+    samples: f64,
+    report: &mut dyn FnMut(f64) -> Result<(), StudyError>,
+) -> Result<(), StudyError> {
+    let mut document = lane.document.clone();
+    if !document.render.is_adaptive() {
+        document.render.samples = samples.round() as u32;
+    }
+    lane.session.reset();
+    lane.session.submit(&document)?;
+    let mut step = Duration::from_millis(1);
+    loop {
+        let progress = lane.session.step(step)?;
+        report((progress.mean_samples / samples).min(1.0))?;
+        if progress.is_done || progress.mean_samples >= samples {
+            return Ok(());
+        }
+        // Short steps, so that the last one overshoots little.
+        let left = progress.engine_seconds * (samples / progress.mean_samples.max(1e-9) - 1.0);
+        step = Duration::from_secs_f64(left.clamp(1e-3, 0.2));
+    }
+}
+
+fn mark_front(runners: &mut [Runner]) {
+    let places: Vec<[f64; 2]> = runners
+        .iter()
+        .map(|runner| [runner.time_to_noise, runner.resolved_bias()])
+        .collect();
+    for (runner, on_front) in runners.iter_mut().zip(front(&places)) {
+        runner.is_on_front = on_front;
+    }
+}
+
+/// The Pareto front: points that no other point dominates.
+fn front(places: &[[f64; 2]]) -> Vec<bool> {
+    let is_better = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
+    places
+        .iter()
+        .map(|place| !places.iter().any(|other| is_better(other, place)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::front;
+
+    #[test]
+    fn only_what_nothing_else_betters_is_on_the_front() {
+        let places = [[1.0, 0.0], [0.5, 0.1], [2.0, 0.0], [0.6, 0.1], [0.1, 0.5]];
+        assert_eq!(front(&places), [true, true, false, false, true]);
+        // Equals do not better each other.
+        assert_eq!(front(&[[1.0, 1.0], [1.0, 1.0]]), [true, true]);
+    }
+}

@@ -1,0 +1,334 @@
+//! What a coat does to what lies below it, as OpenPBR 1.1 has it: index, darkening, roughness, absorption and emission by closed
+//! forms, the furnace, both engines, and files from before.
+
+use std::path::Path;
+
+use glossmith::document::{Background, CoatLobe, MaterialSettings, assign, compile};
+use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
+use glossmith::optics::layer::coat::inner_reflection;
+use glossmith::optics::vector::Vec3;
+use glossmith::study::evaluate::{Evaluation, Evaluator};
+use glossmith::render::{EngineChoice, Precision};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::preset::parse_material;
+
+use super::renders::{document, render};
+
+const EXACT: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Double);
+const ENGINES: [(EngineChoice, Precision); 2] = [(EngineChoice::Cpu, Precision::Single), EXACT];
+/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
+const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
+const COSINES: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
+
+/// A coat of weight 1 over a matt base.
+fn coated(base: f64, more: &[&str]) -> MaterialSettings {
+    let mut material = MaterialSettings::default();
+    let assignments = [
+        "base.metalness=0",
+        "specular.weight=0",
+        "specular.fresnel=dielectric",
+        "coat.weight=1",
+        "coat.roughness=0",
+        &format!("base.color={base},{base},{base}"),
+    ];
+    for assignment in assignments.iter().chain(more) {
+        assign(&mut material, assignment).unwrap();
+    }
+    material
+}
+
+fn direction(theta_deg: f64, phi_deg: f64) -> Vec3<f32> {
+    let ((sine, cosine), phi) = (theta_deg.to_radians().sin_cos(), phi_deg.to_radians());
+    Vec3::from_f64([sine * phi.cos(), sine * phi.sin(), cosine])
+}
+
+/// Pairs of directions all over the hemisphere.
+fn pairs() -> Vec<[Vec3<f32>; 2]> {
+    let views = [0.0, 35.0, 60.0, 80.0].map(|theta| direction(theta, 0.0));
+    let lights = [(5.0, 20.0), (35.0, 180.0), (50.0, 100.0), (75.0, 170.0), (85.0, 300.0)];
+    let lights = lights.map(|(theta, phi)| direction(theta, phi));
+    let all = views.into_iter().flat_map(|wo| lights.map(|wi| [wo, wi]));
+    all.collect()
+}
+
+fn evaluated(material: &MaterialSettings, (engine, precision): (EngineChoice, Precision)) -> Vec<Evaluation> {
+    let evaluator = Evaluator::open(material, engine, precision).unwrap();
+    evaluator.evaluate(&pairs()).unwrap()
+}
+
+/// The review of the physics, part 3.4: K of index 1.5, and what three bases keep.
+#[test]
+fn a_coat_darkens_a_matt_base_by_the_closed_form() {
+    let inner = inner_reflection(1.5);
+    assert!((inner - 0.5963).abs() < 1e-4, "{inner}");
+    for (base, expected) in [(0.8, 0.7719), (0.5, 0.5751), (0.2, 0.4583), (1.0, 1.0)] {
+        for (engine, precision) in ENGINES {
+            let albedo = |darkening: f64| {
+                let material = coated(base, &["coat.ior=1.5", &format!("coat.darkening={darkening}")]);
+                let evaluator = Evaluator::open(&material, engine, precision).unwrap();
+                COSINES.map(|cosine| evaluator.albedo(cosine, 1 << 12, 1).unwrap().reflected[1])
+            };
+            let (whole, half, none) = (albedo(1.0), albedo(0.5), albedo(0.0));
+            for (i, cosine) in COSINES.into_iter().enumerate() {
+                // The smooth coat is a mirror: its own light and that of the base.
+                let of_coat = fresnel_dielectric(cosine, 1.5);
+                let kept = [none[i], half[i], whole[i]].map(|albedo| (albedo - of_coat) / (1.0 - of_coat) / base);
+                let what = format!("{engine:?} {precision:?}, base {base}, {cosine}: {kept:?}");
+                // Tables of the coat's albedo are linear between 64 cosines.
+                let near = |found: f64, expected: f64| (found - expected).abs() < 3e-3;
+                assert!(near(kept[0], 1.0), "{what}");
+                assert!(near(kept[1], 0.5 + 0.5 * expected), "{what}");
+                assert!(near(kept[2], expected), "{what} for {expected}");
+            }
+        }
+    }
+}
+
+/// The specification blends the ratios of the indices: of 1.5 below 1.6.
+#[test]
+fn reflection_below_a_coat_is_relative_to_its_index() {
+    for (weight, expected) in [
+        (0.0, 0.04),
+        (0.25, 0.0268),
+        (0.5, 0.0154),
+        (0.75, 0.0065),
+        (1.0, 0.0010),
+    ] {
+        let more = ["specular.weight=1", "coat.ior=1.6", &format!("coat.weight={weight}")];
+        let (materials, _) = compile(&[coated(0.0, &more)]);
+        let found = fresnel_f0(f64::from(materials[0].reflecting_ior));
+        assert!((found - expected).abs() < 6e-5, "{weight}: {found} for {expected}");
+        // Light is refracted as without a coat.
+        assert_eq!(materials[0].ior, 1.5);
+        let off = [&more[..], &["coat.on_base=off"]].concat();
+        let (materials, _) = compile(&[coated(0.0, &off)]);
+        assert_eq!(materials[0].reflecting_ior, 1.5);
+    }
+    // The weight of the reflection scales it head-on, below a coat too.
+    let more = ["specular.weight=0.5", "specular.weight_in_index=on", "coat.ior=1.2"];
+    let (materials, _) = compile(&[coated(0.0, &more)]);
+    let found = fresnel_f0(f64::from(materials[0].reflecting_ior));
+    let expected = 0.5 * fresnel_f0(1.25_f64);
+    assert!((found - expected).abs() < 1e-6, "{found} for {expected}");
+}
+
+#[test]
+fn a_rough_coat_blurs_what_is_below() {
+    for (lobe, weight, expected) in [("ggx", 1.0, 0.604), ("ggx", 0.5, 0.452), ("geometric", 1.0, 0.604)] {
+        let more = [
+            "specular.weight=1",
+            &format!("specular.lobe={lobe}"),
+            "specular.roughness=0.3",
+            "coat.lobe=ggx",
+            "coat.roughness=0.5",
+            &format!("coat.weight={weight}"),
+        ];
+        let mut settings = coated(0.0, &more);
+        if lobe == "geometric" {
+            settings.roughness = glossmith::document::import::geometric_from_ggx(0.3);
+        }
+        let (materials, _) = compile(&[settings.clone()]);
+        let shown = MaterialSettings {
+            roughness: materials[0].roughness,
+            ..settings
+        };
+        let found = shown.ggx_roughness();
+        assert!(
+            (found - expected).abs() < 2e-3,
+            "{lobe} {weight}: {found} for {expected}"
+        );
+    }
+    // A smooth coat leaves it as it is, to the bit.
+    let more = ["specular.weight=1", "specular.roughness=0.3"];
+    let (materials, _) = compile(&[coated(0.0, &more)]);
+    assert_eq!(materials[0].roughness, 0.3);
+}
+
+/// Over a matt base the coloured coat's value over the white one's is its colour along both ways.
+#[test]
+fn the_colour_of_a_coat_deepens_along_the_way() {
+    const IOR: f64 = 1.6;
+    let color = [0.9, 0.5, 0.2];
+    for engine in ENGINES {
+        for weight in [1.0, 0.4] {
+            let of = |color: &str| {
+                let weight = format!("coat.weight={weight}");
+                let more = ["coat.ior=1.6", "coat.darkening=0", &weight, color];
+                evaluated(&coated(0.5, &more), engine)
+            };
+            let (white, found) = (of("coat.color=1,1,1"), of("coat.color=0.9,0.5,0.2"));
+            for ((pair, white), found) in pairs().iter().zip(white).zip(found) {
+                let [out, back] = pair.map(|direction| f64::from(direction.z));
+                let behind = |cosine: f64| (1.0 - (1.0 - cosine * cosine) / (IOR * IOR)).sqrt();
+                let way = 1.0 / behind(out) + 1.0 / behind(back);
+                let albedo = weight * fresnel_dielectric(out, IOR);
+                let share = (weight - albedo) / (1.0 - albedo);
+                for channel in 0..3 {
+                    let expected = 1.0 - share + share * f64::powf(color[channel], 0.5 * way);
+                    let ratio = found.value[channel] / white.value[channel];
+                    assert!(
+                        (ratio - expected).abs() < 2e-3,
+                        "{engine:?}, {weight}, {pair:?}: {ratio} for {expected}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// A coat dims what shines below it by its way to the viewer: seen from above, by the root of its colour.
+#[test]
+fn a_coloured_coat_dims_the_emission() {
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let assignments = [
+            "base.metalness=0",
+            "base.weight=0",
+            "specular.weight=0",
+            "emission.strength=2",
+            "coat.ior=1",
+            "coat.color=0.81,0.25,0.04",
+        ];
+        for (weight, expected) in [(0.0, [2.0, 2.0, 2.0]), (1.0, [1.8, 1.0, 0.4]), (0.5, [1.9, 1.5, 1.2])] {
+            let weight = format!("coat.weight={weight}");
+            let all = [&assignments[..], &[&weight]].concat();
+            let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &all);
+            document.lighting.strength = 0.0;
+            document.lighting.background = Background::Transparent;
+            // From straight above the way is one thickness.
+            let camera = &mut document.camera;
+            (camera.position, camera.target, camera.fov_deg) = (Some([0.0, 3.0, 0.0]), Some([0.0; 3]), 0.1);
+            document.render.samples = 4;
+            let film = render(choice, &document);
+            let middle = film.colors().next().unwrap();
+            for channel in 0..3 {
+                let found = middle[channel] / middle[3];
+                assert!(
+                    (found - expected[channel]).abs() < 0.01,
+                    "{choice:?}, {weight}: {middle:?} for {expected:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn white_stacks_with_a_coat_keep_all_light() {
+    let stacks: &[(&[&str], f64)] = &[
+        (&["coat.roughness=0.3"], 1.0),
+        (&["coat.weight=0.5", "coat.roughness=0.5"], 1.0),
+        (&["coat.lobe=ggx", "coat.roughness=0.5"], 1.0),
+        (&["coat.lobe=ggx", "coat.roughness=0.3", "coat.anisotropy=0.7"], 1.0),
+        (&["specular.weight=1", "coat.ior=1.2", "coat.roughness=0.2"], 1.0),
+        (&["specular.weight=1", "coat.ior=2.5", "coat.weight=0.7"], 1.0),
+        (
+            &[
+                "base.metalness=1",
+                "specular.weight=1",
+                "specular.fresnel=schlick",
+                "coat.ior=2",
+            ],
+            1.0,
+        ),
+        (
+            &[
+                "base.metalness=1",
+                "specular.weight=1",
+                "specular.fresnel=schlick",
+                "specular.lobe=ggx",
+                "specular.roughness=0.4",
+                "coat.roughness=0.5",
+            ],
+            1.0,
+        ),
+        (
+            &["specular.weight=1", "transmission.weight=1", "coat.roughness=0.2"],
+            1.0,
+        ),
+        (
+            &[
+                "specular.weight=1",
+                "transmission.weight=0.5",
+                "specular.lobe=ggx",
+                "specular.roughness=0.4",
+                "coat.ior=1.8",
+            ],
+            1.0,
+        ),
+        (&["fuzz.weight=0.5", "coat.roughness=0.2"], 1.0),
+    ];
+    for (more, expected) in stacks {
+        for (engine, precision) in ENGINES {
+            let evaluator = Evaluator::open(&coated(1.0, more), engine, precision).unwrap();
+            for cosine in COSINES {
+                let found = evaluator.albedo(cosine, 1 << 15, 1).unwrap();
+                let sum = found.reflected[1] + found.transmitted[1];
+                // The table of a coat's albedo has an error of its own, below that of its samples.
+                assert!((sum - expected).abs() < 2e-3, "{engine:?}, {more:?}, {cosine}: {sum}");
+            }
+        }
+    }
+}
+
+#[test]
+fn both_precisions_and_the_gpu_have_the_same_coat() {
+    let rich = [
+        "specular.weight=1",
+        "specular.roughness=0.4",
+        "coat.roughness=0.35",
+        "coat.weight=0.8",
+        "coat.color=0.9,0.5,0.2",
+    ];
+    let ggx = [&rich[..], &["coat.lobe=ggx", "coat.anisotropy=0.6"]].concat();
+    for material in [coated(0.6, &rich), coated(0.6, &ggx)] {
+        let [exact, single, gpu] = [EXACT, ENGINES[0], GPU].map(|engine| evaluated(&material, engine));
+        for (exact, others) in exact.iter().zip(std::iter::zip(single, gpu)) {
+            for found in [others.0, others.1] {
+                for channel in 0..3 {
+                    let apart = (found.value[channel] - exact.value[channel]).abs();
+                    assert!(apart < 1e-3 * exact.value[channel].max(1e-3), "{found:?} for {exact:?}");
+                }
+                let apart = (found.density - exact.density).abs();
+                assert!(apart < 1e-3 * exact.density.max(1e-3), "{found:?} for {exact:?}");
+            }
+        }
+    }
+}
+
+/// A coat of no weight is none, to the bit, whatever else is said of it.
+#[test]
+fn no_coat_changes_nothing() {
+    let gloss = ["specular.weight=1", "coat.weight=0"];
+    let rich = [
+        "coat.ior=3",
+        "coat.roughness=1",
+        "coat.color=0,0,0",
+        "coat.anisotropy=1",
+        "coat.lobe=ggx",
+    ];
+    let plain = evaluated(&coated(0.5, &gloss), ENGINES[0]);
+    let other = evaluated(&coated(0.5, &[&gloss[..], &rich].concat()), ENGINES[0]);
+    assert_eq!(plain, other);
+}
+
+/// Files from before OpenPBR's coat keep their picture; what says so has it.
+#[test]
+fn coats_of_older_files_leave_the_base_as_it_is() {
+    let read = |material: &str| {
+        let text = format!("{{\"glossmith\": 1, \"name\": \"a\", \"material\": {{{material}}}}}");
+        parse_material(Path::new("a.json"), text.as_bytes()).unwrap().value
+    };
+    let coat = |material: MaterialSettings| (material.coat_on_base, material.coat_darkening, material.coat_lobe);
+    assert_eq!(coat(read("\"coat.weight\": 0.5")), (false, 0.0, CoatLobe::Geometric));
+    assert_eq!(
+        coat(read(
+            "\"coat.weight\": 0.5, \"coat.on_base\": true, \"coat.darkening\": 0.5"
+        )),
+        (true, 0.5, CoatLobe::Geometric)
+    );
+    // Without a coat there is no picture to keep.
+    assert_eq!(
+        coat(read("\"specular.roughness\": 0.5")),
+        (true, 1.0, CoatLobe::Geometric)
+    );
+}
