@@ -7,11 +7,11 @@ use glossmith::document::{Background, CoatLobe, MaterialSettings, assign, compil
 use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
 use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;
-use glossmith::study::evaluate::{Evaluation, Evaluator};
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::preset::parse_material;
+use glossmith::study::evaluate::{Evaluation, Evaluator};
 
 use super::renders::{document, render};
 

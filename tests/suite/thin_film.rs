@@ -14,11 +14,11 @@ use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::real::Scalar;
 use glossmith::optics::thin_film::{FilmTerms, WAVELENGTHS_NM, film_path, index_of_colors};
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::render::evaluate::Evaluator;
-use glossmith::render::probe::Prober;
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::store::preset::{load_material, material_by_name};
 use glossmith::store::save_material;
+use glossmith::study::evaluate::Evaluator;
+use glossmith::study::probe::Prober;
 
 use crate::cli_support::Workplace;
 
@@ -295,7 +295,7 @@ fn a_soap_film_reflects_and_lets_through() {
     ]);
     for (engine, precision) in [CPU, EXACT, GPU] {
         let evaluator = Evaluator::open(&material, engine, precision).unwrap();
-        for cosine in [1.0, 0.5, -0.5] {
+        for cosine in [1.0_f64, 0.5, -0.5] {
             let found = evaluator.albedo(cosine, 1 << 13, 1).unwrap();
             for (i, wavelength) in WAVELENGTHS_NM.into_iter().enumerate() {
                 let film = film_for::<f64>(1.33, 300.0, wavelength);

@@ -80,7 +80,9 @@ fn another_studio_lights_the_scene() {
 fn a_map_is_put_beside_its_parameter() {
     let mut walk = Walk::new(|_| {});
     let file = walk.image("any.png");
-    let square = walk.harness.get_by_role_and_label(Role::Button, "Texture of the roughness");
+    let square = walk
+        .harness
+        .get_by_role_and_label(Role::Button, "Texture of the roughness");
     let at = square.rect().center();
     walk.harness.hover_at(at);
     walk.harness.run_steps(2);

@@ -124,7 +124,9 @@ pub fn darkened<T: Real>(material: &Material<T>, surface: &Surface<T>, cosine: T
     let terms = material.fresnel_terms(surface.is_inside);
     let of_dielectric = fresnel(&terms.of_dielectric(), one);
     // What is refracted into the solid is not lost.
-    let deeper = material.base_color.mix(material.transmission_tint, material.transmission_weight);
+    let deeper = material
+        .base_color
+        .mix(material.transmission_tint, material.transmission_weight);
     let base = fresnel(&terms, one) + (white - of_dielectric) * deeper * (one - material.metalness);
     // Light of a rough base meets the coat from all directions, that of a smooth one at the angle of the view.
     let rough = material.ggx_roughness;
