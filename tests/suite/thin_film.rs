@@ -221,37 +221,34 @@ fn sums(
 fn films_keep_all_light() {
     let above = [1.0, 0.7, 0.4, 0.15];
     let both = [1.0, 0.5, 0.2, -1.0, -0.85, -0.6];
-    let ggx = |roughness: f64| {
-        [
-            "specular.lobe=ggx".to_owned(),
-            format!("specular.roughness={roughness}"),
-        ]
-    };
-    let mut worst = (0.0_f64, String::new());
+    let shapes = [
+        vec!["specular.lobe=geometric", "specular.roughness=0.3"],
+        vec!["specular.roughness=0", "thin_film.ior=1.33", "thin_film.thickness=0.3"],
+        vec!["specular.roughness=0.2"],
+        vec![
+            "specular.roughness=0.2",
+            "thin_film.weight=0.5",
+            "thin_film.thickness=1",
+        ],
+        vec!["specular.roughness=0.5", "thin_film.ior=1.33"],
+    ];
+    let mut worst = 0.0_f64;
     for (base, cosines) in [(&DIFFUSE[..], &above[..]), (&METAL, &above), (&GLASS, &both)] {
-        for (shape, more) in [
-            (vec!["specular.roughness=0.3".to_owned()], &[][..]),
-            (ggx(0.0).to_vec(), &["thin_film.ior=1.33", "thin_film.thickness=0.3"]),
-            (ggx(0.2).to_vec(), &[]),
-            (ggx(0.2).to_vec(), &["thin_film.weight=0.5", "thin_film.thickness=1"]),
-            (ggx(0.5).to_vec(), &["thin_film.ior=1.33"]),
-        ] {
-            let shape: Vec<&str> = shape.iter().map(String::as_str).collect();
-            let material = filmed(base, &[&shape, more].concat());
+        for shape in &shapes {
+            let material = filmed(base, &[&["specular.lobe=ggx"], &shape[..]].concat());
+            // What facets of glass scatter more than once has one factor for all channels.
+            let is_rough_glass = material.transmits() && material.roughness > 0.3;
+            let tolerance = if is_rough_glass { 6e-3 } else { 2e-3 };
             for engine in [CPU, EXACT] {
                 for (found, cosine) in sums(&material, engine, cosines, 1 << 15).iter().zip(cosines) {
-                    for found in found {
-                        let off = (found - 1.0).abs();
-                        if off > worst.0 {
-                            worst = (off, format!("{base:?}, {shape:?}, {more:?} at {cosine}: {found}"));
-                        }
-                    }
+                    let off = found.map(|x| (x - 1.0).abs()).into_iter().fold(0.0, f64::max);
+                    assert!(off < tolerance, "{base:?}, {shape:?} at {cosine}: {found:?}");
+                    worst = worst.max(off);
                 }
             }
         }
     }
-    println!("{:.2e} off at most: {}", worst.0, worst.1);
-    assert!(worst.0 < 4e-3, "{}", worst.1);
+    println!("{worst:.2e} off at most");
 }
 
 /// Where the surface is partly metal, or a texture varies it, the base takes what the mean facet leaves.
