@@ -10,8 +10,7 @@ use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
 use crate::app::services::snapshots::PinChange;
 use crate::app::services::workspaces;
-use crate::document::ImportLobe;
-use crate::document::MaterialSettings;
+use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::shown::Shown;
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::environment::EnvironmentSource;
@@ -44,6 +43,8 @@ pub enum Action {
     UseMaterial(Box<MaterialSettings>),
     /// Asks for a table of colours for the image.
     ChooseLut,
+    /// Asks for the profile of the area light of this number.
+    ChooseProfile(usize),
     /// Asks for a reference image.
     ChooseReference,
     /// Asks for an image to assign to the selected material.

@@ -15,10 +15,9 @@ use super::signals::Signals;
 use super::waiting::Waiting;
 use crate::console::message;
 use crate::document::{Denoise, Document};
-use crate::render::StepDenoiser;
 use crate::render::denoise::Denoised;
 use crate::render::output::{self, Format, Rendered};
-use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
+use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, to_end};
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
@@ -153,12 +152,13 @@ fn render(
     if let (Some(signal), true) = (ended_by, progress.mean_samples == 0.0) {
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
-    let image = session.image()?;
+    let (image, lights) = (session.image()?, session.light_layers()?);
     let layers = targets.has_layers.then(|| session.layers()).transpose()?;
     let sums = targets.has_sums.then(|| session.kept_film()).transpose()?;
     let rendered = Rendered {
         denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
+        lights: &lights,
         sums: sums.as_ref(),
         ..Rendered::from(&image)
     };

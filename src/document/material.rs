@@ -191,6 +191,11 @@ impl MaterialSettings {
         }
     }
 
+    /// True where it emits light.
+    pub fn is_emissive(&self) -> bool {
+        self.emission_strength > 0.0 && self.emission_color.iter().any(|channel| *channel > 0.0)
+    }
+
     /// True where the specular lobe reflects anything.
     pub fn reflects(&self) -> bool {
         let is_spared_metal = self.metalness > 0.0 && !self.specular_on_metal;

@@ -7,12 +7,9 @@ use crate::endings::{MODELS, ending, has_ending};
 use crate::files::{Files, Import};
 use crate::model_error::ModelError;
 use crate::resource::Reach;
-use crate::scene::Framing;
-use crate::scene::Loading;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::TextureTarget;
-use crate::scene::{LIGHTS_MAX, LightKind, ModelLight};
-use crate::scene::{Model, ModelOptions, ModelSource, Texture};
+use crate::scene::{Framing, LIGHTS_MAX, LightKind, Loading, Model, ModelLight, ModelOptions, ModelSource, Texture};
 
 /// Fate of a kind of light.
 type LightFate = (Fate, &'static str, fn(&LightKind) -> bool);

@@ -1,7 +1,7 @@
 //! Errors of models, in one line each.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::endings::MODELS;
 use crate::scene::Cancelled;
@@ -48,4 +48,12 @@ pub enum ModelError {
     /// The scene has no triangles to render.
     #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
     NoTriangles { path: PathBuf },
+}
+
+impl ModelError {
+    /// Contents that break the rules of the format.
+    pub(crate) fn invalid(path: &Path, reason: impl ToString) -> Self {
+        let (path, reason) = (path.to_owned(), reason.to_string());
+        Self::Invalid { path, reason }
+    }
 }

@@ -6,17 +6,13 @@ use std::path::Path;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 
 use crate::model_error::ModelError;
-use crate::scene::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{Model, Slot};
+use crate::scene::{Loading, Model, Slot};
 
 /// Loads the contents of an STL file. Its Z is upwards, as in most programs that write them: it is turned to our +Y.
 pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
-    let invalid = |error: std::io::Error| ModelError::Invalid {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    };
+    let invalid = |error: std::io::Error| ModelError::invalid(path, error);
     let mut source = Cursor::new(bytes);
     let mut report = ImportReport::default();
     let mut read: Vec<stl_io::Triangle> = Vec::new();

@@ -103,6 +103,7 @@ effects! {
     Variance "variance";
     PictureLayers "picture-layers";
     Guides "guides" flag "PLAN_GUIDES";
+    LightGroups "light-groups" flag "PLAN_LIGHT_GROUPS";
     Denoising "denoising";
 }
 

@@ -39,6 +39,10 @@ pub const COAT_ABSORBS: u32 = 256;
 pub const COAT_IS_GGX: u32 = 512;
 /// Flag: a texture uses box projection.
 pub const HAS_BOX: u32 = 32;
+/// Flag: what it emits depends on the direction as the profile at `lobe_table` says.
+pub const HAS_PROFILE: u32 = 1024;
+/// The flags' bits from here on: the light group of what the material emits, see [`Material::light_group`].
+pub const LIGHT_GROUP_SHIFT: u32 = 24;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -158,7 +162,8 @@ material! {
         horizon: u32,
         /// [`Fresnel`] as a number.
         fresnel: u32,
-        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)).
+        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)); that of the
+        /// profile of a light with [`HAS_PROFILE`], which has no lobe.
         lobe_table: u32,
         /// Start of the albedo table.
         albedo_table: u32,
@@ -419,6 +424,12 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn has_flag(&self, flag: u32) -> bool {
         self.flags & flag != 0
+    }
+
+    /// Number of the light group of what it emits.
+    #[inline(always)]
+    pub fn light_group(&self) -> u32 {
+        self.flags >> LIGHT_GROUP_SHIFT
     }
 
     /// True if it varies over the surface: by a texture or vertex colours.

@@ -9,11 +9,10 @@ use crate::import;
 use crate::import::picture::read_texture;
 use crate::import::{Budget, ModelError};
 use crate::panics::lock;
-use crate::scene::AreaShape;
 use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
 use crate::scene::texture::{Pack, TextureAssignment, Textures};
-use crate::scene::{Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
+use crate::scene::{AreaShape, Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
 
 /// Key of a geometry: model, ground, area lights, hidden objects.
 type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);

@@ -9,8 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::background::Background;
 use super::picture_cache;
-use crate::import::environment::EnvironmentError;
-use crate::import::environment::load;
+use crate::import::environment::{EnvironmentError, load};
 use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
 
 /// Columns and rows of a thumbnail.

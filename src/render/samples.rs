@@ -4,8 +4,7 @@ use std::io;
 use std::sync::Arc;
 
 use super::background::{Background, Responder};
-use super::engine::EngineChoice;
-use super::engine::Sampler;
+use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};

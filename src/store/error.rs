@@ -1,7 +1,7 @@
 //! Why files cannot be read or written, and what to do.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Files larger than this many bytes are taken for something else.
 pub(super) const SIZE_MAX: u64 = 16 << 20;
@@ -41,6 +41,26 @@ pub enum FileError {
     /// The file cannot be written.
     #[error("{}: cannot be saved: {source}; check the folder's permissions and free space", path.display())]
     Write { path: PathBuf, source: io::Error },
+}
+
+impl FileError {
+    /// The error of a file that the system does not read.
+    pub(super) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        |source| Self::Read { path, source }
+    }
+
+    /// Contents out of range, with what would be right.
+    pub(super) fn content(path: &Path, reason: impl ToString) -> Self {
+        let (path, reason) = (path.to_owned(), reason.to_string());
+        Self::Content { path, reason }
+    }
+
+    /// The error of a file that the system does not write.
+    pub(super) fn writing(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        |source| Self::Write { path, source }
+    }
 }
 
 fn list(files: &[PathBuf]) -> String {

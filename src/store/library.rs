@@ -35,10 +35,7 @@ impl Entry {
 pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
     let files = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        other => other.map_err(|source| FileError::Read {
-            path: folder.to_owned(),
-            source,
-        })?,
+        other => other.map_err(FileError::reading(folder))?,
     };
     let paths = files.flatten().flat_map(|file| materials_at(&file.path()));
     let mut entries: Vec<Entry> = paths
@@ -77,7 +74,7 @@ fn file_within(home: &Path) -> Option<PathBuf> {
 /// # Errors
 /// [`FileError::Write`].
 pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileError> {
-    fs::create_dir_all(folder).map_err(cannot_write(folder))?;
+    fs::create_dir_all(folder).map_err(FileError::writing(folder))?;
     let stem = file_stem(&material.name);
     if material.user_textures.iter().next().is_none() {
         let path = free_path(folder, &stem, "json");
@@ -85,7 +82,7 @@ pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileEr
         return Ok(path);
     }
     let home = free_path(folder, &stem, HOME);
-    fs::create_dir_all(&home).map_err(cannot_write(&home))?;
+    fs::create_dir_all(&home).map_err(FileError::writing(&home))?;
     let material = with_copies(material, &home)?;
     let path = file_within(&home).unwrap_or(home);
     save_material(&path, &material)?;
@@ -105,7 +102,7 @@ fn with_copies(material: &MaterialSettings, home: &Path) -> Result<MaterialSetti
         }
         let part = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
         let copy = free_path(home, &part(texture.file.file_stem()), &part(texture.file.extension()));
-        fs::copy(&texture.file, &copy).map_err(cannot_write(&copy))?;
+        fs::copy(&texture.file, &copy).map_err(FileError::writing(&copy))?;
         copies.push((texture.file.clone(), copy));
     }
     let mut material = material.clone();
@@ -140,7 +137,7 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
         material.name = name.to_owned();
         let renamed = add(root(path), &material)?;
         // Not kept, so that what was removed before can still be restored.
-        fs::remove_file(path).map_err(cannot_write(path))?;
+        fs::remove_file(path).map_err(FileError::writing(path))?;
         return Ok(renamed);
     };
     // Moved, so that it keeps all that is in it.
@@ -200,19 +197,16 @@ pub fn remove(path: &Path) -> Result<Removed, FileError> {
     if let Some(folder) = own_folder(path) {
         let kept = root(path).join(REMOVED);
         if kept.exists() {
-            fs::remove_dir_all(&kept).map_err(cannot_write(&kept))?;
+            fs::remove_dir_all(&kept).map_err(FileError::writing(&kept))?;
         }
-        fs::rename(folder, &kept).map_err(cannot_write(folder))?;
+        fs::rename(folder, &kept).map_err(FileError::writing(folder))?;
         return Ok(Removed {
             path: path.to_owned(),
             kept: Kept::Folder(kept),
         });
     }
-    let bytes = fs::read(path).map_err(|source| FileError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
-    fs::remove_file(path).map_err(cannot_write(path))?;
+    let bytes = fs::read(path).map_err(FileError::reading(path))?;
+    fs::remove_file(path).map_err(FileError::writing(path))?;
     Ok(Removed {
         path: path.to_owned(),
         kept: Kept::Bytes(bytes),
@@ -247,11 +241,11 @@ pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
 
 /// Moves a folder for one material, whose file was `path`, and gives that the folder's name.
 fn moved_home(folder: &Path, path: &Path, home: &Path) -> Result<PathBuf, FileError> {
-    fs::rename(folder, home).map_err(cannot_write(home))?;
+    fs::rename(folder, home).map_err(FileError::writing(home))?;
     let moved = file_within(home).unwrap_or_else(|| home.to_owned());
     let before = home.join(path.file_name().unwrap_or_default());
     if before != moved {
-        fs::rename(&before, &moved).map_err(cannot_write(&moved))?;
+        fs::rename(&before, &moved).map_err(FileError::writing(&moved))?;
     }
     Ok(moved)
 }
@@ -277,11 +271,6 @@ pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
         .chain(others)
         .find(is_free)
         .unwrap_or(first)
-}
-
-fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
-    let path = path.to_owned();
-    move |source| FileError::Write { path, source }
 }
 
 #[cfg(test)]

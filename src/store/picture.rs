@@ -64,10 +64,7 @@ pub fn load_picture_document(path: &Path) -> Result<Loaded<Document>, FileError>
 
 /// The text of the document in an image.
 pub(super) fn document_text_in(path: &Path) -> Result<String, FileError> {
-    let file = resource::open(path).map_err(|source| FileError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let file = resource::open(path).map_err(FileError::reading(path))?;
     text_in(path, BufReader::new(file))
 }
 

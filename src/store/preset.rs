@@ -168,10 +168,7 @@ pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettin
             mark: MARK,
         });
     }
-    let mut material = MaterialSettings::try_from(object).map_err(|error| FileError::Content {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })?;
+    let mut material = MaterialSettings::try_from(object).map_err(|error| FileError::content(path, error))?;
     material.user_textures.map_files(file::named_in(path));
     warnings.extend(unknown_keys(&material).map(|warning| format!("{}: {warning}", path.display())));
     Ok(Loaded {

@@ -11,7 +11,7 @@ use super::error::SIZE_MAX;
 use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
 use super::{own, preset};
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, MaterialSettings, ProfileFile};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::{TextureTarget, UserTexture};
@@ -70,10 +70,7 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
         expected: "project",
         mark: MARK,
     })?;
-    let content = |reason: String| FileError::Content {
-        path: path.to_owned(),
-        reason,
-    };
+    let content = |reason: String| FileError::content(path, reason);
     let count = object.get("materials").and_then(Json::as_array).map_or(0, Vec::len);
     if count > MATERIALS_MAX {
         return Err(content(format!(
@@ -181,10 +178,7 @@ pub fn document_text(path: &Path, document: &Document) -> Result<String, FileErr
 fn document_object(path: &Path, document: &Document) -> Result<Map<String, Json>, FileError> {
     let mut document = document.clone();
     map_paths(&mut document, file::written_in(path));
-    let content = |reason: String| FileError::Content {
-        path: path.to_owned(),
-        reason,
-    };
+    let content = |reason: String| FileError::content(path, reason);
     let known = known_part(&document).map_err(content)?;
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
@@ -244,6 +238,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     }
     if let Some(file) = &mut document.view.lut {
         *file = map(file);
+    }
+    for light in &mut document.lighting.area_lights {
+        light.profile = light.profile.map(|profile| ProfileFile::new(&map(profile.path())));
     }
     if let Some(reference) = &mut document.view.reference {
         reference.file = map(&reference.file);

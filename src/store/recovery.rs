@@ -70,9 +70,9 @@ impl Slot {
             let lock_path = lock_path(&path);
             match OpenOptions::new().write(true).create_new(true).open(&lock_path) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => nanoseconds += 1,
-                Err(error) => return Err(cannot_write(&lock_path)(error)),
+                Err(error) => return Err(FileError::writing(&lock_path)(error)),
                 Ok(lock) => {
-                    lock.lock().map_err(cannot_write(&lock_path))?;
+                    lock.lock().map_err(FileError::writing(&lock_path))?;
                     return Ok(Self { path, _lock: lock });
                 }
             }
@@ -131,7 +131,7 @@ impl Slot {
     /// [`FileError::Write`] where the system doesn't let it.
     pub fn clear(&self) -> Result<(), FileError> {
         match fs::remove_file(&self.path) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(cannot_write(&self.path)(error)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(FileError::writing(&self.path)(error)),
             _ => Ok(()),
         }
     }
@@ -145,7 +145,7 @@ impl Slot {
         let _guard = guard(folder)?;
         self.clear()?;
         let lock_path = lock_path(&self.path);
-        fs::remove_file(&lock_path).map_err(cannot_write(&lock_path))
+        fs::remove_file(&lock_path).map_err(FileError::writing(&lock_path))
     }
 }
 
@@ -156,7 +156,7 @@ impl Slot {
 pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
     let _guard = guard(folder)?;
     let mut found = Vec::new();
-    for entry in fs::read_dir(folder).map_err(cannot_write(folder))?.flatten() {
+    for entry in fs::read_dir(folder).map_err(FileError::writing(folder))?.flatten() {
         let path = entry.path();
         if path.file_name() == Some(GUARD.as_ref()) || path.extension() != Some("lock".as_ref()) {
             continue;
@@ -235,12 +235,7 @@ fn guard(folder: &Path) -> Result<File, FileError> {
         file.lock()?;
         Ok(file)
     };
-    lock().map_err(cannot_write(&path))
-}
-
-fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
-    let path = path.to_owned();
-    move |source| FileError::Write { path, source }
+    lock().map_err(FileError::writing(&path))
 }
 
 #[cfg(test)]

@@ -36,7 +36,7 @@ pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Res
         drop(file);
         growing.take_the_place_of(&target)
     });
-    saved.map_err(cannot_write(path))
+    saved.map_err(FileError::writing(path))
 }
 
 /// Whether a file can be replaced, asked before the work that fills it.
@@ -46,7 +46,7 @@ pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Res
 pub fn check_saving(path: &Path) -> Result<(), FileError> {
     let target = target_of(path);
     let growing = check_target(&target).and_then(|()| Growing::beside(&target));
-    growing.map(drop).map_err(cannot_write(path))
+    growing.map(drop).map_err(FileError::writing(path))
 }
 
 /// Removes what programs that were killed have left half written in a folder. What others write now stays.
@@ -64,11 +64,6 @@ pub fn remove_leftovers(folder: &Path) {
             let _ = fs::remove_file(&path);
         }
     }
-}
-
-fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
-    let path = path.to_owned();
-    |source| FileError::Write { path, source }
 }
 
 /// The file itself, where the path is a link.

@@ -37,10 +37,7 @@ pub struct Pinned {
 pub fn list(folder: &Path) -> Result<(Vec<Pinned>, Vec<String>), FileError> {
     let files = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
-        other => other.map_err(|source| FileError::Read {
-            path: folder.to_owned(),
-            source,
-        })?,
+        other => other.map_err(FileError::reading(folder))?,
     };
     let (mut found, mut errors) = (Vec::new(), Vec::new());
     for file in files.flatten() {
@@ -62,15 +59,9 @@ pub fn list(folder: &Path) -> Result<(Vec<Pinned>, Vec<String>), FileError> {
 }
 
 fn read(path: &Path) -> Result<Pinned, FileError> {
-    let bytes = fs::read(path).map_err(|source| FileError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let bytes = fs::read(path).map_err(FileError::reading(path))?;
     let document = parse_picture_document(path, Cursor::new(&bytes))?.value;
-    let content = |reason: String| FileError::Content {
-        path: path.to_owned(),
-        reason,
-    };
+    let content = |reason: String| FileError::content(path, reason);
     let picture = image::load_from_memory_with_format(&bytes, image::ImageFormat::Png)
         .map_err(|error| content(format!("not a whole PNG image ({error}); delete it")))?
         .into_rgba8();
@@ -89,16 +80,10 @@ fn read(path: &Path) -> Result<Pinned, FileError> {
 /// # Errors
 /// [`FileError::Write`], or what is wrong with the image's size.
 pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: &[u8]) -> Result<PathBuf, FileError> {
-    fs::create_dir_all(folder).map_err(|source| FileError::Write {
-        path: folder.to_owned(),
-        source,
-    })?;
+    fs::create_dir_all(folder).map_err(FileError::writing(folder))?;
     let first = document.materials.first().map_or("", |material| material.name.as_str());
     let path = free_path(folder, &file_stem(first), "png");
-    let content = |reason: String| FileError::Content {
-        path: path.clone(),
-        reason,
-    };
+    let content = |reason: String| FileError::content(&path, reason);
     let picture = image::RgbaImage::from_raw(width, height, rgba.to_vec())
         .ok_or_else(|| content("the image's size is not that of its pixels; report it".to_owned()))?;
     let longest = width.max(height).max(1);
@@ -124,10 +109,7 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
         return Ok(path.to_owned());
     }
     let renamed = free_path(path.parent().unwrap_or(Path::new(".")), &stem, "png");
-    fs::rename(path, &renamed).map_err(|source| FileError::Write {
-        path: path.to_owned(),
-        source,
-    })?;
+    fs::rename(path, &renamed).map_err(FileError::writing(path))?;
     Ok(renamed)
 }
 

@@ -16,10 +16,7 @@ use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
-use crate::render::EngineChoice;
-use crate::render::Sampler;
-use crate::render::Session;
-use crate::render::SessionError;
+use crate::render::{EngineChoice, Sampler, Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 

@@ -8,8 +8,7 @@ use super::references::{Effort, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::render::StepDenoiser;
-use crate::render::{EngineChoice, Precision, Session, StopReason};
+use crate::render::{EngineChoice, Precision, Session, StepDenoiser, StopReason};
 
 /// Precision of the reference relative to the render, if time permits.
 const REFERENCE_GAIN: f64 = 4.0;

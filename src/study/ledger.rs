@@ -17,8 +17,7 @@ use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
-use crate::render::StepDenoiser;
-use crate::render::{EngineChoice, Session};
+use crate::render::{EngineChoice, Session, StepDenoiser};
 use crate::study::technique::{Setting, Technique, converged};
 
 /// Minimum samples per pixel of each render by default: two in either half.

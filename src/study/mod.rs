@@ -21,9 +21,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::document::Document;
-use crate::render::EngineInfo;
-use crate::render::Session;
-use crate::render::SessionError;
+use crate::render::{EngineInfo, Session, SessionError};
 use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};

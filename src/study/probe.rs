@@ -8,8 +8,7 @@ use crate::job::probe::{
     RandomQuestion, RayAnswer, RayQuestion,
 };
 use crate::optics::vector::Vec3;
-use crate::render::EngineChoice;
-use crate::render::device_for_functions;
+use crate::render::{EngineChoice, device_for_functions};
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {

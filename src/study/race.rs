@@ -14,10 +14,8 @@ use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::job::film::Image;
-use crate::render::Assets;
-use crate::render::StepDenoiser;
 use crate::render::denoise::Denoised;
-use crate::render::{EngineChoice, EngineKind, Precision, Session};
+use crate::render::{Assets, EngineChoice, EngineKind, Precision, Session, StepDenoiser};
 use crate::study::technique::{Technique, converged, most_accurate};
 
 /// Precision of references relative to the target noise, if time permits.

@@ -175,6 +175,7 @@ fn needing(effect: &str) -> Document {
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
         "spot" => document.lighting.area_lights.push(AreaLight::spot()),
         "guides" => document.view.denoise = Denoise::Fast,
+        "light-groups" => document.lighting.light_groups = true,
         "shadow-catcher" => {
             document.ground = true;
             document.lighting.ground.kind = GroundKind::ShadowCatcher;
@@ -207,7 +208,10 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         engine.submit(Arc::new(job)).unwrap();
         engine.step(Duration::from_secs(60), 4).unwrap();
         let film = engine.film().unwrap();
-        (film.luminance(), film.guides.clone())
+        let lights: Vec<_> = (0..film.light_groups())
+            .map(|group| film.light_image(group).pixels)
+            .collect();
+        (film.luminance(), (film.guides.clone(), lights))
     };
     for effect in EFFECTS.iter().filter(switched) {
         let is_of_texture =
@@ -235,15 +239,15 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             plan: Plan::general(),
             ..right
         };
-        let ((general, all_guides), (wrong, guides)) = (picture(general), picture(wrong));
+        let ((general, all_layers), (wrong, layers)) = (picture(general), picture(wrong));
         let [off, whole] = apart(&wrong, &general);
         println!(
             "without {}: {:.0} % of pixels off, the whole by {whole:.1e}",
             effect.name(),
             100.0 * off
         );
-        let shows = if effect.id == EffectId::Guides {
-            guides != all_guides
+        let shows = if [EffectId::Guides, EffectId::LightGroups].contains(&effect.id) {
+            layers != all_layers
         } else {
             off >= ROUNDED_PIXELS || whole >= ROUNDED_WHOLE
         };

@@ -332,6 +332,7 @@ fn calls_for(effect: &str) -> Calls {
         "alpha" => (metal, &[|d, _| d.materials[0].opacity = MOST]),
         "depth-of-field" => (metal, &[|d, _| d.camera.aperture = f64::from(LEAST)]),
         "firefly-clamp" => (metal, &[|d, _| d.render.firefly_clamp = Some(1e6)]),
+        "light-groups" => (metal, &[|d, _| d.lighting.light_groups = true]),
         "adaptive-sampling" => (
             metal,
             &[

@@ -5,10 +5,9 @@ use crate::app::desk::{PICTURE_SIZE, Resolution};
 use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
-use crate::app::sheets::book;
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
-use crate::app::sheets::palette;
+use crate::app::sheets::{book, palette};
 use crate::app::{App, denoised_by, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::EngineChoice;
@@ -38,6 +37,7 @@ impl App {
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
             Action::ChooseLut => self.dialogs.ask(Purpose::OpenLut, String::new(), ctx),
+            Action::ChooseProfile(light) => self.dialogs.ask(Purpose::LightProfile(light), String::new(), ctx),
             Action::ChooseReference => self.dialogs.ask(Purpose::Reference, String::new(), ctx),
             Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::App;
 use crate::app::actions::Action;
-use crate::import::{endings, environment};
-use crate::import::{holds_model, is_model};
+use crate::import::{endings, environment, holds_model, is_model};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::path_text::path_of_text;

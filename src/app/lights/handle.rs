@@ -369,6 +369,15 @@ mod tests {
         assert!(moved.distance > 1.5, "{moved:?}");
     }
 
+    fn place_of_handle(light: &AreaLight, handle: LightHandle) -> DVec2 {
+        let of_light = handles(light, &view(), 0.0).into_iter();
+        of_light
+            .filter(|(of, _)| *of == handle)
+            .map(|(_, at)| at)
+            .next()
+            .expect("it has one")
+    }
+
     #[test]
     fn the_edge_of_a_light_follows_its_handle() {
         let light = AreaLight {
@@ -379,11 +388,7 @@ mod tests {
             ..AreaLight::default()
         };
         for handle in [LightHandle::Width, LightHandle::Height] {
-            let at = handles(&light, &view(), 0.0)
-                .into_iter()
-                .find(|(of, _)| *of == handle)
-                .expect("it has one")
-                .1;
+            let at = place_of_handle(&light, handle);
             let arm = at - middle(&light).expect("it is there");
             let larger = pulled(&light, handle, &view(), &pull(at, 0.5 * arm));
             let sizes = |light: &AreaLight| match handle {
@@ -394,11 +399,7 @@ mod tests {
                 (sizes(&larger).0 - 1.5).abs() < 1e-9 && sizes(&larger).1 == 1.0,
                 "{handle:?}: {larger:?}"
             );
-            let now = handles(&larger, &view(), 0.0)
-                .into_iter()
-                .find(|(of, _)| *of == handle)
-                .expect("it has one")
-                .1;
+            let now = place_of_handle(&larger, handle);
             assert!(now.distance(at + 0.5 * arm) < 1e-6, "{handle:?} is at {now}");
             // Through the middle it does not turn inside out.
             assert!(sizes(&pulled(&light, handle, &view(), &pull(at, -3.0 * arm))).0 > 0.0);
@@ -422,13 +423,7 @@ mod tests {
         assert!((pulled(&light, LightHandle::Turn, &view(), &quarter).turn_deg - 90.0).abs() < 1e-9);
         let front = AreaLight { yaw_deg: 0.0, ..light };
         assert!((pulled(&front, LightHandle::Turn, &view(), &quarter).turn_deg + 90.0).abs() < 1e-9);
-        let of = |handle| {
-            handles(&light, &view(), 0.0)
-                .into_iter()
-                .find(|(of, _)| *of == handle)
-                .expect("it has one")
-                .1
-        };
+        let of = |handle| place_of_handle(&light, handle);
         for (handle, value) in [
             (
                 LightHandle::Distance,

@@ -40,65 +40,51 @@ pub(in crate::app) enum Purpose {
     WatchFolder,
     Texture(TextureTarget),
     OpenLut,
+    /// Of the area light of this number.
+    LightProfile(usize),
     Reference,
 }
 
+/// The kinds of files that a dialog shows: their name, and their endings.
+type Kinds = (&'static str, Vec<&'static str>);
+
 impl Purpose {
-    pub(in crate::app) fn title(self) -> &'static str {
+    /// Title of its dialog, whether that saves, and the kinds of files.
+    #[rustfmt::skip]
+    fn traits(self) -> (&'static str, bool, Kinds) {
+        let of_kind = |kind: FileKind| (kind.label(), kind.endings());
+        let images = || ("Images", FORMATS.map(|(ending, _)| ending).to_vec());
         match self {
-            Self::Open => "Open",
-            Self::SaveProject => "Save the project",
-            Self::OpenModel => "Open a model",
-            Self::OpenEnvironment => "Open an environment",
-            Self::OpenMaterial => "Open a material",
-            Self::OpenMeasured => "Open a measured material",
-            Self::SaveMaterial => "Save the material",
-            Self::Export => "Export for another program",
-            Self::SavePicture => "Save the image",
-            Self::SaveLayers => "Save the image with layers",
-            Self::QueuePicture => "Render to an image",
-            Self::SaveWindow => "Save a screenshot",
-            Self::WatchFolder => "Watch a folder",
-            Self::Texture(_) => "Choose a texture",
-            Self::OpenLut => "Choose a table of colours",
-            Self::Reference => "Choose a reference image",
+            Self::Open => ("Open", false, ("Projects, materials, models, environments, images with a document", endings(OPENED))),
+            Self::SaveProject => ("Save the project", true, ("Projects", vec!["json"])),
+            Self::OpenModel => ("Open a model", false, ("Models", FileKind::Model.endings())),
+            Self::OpenEnvironment => ("Open an environment", false, ("Environment maps", endings(PICTURE_KINDS))),
+            Self::OpenMaterial => ("Open a material", false, ("Materials", endings(MATERIAL_KINDS))),
+            Self::OpenMeasured => ("Open a measured material", false, of_kind(FileKind::Measured)),
+            Self::SaveMaterial => ("Save the material", true, ("Materials", vec!["json"])),
+            Self::Export => ("Export for another program", true, ("Files of other programs", exchange::endings_written())),
+            Self::SavePicture => ("Save the image", true, images()),
+            Self::SaveLayers => ("Save the image with layers", true, ("OpenEXR images", vec!["exr"])),
+            Self::QueuePicture => ("Render to an image", true, images()),
+            Self::SaveWindow => ("Save a screenshot", true, ("PNG images", vec!["png"])),
+            Self::WatchFolder => ("Watch a folder", false, ("Folders", Vec::new())),
+            Self::Texture(_) => ("Choose a texture", false, ("Images", endings(PICTURE_KINDS))),
+            Self::OpenLut => ("Choose a table of colours", false, of_kind(FileKind::ColorTable)),
+            Self::LightProfile(_) => ("Choose a light profile", false, of_kind(FileKind::LightProfile)),
+            Self::Reference => ("Choose a reference image", false, ("Images", endings(PICTURE_KINDS))),
         }
     }
 
-    /// The name of the kind of file, and its endings.
-    fn kind(self) -> (&'static str, Vec<&'static str>) {
-        match self {
-            Self::Open => (
-                "Projects, materials, models, environments, images with a document",
-                endings(OPENED),
-            ),
-            Self::SaveProject => ("Projects", vec!["json"]),
-            Self::OpenModel => ("Models", FileKind::Model.endings()),
-            Self::OpenEnvironment => ("Environment maps", endings(PICTURE_KINDS)),
-            Self::OpenMaterial => ("Materials", endings(MATERIAL_KINDS)),
-            Self::SaveMaterial => ("Materials", vec!["json"]),
-            Self::Export => ("Files of other programs", exchange::endings_written()),
-            Self::OpenMeasured => (FileKind::Measured.label(), FileKind::Measured.endings()),
-            Self::SavePicture | Self::QueuePicture => ("Images", FORMATS.map(|(ending, _)| ending).to_vec()),
-            Self::SaveLayers => ("OpenEXR images", vec!["exr"]),
-            Self::SaveWindow => ("PNG images", vec!["png"]),
-            Self::WatchFolder => ("Folders", Vec::new()),
-            Self::Texture(_) | Self::Reference => ("Images", endings(PICTURE_KINDS)),
-            Self::OpenLut => (FileKind::ColorTable.label(), FileKind::ColorTable.endings()),
-        }
+    pub(in crate::app) fn title(self) -> &'static str {
+        self.traits().0
     }
 
     pub(in crate::app) fn is_saving(self) -> bool {
-        matches!(
-            self,
-            Self::SaveProject
-                | Self::SaveMaterial
-                | Self::Export
-                | Self::SavePicture
-                | Self::SaveLayers
-                | Self::QueuePicture
-                | Self::SaveWindow
-        )
+        self.traits().1
+    }
+
+    fn kinds(self) -> Kinds {
+        self.traits().2
     }
 }
 
@@ -223,7 +209,7 @@ impl Dialogs {
         suggestion: &str,
         ctx: &egui::Context,
     ) -> Option<Receiver<Option<PathBuf>>> {
-        let (name, endings) = purpose.kind();
+        let (name, endings) = purpose.kinds();
         let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
         if !endings.is_empty() {
             dialog = dialog.add_filter(name, &endings);
@@ -351,7 +337,7 @@ impl PathField {
         ui.heading(self.purpose.title());
         widgets::note(ui, self.why.note());
         ui.add_space(theme::GAP);
-        let (_, endings) = self.purpose.kind();
+        let (_, endings) = self.purpose.kinds();
         let completions = completions(&self.text, &endings);
         let id = ui.make_persistent_id("path");
         let completes = ui.memory(|memory| memory.has_focus(id))

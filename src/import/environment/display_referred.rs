@@ -11,8 +11,7 @@ use super::gain_map;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
-use crate::picture::decode_image;
-use crate::picture::float_tiff;
+use crate::picture::{decode_image, float_tiff};
 use crate::scene::environment::EnvironmentEncoding;
 
 /// Decoding of integer values.
@@ -53,10 +52,7 @@ impl Codes {
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let bytes = source.bytes()?;
-    let damaged = |detail: String| EnvironmentError::Damaged {
-        path: path.to_owned(),
-        detail,
-    };
+    let damaged = |detail: String| EnvironmentError::damaged(path, detail);
     source.check_decoding(&bytes)?;
     // Some damaged files make the decoders panic.
     let floats =
@@ -123,19 +119,13 @@ fn image_error(path: &Path, error: ImageError) -> EnvironmentError {
     let path = path.to_owned();
     match error {
         ImageError::IoError(source) if source.kind() == std::io::ErrorKind::UnexpectedEof => {
-            EnvironmentError::Truncated {
-                path,
-                detail: "its pixels end too early".to_owned(),
-            }
+            EnvironmentError::truncated(&path, "its pixels end too early")
         }
         ImageError::Unsupported(error) => EnvironmentError::Unsupported {
             path,
             feature: error.to_string(),
             remedy: "re-save it as a PNG, .hdr or .exr",
         },
-        error => EnvironmentError::Damaged {
-            path,
-            detail: error.to_string(),
-        },
+        error => EnvironmentError::damaged(&path, error),
     }
 }

@@ -1,6 +1,6 @@
 //! Errors of environments from files, in one line each.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::budget::OverBudget;
 use crate::scene::Cancelled;
@@ -61,4 +61,18 @@ pub enum EnvironmentError {
     /// The texels make no map.
     #[error(transparent)]
     Map(#[from] MapError),
+}
+
+impl EnvironmentError {
+    /// The decoder found a contradiction.
+    pub(crate) fn damaged(path: &Path, detail: impl ToString) -> Self {
+        let (path, detail) = (path.to_owned(), detail.to_string());
+        Self::Damaged { path, detail }
+    }
+
+    /// The file ends too early.
+    pub(crate) fn truncated(path: &Path, detail: impl ToString) -> Self {
+        let (path, detail) = (path.to_owned(), detail.to_string());
+        Self::Truncated { path, detail }
+    }
 }

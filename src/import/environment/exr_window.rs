@@ -41,9 +41,6 @@ pub(super) fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
             path,
             detail: "bytes that it refers to are missing".to_owned(),
         },
-        error => EnvironmentError::Damaged {
-            path,
-            detail: error.to_string(),
-        },
+        error => EnvironmentError::damaged(&path, error),
     }
 }

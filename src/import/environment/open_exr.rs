@@ -48,10 +48,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     // Some damaged files fail assertions inside the crate instead of giving errors.
     contained(|| read_guarded(source)).unwrap_or_else(|| {
         let detail = "its pixels contradict each other".to_owned();
-        Err(EnvironmentError::Damaged {
-            path: path.to_owned(),
-            detail,
-        })
+        Err(EnvironmentError::damaged(path, detail))
     })
 }
 
@@ -100,10 +97,7 @@ fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
     let mut preamble = Vec::new();
     io(path, file.by_ref().take(8).read_to_end(&mut preamble))?;
     if preamble.is_empty() {
-        return Err(EnvironmentError::Truncated {
-            path: path.to_owned(),
-            detail: "it has no content".to_owned(),
-        });
+        return Err(EnvironmentError::truncated(path, "it has no content"));
     }
     let Some(version) = preamble.strip_prefix(&MAGIC) else {
         return Err(EnvironmentError::WrongContent {

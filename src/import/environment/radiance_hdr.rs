@@ -26,10 +26,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let bytes = source.bytes()?;
     if bytes.is_empty() {
-        return Err(EnvironmentError::Truncated {
-            path: path.to_owned(),
-            detail: "it has no content".to_owned(),
-        });
+        return Err(EnvironmentError::truncated(path, "it has no content"));
     }
     if !bytes.starts_with(b"#?") {
         return Err(EnvironmentError::WrongContent {

@@ -3,8 +3,7 @@
 //! Across the direction of anisotropy α is roughness², along it mix(roughness², 1, strength²).
 
 use crate::optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy};
-use crate::scene::texture::TextureTarget;
-use crate::scene::texture::texture_mean;
+use crate::scene::texture::{TextureTarget, texture_mean};
 use crate::scene::{Slot, Texture, TextureRef};
 
 /// Two widths in one of the two parametrisations.

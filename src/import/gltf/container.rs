@@ -113,11 +113,8 @@ impl Document {
     }
 
     /// An error about the contents.
-    pub fn invalid(&self, reason: impl Into<String>) -> ModelError {
-        ModelError::Invalid {
-            path: self.path.clone(),
-            reason: reason.into(),
-        }
+    pub fn invalid(&self, reason: impl ToString) -> ModelError {
+        ModelError::invalid(&self.path, reason)
     }
 
     /// An error about something that the file refers to.
@@ -459,10 +456,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usi
     let (Some(version), Some(length)) = (number(4), number(8)) else {
         return Err(cut(20));
     };
-    let invalid = |reason: String| ModelError::Invalid {
-        path: path.to_owned(),
-        reason,
-    };
+    let invalid = |reason: String| ModelError::invalid(path, reason);
     match bytes.get(..length as usize) {
         _ if version != 2 => Err(not_gltf(format!("it is of GLB version {version}"))),
         None => Err(cut(u64::from(length))),
@@ -512,9 +506,6 @@ fn parse(path: &Path, text: &[u8]) -> Result<Json, ModelError> {
         } else {
             format!("its JSON: {error}")
         };
-        ModelError::Invalid {
-            path: path.to_owned(),
-            reason,
-        }
+        ModelError::invalid(path, reason)
     })
 }

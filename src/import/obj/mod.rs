@@ -29,10 +29,7 @@ use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Te
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
-    let invalid = |reason: String| ModelError::Invalid {
-        path: path.to_owned(),
-        reason,
-    };
+    let invalid = |reason: String| ModelError::invalid(path, reason);
     let text = lines::of_model(bytes);
     let (read, mut report) = match parse(&text, files) {
         (Some(Ok(read)), report) => (read, report),

@@ -25,8 +25,7 @@ use crate::panics::contained;
 use crate::resource;
 use crate::scene::Texture;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::scale::nearest_of_16;
-use crate::scene::texture::scale::scaled_to;
+use crate::scene::texture::scale::{nearest_of_16, scaled_to};
 use crate::scene::texture::{TextureMean, texture_mean};
 use gpu::Texels;
 

@@ -13,10 +13,9 @@ use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessR
 use crate::model_error::ModelError;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::vec3;
-use crate::scene::Loading;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::{Model, Slot};
+use crate::scene::{Loading, Model, Slot};
 
 #[derive(Clone, Copy)]
 struct Vertex {
@@ -102,10 +101,7 @@ impl PropertyAccess for Skipped {
 
 /// Loads the contents of a PLY file.
 pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model, ModelError> {
-    let invalid = |reason: String| ModelError::Invalid {
-        path: path.to_owned(),
-        reason: reason.replace('\n', " "),
-    };
+    let invalid = |reason: String| ModelError::invalid(path, reason.replace('\n', " "));
     let read_header = |reader: &mut Reader<_>| {
         let read = Parser::<Vertex>::new().read_header(reader);
         read.map_err(|error| invalid(error.to_string()))

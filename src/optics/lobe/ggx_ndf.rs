@@ -1,7 +1,7 @@
 //! GGX as in [`super::ggx`], all normals sampled in proportion to D cosθ (Walter et al. 2007, eqs. 35 and 36): kept to
 //! be compared in noise.
 
-use super::{Facets, LobeShape, LobeTraits, Width, microfacet_alpha};
+use super::{Facets, LobeShape, LobeTraits, microfacet_alpha};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::microfacet::{distribution_weight, facet, ggx_distribution};
 use crate::optics::numeric::normalize_or;
@@ -10,15 +10,8 @@ use crate::optics::vector::{Vec3, vec3};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
-    // Single scattering.
-    is_hemispherical: true,
-    is_anisotropic: true,
     facets: Facets::All,
-    width: Width::Alpha,
-    has_curves: false,
-    weighs_one: false,
-    loses_light: true,
-    peak: 0.0,
+    ..super::ggx::TRAITS
 };
 
 /// The reflection at a normal drawn from D cosθ.

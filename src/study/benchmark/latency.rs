@@ -3,11 +3,10 @@
 use std::time::{Duration, Instant};
 
 use super::report::EngineReport;
-use super::{Place, Run, Slot};
+use super::{Done, Place, Run, Slot};
 use crate::document::Document;
 use crate::render::worker::{Activity, Pace, Worker};
 use crate::scene::environment::EnvironmentSource;
-use crate::study::StudyError;
 
 /// Viewport of a window of 1440 × 900, in pixels.
 pub const VIEWPORT: [u32; 2] = [806, 780];
@@ -62,12 +61,7 @@ fn awaited<A>(patience: Duration, look: impl Fn() -> Option<A>) -> Option<A> {
 }
 
 /// Measures a drag of the roughness.
-pub(super) fn edits(
-    run: &mut Run<'_, '_>,
-    place: &Place,
-    report: &mut EngineReport,
-    slot: Slot,
-) -> Result<(), StudyError> {
+pub(super) fn edits(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
     let name = "roughness dragged";
     let mut document = viewport(run.extent.viewport);
     let worker = match Worker::spawn(place.choice(), || {}) {

@@ -349,13 +349,11 @@ fn peak_memory_mib() -> Option<f64> {
     Some(kib / 1024.0)
 }
 
+/// What a step comes to.
+type Done = Result<(), StudyError>;
+
 /// Times of the paper's Fig. 8, without whole frames.
-fn sampling_times(
-    run: &mut Run<'_, '_>,
-    place: &Place,
-    report: &mut EngineReport,
-    slot: Slot,
-) -> Result<(), StudyError> {
+fn sampling_times(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
     let mut options = SamplingOptions {
         size: run.extent.sampling_size,
         turns: 5,

@@ -474,6 +474,7 @@ fn settings() -> Settings {
         light_choice: SCENE.light_choice(),
         bounces: 8,
         least_reflections: 0,
+        light_groups: 0,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,

@@ -1,7 +1,7 @@
 //! The textures of the selected material, each at its parameter: the model's, and those of the user's own in their place.
 
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use egui::Ui;
 
@@ -10,7 +10,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::{parameter_row, theme};
-use crate::document::{MaterialSettings, Parameter, TEXTURE_PARAMETERS, map_key, parameter};
+use crate::document::{MaterialSettings, PARAMETERS, Parameter, TEXTURE_PARAMETERS, map_key};
 use crate::scene::texture::TextureTarget;
 use crate::scene::{Model, Texture};
 
@@ -31,28 +31,43 @@ enum Asked {
     Remove,
 }
 
-/// The key of the parameter at which a target's texture stands: `base.color` for `base.color_map`. That of the normal has
-/// no number beside it, and stands at its switch.
-fn place(target: TextureTarget) -> &'static str {
-    let key = map_key(target).trim_end_matches("_map");
-    parameter(key)
-        .ok()
-        .or(switch(target))
-        .map_or(key, |parameter| parameter.key)
+/// The parameters of a target's texture.
+struct Place {
+    /// Where it stands: `base.color` for `base.color_map`. That of the normal has no number beside it, and stands at its
+    /// switch.
+    at: Option<&'static Parameter>,
+    /// Its switch, where it has one of its own: metalness has that of the roughness.
+    switch: Option<&'static Parameter>,
+}
+
+/// The places of all targets, in their order.
+static PLACES: LazyLock<Vec<Place>> = LazyLock::new(|| {
+    let of_key = |key: &str| PARAMETERS.iter().find(|parameter| parameter.key == key);
+    let place = |target: &TextureTarget| {
+        let key = map_key(*target).trim_end_matches("_map");
+        let switch = of_key(&format!("{key}_texture"));
+        let at = of_key(key).or(switch);
+        Place { at, switch }
+    };
+    TextureTarget::ALL.iter().map(place).collect()
+});
+
+/// The targets whose textures stand at parameters of a kind.
+fn targets(is_it: impl Fn(&Parameter) -> bool) -> impl Iterator<Item = TextureTarget> {
+    let there = TextureTarget::ALL.iter().zip(PLACES.iter());
+    there
+        .filter(move |(_, place)| place.at.is_some_and(&is_it))
+        .map(|(target, _)| *target)
 }
 
 /// The target whose texture stands at a parameter.
 pub(super) fn target_of(key: &str) -> Option<TextureTarget> {
-    TextureTarget::ALL.iter().copied().find(|target| place(*target) == key)
+    targets(|parameter| parameter.key == key).next()
 }
 
 /// The targets of a group of parameters.
 pub(super) fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
-    let is_there = move |key: &str| parameter(key).is_ok_and(|parameter| parameter.group == group);
-    TextureTarget::ALL
-        .iter()
-        .copied()
-        .filter(move |target| is_there(place(*target)))
+    targets(move |parameter| parameter.group == group)
 }
 
 /// Whether the selected slot has a texture there.
@@ -85,11 +100,6 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, mate
     }
 }
 
-/// The switch of a target, where it has one of its own: metalness has that of the roughness.
-fn switch(target: TextureTarget) -> Option<&'static Parameter> {
-    parameter(&map_key(target).replace("_map", "_texture")).ok()
-}
-
 fn row(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -97,7 +107,7 @@ fn row(
     picture: Option<&Picture>,
     material: &mut MaterialSettings,
 ) {
-    let switch = switch(target).filter(|_| picture.is_some());
+    let switch = PLACES[target as usize].switch.filter(|_| picture.is_some());
     let of_target = target.label().to_lowercase();
     let full = switch.map_or_else(|| format!("Texture of the {of_target}"), Parameter::full_name);
     let help = match switch {

@@ -23,8 +23,7 @@ use super::material_extensions::{
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::TextureTarget;
-use crate::scene::texture::{TextureMean, texture_mean};
+use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
 use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
 
 /// Largest index of refraction of a material.

@@ -11,14 +11,10 @@ use self::material::{ANISOTROPY, SlotTextures, extensions_used, material_json};
 use super::report::Entry;
 use super::surface::{Law, Surface, Takes};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
-use crate::document::ImportLobe;
 use crate::document::of_model::{import_report, materials_of};
-use crate::document::{Document, MaterialSettings};
-use crate::import::Budget;
-use crate::import::resource;
-use crate::import::{gltf_from_widths, load, load_with};
-use crate::scene::texture::TextureTarget;
-use crate::scene::texture::texture_mean;
+use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::import::{Budget, gltf_from_widths, load, load_with, resource};
+use crate::scene::texture::{TextureTarget, texture_mean};
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
 use crate::store::picture::png_bytes;
 

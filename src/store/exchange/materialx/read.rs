@@ -18,8 +18,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::scene::Loading;
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
-use crate::store::exchange::xml;
-use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried};
+use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried, xml};
 
 /// The materials of a document.
 ///
