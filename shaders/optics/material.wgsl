@@ -75,7 +75,7 @@ fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
     if PLAN_THIN_FILM == 0u {
         return FilmTerms();
     }
-    let before = select(material.ior / material.reflecting_ior, material.ior, is_within);
+    let before = select(material.ior / reflecting_ior_ahead(material, false), material.ior, is_within);
     return FilmTerms(material.film_weight, material.film_ior / before, material.film_path * before);
 }
 
