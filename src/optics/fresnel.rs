@@ -2,6 +2,7 @@
 
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
+use super::thin_film::{FilmTerms, film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
 use super::vector::{Vec3, vec3};
 use crate::named::named;
 
@@ -39,6 +40,10 @@ pub struct FresnelTerms<T> {
     pub eta: Vec3<T>,
     /// Conductor: imaginary part a channel, not negative.
     pub k: Vec3<T>,
+    /// True where the surface has a thin film.
+    pub has_film: bool,
+    /// The thin film.
+    pub film: FilmTerms<T>,
 }
 
 impl<T: Real> FresnelTerms<T> {
@@ -60,11 +65,14 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
             dielectric.mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
-            let channels = vec3(
+            let mut channels = vec3(
                 fresnel_conductor(cosine, terms.eta.x, terms.k.x),
                 fresnel_conductor(cosine, terms.eta.y, terms.k.y),
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
+            if terms.has_film {
+                channels = film_on_conductor(terms, cosine, channels);
+            }
             channels * terms.tint * terms.weight
         }
     }
@@ -79,7 +87,20 @@ pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2
         terms.tint * fresnel_dielectric(cosine, terms.ior)
     };
     let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-    [dielectric * terms.weight, metal]
+    let parts = [dielectric * terms.weight, metal];
+    if !terms.has_film {
+        return parts;
+    }
+    [
+        in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
+        in_unit(parts[1] + film_change_of_metal(terms, cosine)),
+    ]
+}
+
+/// Each channel brought into [0, 1].
+#[inline(always)]
+fn in_unit<T: Real>(share: Vec3<T>) -> Vec3<T> {
+    share.map(|x| x.clamp(T::zero(), T::one()))
 }
 
 /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
@@ -197,7 +218,7 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
 #[inline(always)]
 pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
     let white = Vec3::splat(T::one());
-    let left = match terms.model {
+    let mut left = match terms.model {
         Fresnel::None | Fresnel::Conductor => {
             let weight = T::one();
             white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
@@ -215,6 +236,9 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
             white - terms.tint + terms.tint * through
         }
     };
+    if terms.has_film && matches!(terms.model, Fresnel::Schlick | Fresnel::Dielectric) {
+        left += terms.tint.map(|x| x.min(T::one())) * film_passed(terms, cosine, terms.ior * behind);
+    }
     (white * (T::one() - terms.weight) + left * terms.weight).at_least_zero()
 }
 
