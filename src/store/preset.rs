@@ -48,10 +48,13 @@ pub const SHIPPED: &[(&str, &[&str])] = shipped! {
         "lacquered-walnut" "lacquered-oak" "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red";
     "Metals":
         "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
-        "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel";
+        "copper" "platinum" "titanium" "cast-iron" "mercury";
     "Glass and liquids":
         "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass"
-        "diamond" "soap-film";
+        "diamond";
+    "Films and anodised metals":
+        "soap-film" "oil-on-water" "tempered-steel" "anodised-titanium-blue" "anodised-titanium-gold"
+        "anodised-titanium-magenta";
 };
 
 /// The shipped materials, in the order of the menus.
