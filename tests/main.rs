@@ -144,8 +144,12 @@ mod killed;
 mod lanes;
 #[path = "suite/library.rs"]
 mod library;
+#[path = "suite/light_groups.rs"]
+mod light_groups;
 #[path = "suite/light_paths.rs"]
 mod light_paths;
+#[path = "suite/light_profiles.rs"]
+mod light_profiles;
 #[path = "suite/lights.rs"]
 mod lights;
 #[path = "suite/lobe_cases.rs"]

@@ -71,11 +71,11 @@ struct GuideSums {
     depth: f32,
 }
 
-// x: the first pixel row of the sums.
+// x: the first pixel row of the sums; y: their number of pixels.
 @group(1) @binding(0) var<uniform> band: vec4u;
 // The tiles of this dispatch, one texel each (see Tile); TILE_COLUMNS per row.
 @group(1) @binding(1) var tiles: texture_2d<u32>;
-// One element per pixel.
+// One element per pixel; then as many for each light group.
 @group(1) @binding(2) var<storage, read_write> color_sums: array<PixelColors>;
 @group(1) @binding(3) var<storage, read_write> statistics: array<PixelStatistics>;
 // Two elements per pixel: even-numbered samples, then odd-numbered ones.
@@ -83,6 +83,35 @@ struct GuideSums {
 
 // Side of a tile in pixels; a tile is a workgroup.
 const TILE_SIDE: u32 = 8u;
+
+// The light of each group that the path has found.
+var<private> group_light: array<vec3f, LIGHT_GROUPS_MAX>;
+
+// Adds light of a group's sources, where groups are summed apart.
+fn add_to_group(group: u32, light: vec3f) {
+    if PLAN_LIGHT_GROUPS == 1u {
+        group_light[group] += light;
+    }
+}
+
+fn clear_groups() {
+    if PLAN_LIGHT_GROUPS == 1u {
+        for (var group = 0u; group < globals.light_groups; group++) {
+            group_light[group] = vec3f(0.0);
+        }
+    }
+}
+
+// Adds the groups' light of a path to the sums of its pixel; `odd` is 1 for a sample of an odd number, else 0.
+fn sum_groups(index: u32, odd: f32) {
+    if PLAN_LIGHT_GROUPS == 1u {
+        for (var group = 0u; group < globals.light_groups; group++) {
+            let place = (1u + group) * band.y + index;
+            color_sums[place].all += vec4f(group_light[group], 0.0);
+            color_sums[place].odd += odd * vec4f(group_light[group], 0.0);
+        }
+    }
+}
 
 struct PathResult {
     radiance: vec3f,
@@ -119,6 +148,7 @@ fn emitted_light(
     if PLAN_SPOT == 1u {
         let cosine = dot(point.flat, point.surface.wo);
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
+        emission *= profile_share(material, point.surface.wo);
     }
     if PLAN_COAT_ABSORPTION == 1u {
         let cosine = dot(point.flat, point.surface.wo);
@@ -174,7 +204,7 @@ fn sample_light(point: SurfacePoint, is_environment: bool, xi: vec3f) -> LightSa
     }
     let sampled = environment_sample(xi, globals.environment_cells_size);
     let direction = environment_world_from_local(sampled.direction, globals.environment_rotation);
-    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30);
+    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30, ENVIRONMENT_GROUP);
 }
 
 // A shadow ray and the light that it may bring.
@@ -184,6 +214,8 @@ struct ShadowRay {
     // Contribution if unoccluded; for the environment without its radiance.
     value: vec3f,
     is_environment: bool,
+    // Number of the light's group.
+    group: u32,
     // True if known to be unoccluded: no traversal needed.
     is_known_miss: bool,
     // True until the ray has been traced.
@@ -306,6 +338,7 @@ fn hit_catcher(position: vec3f, direction: vec3f, state: RandomState) -> Catcher
 // Each look-up stands in the code once, because copies cost registers and compile time. Hence the loop over both rays.
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
+    clear_groups();
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
     // The path's state. A camera ray counts as a mirror's: light sampling could not have drawn it, so its MIS weight is 1.
@@ -376,7 +409,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             // Direct light of the last vertex: `bounce` reflections, as that vertex was number `bounce` - 1.
             if is_shadow_ray {
                 let arrives = select(vec3f(1.0), sky, shadow_ray.is_environment) * intersection.transmittance;
-                radiance += clamp_fireflies(shadow_ray.value * arrives, bounce, &clamped);
+                let light = clamp_fireflies(shadow_ray.value * arrives, bounce, &clamped);
+                radiance += light;
+                add_to_group(shadow_ray.group, light);
                 shadow_ray.is_pending = false;
             }
         }
@@ -387,7 +422,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         if hit.triangle == NO_HIT {
             // The catcher's reflection shows the background that the camera ray would have seen without it.
             if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_MIRRORED {
-                radiance += clamp_fireflies(catcher_hit.radiance, bounce, &clamped);
+                let light = clamp_fireflies(catcher_hit.radiance, bounce, &clamped);
+                radiance += light;
+                add_to_group(ENVIRONMENT_GROUP, light);
                 alpha = catcher_hit.alpha;
                 catcher_state = CATCHER_MISS;
                 break;
@@ -400,7 +437,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             } else {
                 contribution *= environment_mis_weight(ray.direction, lobe_density, was_mirror);
             }
-            radiance += clamp_fireflies(contribution, bounce, &clamped);
+            let light = clamp_fireflies(contribution, bounce, &clamped);
+            radiance += light;
+            add_to_group(ENVIRONMENT_GROUP, light);
             break;
         }
         var slot = slot_at(hit.triangle);
@@ -420,6 +459,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                     slot = globals.catcher_reflection_slot;
                 } else {
                     radiance = clamp_fireflies(catcher_hit.radiance, 0u, &clamped);
+                    add_to_group(ENVIRONMENT_GROUP, radiance);
                 }
                 if catcher_state == CATCHER_MISS {
                     alpha = catcher_hit.alpha;
@@ -450,7 +490,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         // Emission that the path hit by BSDF sampling, weighted against light sampling.
         if PLAN_EMISSION == 1u {
             let contribution = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
-            radiance += clamp_fireflies(contribution, bounce, &clamped);
+            let light = clamp_fireflies(contribution, bounce, &clamped);
+            radiance += light;
+            add_to_group(material.flags >> LIGHT_GROUP_SHIFT, light);
         }
         // The bounce limit. In glass it loses energy visibly, so the loss is reported.
         if bounce >= globals.bounces {
@@ -465,7 +507,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let transmits = material_transmits(material);
         let needs_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var is_lit = false;
-        var sampled_light = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+        var sampled_light = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0, ENVIRONMENT_GROUP);
         if may_sample_light() && samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
             let part = choose_environment(xi.x);
@@ -498,6 +540,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                     medium_towards(medium, point, slot, sampled_light.direction, transmits), sampled_light.distance,
                 );
             }
+            shadow_ray.group = sampled_light.group;
             shadow_ray.is_known_miss = is_known_miss(point, sampled_light.direction);
             shadow_ray.is_pending = true;
         }
@@ -537,6 +580,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     }
     // Over a transparent background, the catcher's light is its alpha. A render of a part of the light has no shadow.
     if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_SHADOW_ALPHA {
+        clear_groups();
         let covered = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
         return PathResult(vec3f(0.0), covered, rays, clamped, cut, guides);
     }
@@ -569,6 +613,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             let odd = f32(sample % 2u);
             colors.all += vec4f(path.radiance, path.alpha);
             colors.odd += odd * vec4f(path.radiance, 1.0);
+            sum_groups(index, odd);
             sums.luminance_squared += y * y * vec2f(1.0, odd);
             sums.kept_dropped.x += 1.0;
             sums.rays_clamped.y += path.clamped;

@@ -55,8 +55,8 @@ struct Globals {
     camera_medium: u32,
     // From this slot on the camera does not see surfaces.
     first_hidden_slot: u32,
-    // To a multiple of 16 bytes.
-    unused: u32,
+    // Light groups that are summed apart.
+    light_groups: u32,
     // 1: coarse triangles are rounded according to their normals.
     rounds_surfaces: u32,
     // Throughput limit of Russian roulette for paths with few rough bounces.
@@ -66,7 +66,7 @@ struct Globals {
 // Bits of a material's flags: vertex attributes, whether the reflection's weight and tint spare metals,
 // whether multiple scattering between facets is compensated, whether a texture uses box projection,
 // whether the dielectric's index has the weight in it, and whether the coat changes what lies below it, absorbs by the way of
-// the light and is GGX.
+// the light and is GGX; whether the emission has a profile.
 const VERTEX_BASE: u32 = 1u;
 const VERTEX_EMISSION: u32 = 2u;
 const VERTEX_OPACITY: u32 = 4u;
@@ -77,6 +77,9 @@ const WEIGHS_INDEX: u32 = 64u;
 const COATS_BASE: u32 = 128u;
 const COAT_ABSORBS: u32 = 256u;
 const COAT_IS_GGX: u32 = 512u;
+const HAS_PROFILE: u32 = 1024u;
+// The bits above hold the light group of what the material emits.
+const LIGHT_GROUP_SHIFT: u32 = 24u;
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {

@@ -11,6 +11,8 @@ struct LightSample {
     radiance: vec3f,
     // Length of the shadow ray: it ends just before the position, so that the triangle itself is not hit.
     distance: f32,
+    // Number of its light group.
+    group: u32,
 }
 
 // Keeps densities finite where a triangle is seen edge-on.
@@ -55,13 +57,13 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
         radiance = emission_at(material, uvs, vertex_factors(material, triangle, weights));
     }
     if PLAN_SPOT == 1u {
-        radiance *= spot_share(material, -dot(normal, direction));
+        radiance *= spot_share(material, -dot(normal, direction)) * profile_share(material, -direction);
     }
     if PLAN_COAT_ABSORPTION == 1u {
         var coated = material;
-        if PLAN_COAT_TEXTURES == 1u && material.coat_texture != NO_TEXTURE {
+        if PLAN_COAT_TEXTURES == 1u {
             let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
-            coated.coat_weight *= texture_lookup(material.coat_texture, uvs).x;
+            coated = textured_material(material, uvs, vec3f(1.0));
         }
         let facing = -dot(normal, direction);
         radiance *= coat_over_emission(coated, facing, facing < 0.0);
@@ -70,6 +72,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
         direction, light_density(material.light_luminance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
+        material.flags >> LIGHT_GROUP_SHIFT,
     );
 }
 
@@ -77,6 +80,64 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
 fn spot_share(material: Material, cosine: f32) -> f32 {
     let ramp = clamp(cosine * material.spot_scale + material.spot_offset, 0.0, 1.0);
     return ramp * ramp;
+}
+
+// A place among ascending angles: the last one not above it, at most the last but one, and the share of the way to the next.
+struct AngleCell {
+    low: u32,
+    beyond: f32,
+}
+
+fn angle_cell(table: u32, first: u32, count: u32, angle: f32) -> AngleCell {
+    var low = 0u;
+    var high = count - 1u;
+    while high - low > 1u {
+        let middle = (low + high) / 2u;
+        if angle < table_number(table, first + middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    let start = table_number(table, first + low);
+    let beyond = (angle - start) / (table_number(table, first + high) - start);
+    return AngleCell(low, clamp(beyond, 0.0, 1.0));
+}
+
+// Numbers of a profile's table before its angles.
+const PROFILE_AXES_LENGTH: u32 = 12u;
+
+// The radiance in a unit direction away from a light over its mean, by the table of its profile; 1 without one.
+fn profile_share(material: Material, direction: vec3f) -> f32 {
+    if (material.flags & HAS_PROFILE) == 0u {
+        return 1.0;
+    }
+    let table = material.lobe_table;
+    let axis = table_numbers(table, 0u);
+    let width = table_numbers(table, 1u);
+    let across = dot(width.xyz, direction);
+    let up = dot(table_numbers(table, 2u).xyz, direction);
+    let aside = sqrt(across * across + up * up);
+    let rows = u32(axis.w);
+    let columns = u32(width.w);
+    let vertical = min(arctan2(aside, dot(axis.xyz, direction)) * (180.0 / PI), 180.0);
+    let last = table_number(table, PROFILE_AXES_LENGTH + rows - 1u);
+    if vertical < table_number(table, PROFILE_AXES_LENGTH) || vertical > last {
+        return 0.0;
+    }
+    let row = angle_cell(table, PROFILE_AXES_LENGTH, rows, vertical);
+    let horizontals = PROFILE_AXES_LENGTH + rows;
+    var column = AngleCell(0u, 0.0);
+    if columns > 1u && aside > 0.0 {
+        let turned = arctan2(up, across) * (180.0 / PI);
+        column = angle_cell(table, horizontals, columns, select(turned, turned + 360.0, turned < 0.0));
+    }
+    var shares = vec2f(0.0);
+    for (var side = 0u; side < 2u; side++) {
+        let place = horizontals + columns + min(column.low + side, columns - 1u) * rows + row.low;
+        shares[side] = mix(table_number(table, place), table_number(table, place + 1u), row.beyond);
+    }
+    return mix(shares.x, shares.y, column.beyond);
 }
 
 // Density per steradian of light_sample for a position on a material of this luminance, at this cosine and distance.

@@ -43,6 +43,8 @@ pub enum Action {
     UseMaterial(Box<MaterialSettings>),
     /// Asks for a table of colours for the image.
     ChooseLut,
+    /// Asks for the profile of the area light of this number.
+    ChooseProfile(usize),
     /// Asks for a reference image.
     ChooseReference,
     /// Asks for an image to assign to the selected material.

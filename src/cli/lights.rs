@@ -3,9 +3,14 @@
 use std::ops::RangeInclusive;
 
 use super::parse::{number_in, numbers_in};
+use crate::document::light_groups::NAME_MAX;
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, LIGHT_PARAMETERS, Parameter, range};
+use crate::document::{
+    AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, range,
+};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
+use crate::scene::path_text::path_of_text;
+use crate::store::{FileError, light_profile};
 
 /// Luminous flux of a light in lumens, or illuminance of a sun in lux.
 const POWER: RangeInclusive<f64> = 0.0..=1e12;
@@ -26,6 +31,12 @@ impl LightArgument {
             light.set_power(power, radius_m);
         }
         light
+    }
+
+    /// Whether its profile can be read.
+    pub(super) fn check_profile(&self) -> Result<(), FileError> {
+        let profile = self.light.profile;
+        profile.map_or(Ok(()), |file| light_profile::load(file.path()).map(drop))
     }
 }
 
@@ -78,6 +89,9 @@ fn with_words(light: AreaLight, text: &str) -> Result<LightArgument, String> {
     for word in &words {
         put_word(&mut argument, word)?;
     }
+    if argument.light.profile.is_some() && !argument.light.is_sphere() {
+        return Err("profile: only a sphere has one; give --area-light with the word sphere".to_owned());
+    }
     Ok(argument)
 }
 
@@ -100,6 +114,8 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
     };
     match word {
         "temperature" => light.color = color_of_temperature(value)?,
+        "group" => light.group = group_name(value)?,
+        "profile" => light.profile = Some(ProfileFile::new(&path_of_text(value))),
         "power" => {
             let power = number_in(POWER)(value).map_err(|expected| format!("power={value}: {expected}"))?;
             argument.power = Some(power);
@@ -129,9 +145,40 @@ fn expected(light: &AreaLight) -> String {
         _ => "triangle, disc, sphere, ",
     };
     format!(
-        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power",
-        words.join(", ")
+        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power, group{}",
+        words.join(", "),
+        if light.is_sphere() { ", profile" } else { "" }
     )
+}
+
+/// The name of a light group.
+fn group_name(text: &str) -> Result<GroupName, String> {
+    let name = GroupName::new(text);
+    if name.is_empty() || name.as_str() != text {
+        return Err(format!(
+            "{text}: give a group's name of at most {NAME_MAX} letters, digits, - and _"
+        ));
+    }
+    Ok(name)
+}
+
+/// A group's name, a factor of its light, and perhaps a colour or its temperature.
+pub(super) fn light_mix(text: &str) -> Result<LightMix, String> {
+    let (name, factors) = text
+        .split_once('=')
+        .ok_or_else(|| format!("{text}: write GROUP=FACTOR, such as key=0.5 or key=0.5,3200K"))?;
+    let (factor, color) = factors.split_once(',').unwrap_or((factors, ""));
+    let color = match color {
+        "" => [1.0; 3],
+        temperature if temperature.ends_with('K') => color_of_temperature(temperature)?,
+        color => parse_color(color).map_err(|error| error.to_string())?,
+    };
+    let factor = number_in(range::LIGHT_MIX)(factor).map_err(|expected| format!("{factor}: {expected}"))?;
+    Ok(LightMix {
+        group: group_name(name)?,
+        factor: factor as f32,
+        color,
+    })
 }
 
 /// The colour of a body that shines at a temperature, as in 3200K.

@@ -152,12 +152,13 @@ fn render(
     if let (Some(signal), true) = (ended_by, progress.mean_samples == 0.0) {
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
-    let image = session.image()?;
+    let (image, lights) = (session.image()?, session.light_layers()?);
     let layers = targets.has_layers.then(|| session.layers()).transpose()?;
     let sums = targets.has_sums.then(|| session.kept_film()).transpose()?;
     let rendered = Rendered {
         denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
+        lights: &lights,
         sums: sums.as_ref(),
         ..Rendered::from(&image)
     };

@@ -12,7 +12,7 @@ use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::of_model::{import_report, lights_left_out, materials_of};
-use crate::document::{Background, Document, ImportLobe, ParameterError, range};
+use crate::document::{Background, Document, GroupName, ImportLobe, LightMix, ParameterError, range};
 use crate::import::is_model;
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
@@ -59,7 +59,7 @@ pub struct SceneArguments {
     environment_encoding: Option<EnvironmentEncoding>,
     /// A rectangle (triangle, disc, sphere) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow, and WORD=VALUE as of
-    /// --spot. May be repeated, 64 lights in all.
+    /// --spot. A sphere may have a light profile (profile=FILE.ies). May be repeated, 64 lights in all.
     #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
@@ -70,6 +70,9 @@ pub struct SceneArguments {
     /// or power (lux, the same). May be repeated.
     #[arg(long = "sun", value_name = "WORD=VALUE,…", value_parser = lights::sun, allow_hyphen_values = true)]
     suns: Vec<LightArgument>,
+    /// Multiply the light of a group by a factor and a colour after rendering; needs --light-groups. May be repeated.
+    #[arg(long = "light-mix", value_name = "GROUP=FACTOR[,#rrggbb|,3200K]", value_parser = lights::light_mix)]
+    light_mix: Vec<LightMix>,
     /// What the camera sees where it hits nothing [default: environment].
     #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Option<Background>,
@@ -77,8 +80,8 @@ pub struct SceneArguments {
     /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
     material: Option<String>,
-    /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
-    /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
+    /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission, coat, coat-roughness,
+    /// coat-color or coat-normal. SLOT is a material's name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
     /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
     #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::argument())]
     textures: Vec<TextureArgument>,
@@ -151,6 +154,7 @@ impl SceneArguments {
         for assignment in &self.assignments {
             document.assign(assignment)?;
         }
+        self.put_light_mix(&mut document)?;
         document.check()?;
         self.check_textures(&document, session)?;
         Ok(document)
@@ -232,6 +236,7 @@ impl SceneArguments {
         }
         let radius_m = model.bounding_radius() * self.unit_m(document)?;
         let given = [&self.area_lights, &self.spots, &self.suns].into_iter().flatten();
+        given.clone().try_for_each(LightArgument::check_profile)?;
         document
             .lighting
             .area_lights
@@ -249,6 +254,22 @@ impl SceneArguments {
         }
         lighting.environment_encoding = self.environment_encoding.unwrap_or(lighting.environment_encoding);
         lighting.background = self.background.unwrap_or(lighting.background);
+    }
+
+    /// The mix of light groups, each of which must be there.
+    fn put_light_mix(&self, document: &mut Document) -> anyhow::Result<()> {
+        let names = document.light_groups();
+        for mix in &self.light_mix {
+            if !names.contains(&mix.group) {
+                let all: Vec<_> = names.iter().map(GroupName::as_str).collect();
+                match all[..] {
+                    [] => bail!("--light-mix {}: add --light-groups", mix.group),
+                    _ => bail!("--light-mix {}: no such group; there are {}", mix.group, all.join(", ")),
+                }
+            }
+            document.set_light_mix(*mix);
+        }
+        Ok(())
     }
 
     fn put_view(&self, document: &mut Document) -> anyhow::Result<()> {

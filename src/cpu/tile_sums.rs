@@ -67,9 +67,10 @@ impl<'a> TileSums<'a> {
         self.add_more([first, count], results);
     }
 
-    /// Adds the optional sums: coverage, guides and clamped luminance.
+    /// Adds the optional sums: coverage, guides, light groups and clamped luminance.
     fn add_more<S: Scalar>(&mut self, [first, count]: [u32; 2], results: &Results<S>) {
-        if !self.film.extras().coverage && !results.has_extras() {
+        let extras = self.film.extras();
+        if !extras.coverage && extras.light_groups == 0 && !results.has_extras() {
             return;
         }
         for sample in 0..count {
@@ -81,11 +82,13 @@ impl<'a> TileSums<'a> {
                         continue;
                     }
                     self.film.add_coverage(pixel, found.alpha.to_f64());
+                    let half = (first + sample) as usize % 2;
+                    self.film.add_lights(pixel, half, results.groups(path));
                     self.film.costs[0].clamped += found.clamped.to_f64();
                     if first + sample < GUIDE_SAMPLES
                         && let Some(guides) = self.film.guides.get_mut(pixel)
                     {
-                        guides[(first + sample) as usize % 2].add(&found.guides);
+                        guides[half].add(&found.guides);
                     }
                 }
             }

@@ -5,12 +5,12 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialSettings, range};
+use super::{GroupName, MaterialSettings, ProfileFile, range};
 use crate::named::named;
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::NearLight;
-use crate::scene::{AreaShape, Outline};
+use crate::scene::{AreaFrame, AreaShape, Outline};
 
 /// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
 pub const SUN_DISTANCE: f64 = 1e4;
@@ -49,6 +49,12 @@ pub struct AreaLight {
     pub color: [f32; 3],
     /// Radiance of white; a sun's irradiance at the model.
     pub strength: f32,
+    /// The file of its intensities by direction, which a sphere alone takes; the power is as without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileFile>,
+    /// Its light group; without a name that of its kind, see [`AreaLight::group_name`].
+    #[serde(skip_serializing_if = "GroupName::is_empty")]
+    pub group: GroupName,
     /// It shines and throws shadows, but the camera does not see it, except in mirrors and through glass.
     #[serde(rename = "hidden_from_camera", skip_serializing_if = "std::ops::Not::not")]
     pub is_hidden: bool,
@@ -73,6 +79,8 @@ impl Default for AreaLight {
             angle_deg: 0.53,
             color: [1.0; 3],
             strength: 10.0,
+            profile: None,
+            group: GroupName::default(),
             is_hidden: false,
             is_muted: false,
         }
@@ -103,6 +111,11 @@ impl AreaLight {
     /// Whether it sends its light into a cone.
     pub fn is_spot(&self) -> bool {
         self.shape == AreaLightShape::Spot
+    }
+
+    /// Whether its light depends on the direction as a file says.
+    pub fn has_profile(&self) -> bool {
+        self.is_sphere() && self.profile.is_some()
     }
 
     /// Whether it is as far away as the sun.
@@ -268,6 +281,10 @@ impl AreaLight {
             color: self.color,
             radiance: self.radiance() as f32,
             cone_cosines: self.is_spot().then(|| self.cone_cosines()),
+            profile: self
+                .profile
+                .filter(|_| self.has_profile())
+                .map(|file| (file, self.shape().frame())),
             is_sun: self.is_sun(),
         }
     }
@@ -279,6 +296,7 @@ pub struct Shine {
     color: [f32; 3],
     radiance: f32,
     cone_cosines: Option<[f64; 2]>,
+    profile: Option<(ProfileFile, AreaFrame)>,
     is_sun: bool,
 }
 
@@ -290,6 +308,11 @@ impl Shine {
         };
         let scale = 1.0 / (inner - outer);
         [scale, -outer * scale]
+    }
+
+    /// The file of its profile, and how it lies.
+    pub fn profile(&self) -> Option<(ProfileFile, AreaFrame)> {
+        self.profile
     }
 
     /// What of its compiled surface a material of the model can't have: a spot's cone, and how often a sun is drawn, which

@@ -61,9 +61,10 @@ impl Change {
         let (render, other) = (&old.render, &new.render);
         self.environment |= (&light.environment, light.environment_encoding)
             != (&other_light.environment, other_light.environment_encoding);
-        self.display |= old.view.lut != new.view.lut;
+        self.display |= old.view.lut != new.view.lut || light.light_mix != other_light.light_mix;
         self.lighting |= light.background != other_light.background;
-        self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights);
+        let are_regrouped = new.lighting.light_groups && !are_grouped_alike(lights, other_lights);
+        self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights) || are_regrouped;
         self.geometry |= (&old.model, &old.import, &old.hidden_objects)
             != (&new.model, &new.import, &new.hidden_objects)
             || !have_same_shapes(lights, other_lights);
@@ -104,6 +105,11 @@ impl Change {
 
 fn emit_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
     old.iter().map(AreaLight::shine).eq(new.iter().map(AreaLight::shine))
+}
+
+fn are_grouped_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+    let groups = |lights: &[AreaLight]| lights.iter().map(AreaLight::group_name).collect::<Vec<_>>();
+    groups(old) == groups(new)
 }
 
 fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {

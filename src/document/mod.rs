@@ -10,12 +10,14 @@ pub mod effect;
 mod ground;
 pub mod history;
 pub mod import;
+pub mod light_groups;
 mod look_words;
 pub mod material;
 mod material_textures;
 mod metal_colors;
 pub mod of_model;
 pub mod parameter;
+mod profile_file;
 pub mod range;
 mod reference;
 mod settings;
@@ -25,7 +27,7 @@ pub mod turntable;
 mod user_textures;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -37,12 +39,14 @@ pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
+pub use light_groups::{GroupName, LightMix};
 pub use material::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
 pub use material_textures::{map_key, target_of_key, texture_assignments};
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
 };
+pub use profile_file::ProfileFile;
 pub use reference::{Reference, ReferencePlace};
 pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, ViewSettings,
@@ -119,12 +123,16 @@ impl Document {
     }
 
     /// The files that it names beside model and environment: its materials' textures, the view's table of colours and its
-    /// reference.
-    pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+    /// reference, lights' profiles.
+    pub fn pictures(&self) -> impl Iterator<Item = &Path> {
         let textures = self.materials.iter().flat_map(|material| material.user_textures.iter());
         let reference = self.view.reference.as_ref().map(|reference| &reference.file);
         let of_view = self.view.lut.as_ref().into_iter().chain(reference);
-        textures.map(|(_, texture)| &texture.file).chain(of_view)
+        let of_lights = self.lighting.area_lights.iter().filter_map(|light| light.profile);
+        let named = textures.map(|(_, texture)| &texture.file).chain(of_view);
+        named
+            .map(PathBuf::as_path)
+            .chain(of_lights.map(|profile| profile.path()))
     }
 
     /// The material that a slot shows.

@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::import::ROUGHNESS_MAX;
-use super::{AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, ImportLobe, MaterialSettings, range};
+use super::{
+    AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, GroupName, ImportLobe, MaterialSettings, range,
+};
 use crate::scene::camera::{Projection, right_and_up};
 use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
@@ -58,6 +60,7 @@ impl Document {
         for light in model.lights.iter().map(|light| area_light(light, model)) {
             let is_there = |own: &AreaLight| {
                 AreaLight {
+                    group: light.group,
                     is_hidden: false,
                     is_muted: false,
                     ..*own
@@ -88,6 +91,7 @@ fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
         color: light
             .color
             .map(|channel| (channel / brightest.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)),
+        group: GroupName::new("model"),
         ..AreaLight::default()
     };
     let intensity = f64::from(light.intensity.max(0.0) * brightest);
@@ -97,6 +101,7 @@ fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
             let mut sun = AreaLight {
                 strength: intensity.min(*range::STRENGTH.end()) as f32,
                 color: white.color,
+                group: white.group,
                 ..AreaLight::sun()
             };
             sun.look_from(-forward);

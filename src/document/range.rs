@@ -34,6 +34,8 @@ pub const SATURATION: RangeInclusive<f64> = 0.0..=4.0;
 pub const VIGNETTE: RangeInclusive<f64> = 0.0..=2.0;
 /// Share of the light that the glare spreads.
 pub const GLARE: RangeInclusive<f64> = 0.0..=1.0;
+/// Factor of a light group.
+pub const LIGHT_MIX: RangeInclusive<f64> = 0.0..=1000.0;
 /// Width and height, pixels; the random numbers' counters have 16 bits for each.
 pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
 /// Samples per pixel.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use super::switches::{EffectSwitches, Switch};
-use super::{AreaLight, GroundSettings, Reference};
+use super::{AreaLight, GroundSettings, LightMix, Reference};
 use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
 use crate::named::named;
@@ -37,6 +37,12 @@ pub struct Lighting {
     pub ground: GroundSettings,
     /// Lights beside it, at most 64.
     pub area_lights: Vec<AreaLight>,
+    /// Whether the light of each group is summed apart.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub light_groups: bool,
+    /// What the groups' light is multiplied by after rendering; a group that is not named keeps its light.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub light_mix: Vec<LightMix>,
 }
 
 impl Lighting {
@@ -62,6 +68,8 @@ impl Default for Lighting {
             ground_color: [0.3; 3],
             ground: GroundSettings::default(),
             area_lights: Vec::new(),
+            light_groups: false,
+            light_mix: Vec::new(),
         }
     }
 }

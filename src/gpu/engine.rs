@@ -16,6 +16,7 @@ use super::timer::Timer;
 use crate::job::Job;
 use crate::job::film::{Film, HalfSums, luminance};
 use crate::job::guides::GuideSums;
+use crate::job::light_sums::LightSums;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
 /// Samples per pixel that the GPU's f32 sums take before the host adds them to its f64 film.
@@ -272,11 +273,18 @@ impl GpuEngine {
 
 /// Merges the GPU's sums of some pixels of a band into the film.
 fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
-    let [colors, statistics, guides] = &band.buffers;
-    let colors: Vec<PixelColors> = gpu.read_part(colors, part.clone())?;
+    let [all_colors, statistics, guides] = &band.buffers;
+    let colors: Vec<PixelColors> = gpu.read_part(all_colors, part.clone())?;
     let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
     let first = band.first_row as usize * film.width as usize + part.start;
     merge_sums(film, first, &colors, &statistics);
+    for group in 0..film.light_groups() {
+        let before = (1 + group) * band.pixels;
+        let lights: Vec<PixelColors> = gpu.read_part(all_colors, before + part.start..before + part.end)?;
+        for (pixel, light) in (first..).zip(&lights) {
+            film.add_light(pixel, group, light_sums(light));
+        }
+    }
     if film.extras().guides {
         let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
         for (sums, seen) in film.guides[first..]
@@ -288,6 +296,15 @@ fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>)
         }
     }
     Ok(())
+}
+
+/// A group's light in the even and the odd samples of a pixel.
+fn light_sums(colors: &PixelColors) -> LightSums {
+    let odd: [f64; 3] = std::array::from_fn(|channel| f64::from(colors.odd[channel]));
+    [
+        std::array::from_fn(|channel| f64::from(colors.all[channel]) - odd[channel]),
+        odd,
+    ]
 }
 
 /// Merges the GPU's sums of consecutive pixels into the film, from pixel `first` on.

@@ -7,6 +7,7 @@ use super::material_array::FEW_MATERIALS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
 use crate::job::guides::GUIDE_SAMPLES;
+use crate::job::light_sums::{ENVIRONMENT_GROUP, LIGHT_GROUPS_MAX};
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -70,6 +71,7 @@ fn scene_choices() -> String {
     let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
+         const LIGHT_GROUPS_MAX: u32 = {LIGHT_GROUPS_MAX}u;\nconst ENVIRONMENT_GROUP: u32 = {ENVIRONMENT_GROUP}u;\n\
          const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n\
          const FEW_MATERIALS: u32 = {FEW_MATERIALS}u;\n\
          const CATCHER_BEND: f32 = {CATCHER_BEND:?};\nconst CATCHER_HALF_SIDE: f32 = {CATCHER_HALF_SIDE:?};\n\

@@ -76,8 +76,8 @@ pub struct Globals {
     pub camera_medium: u32,
     /// See [`Settings::first_hidden_slot`].
     pub first_hidden_slot: u32,
-    /// To a multiple of 16 bytes.
-    pub unused: u32,
+    /// See [`Settings::light_groups`].
+    pub light_groups: u32,
     /// 1: coarse triangles are rounded according to their normals.
     pub rounds_surfaces: u32,
     /// Early roulette is played below this throughput alone.
@@ -169,7 +169,7 @@ impl Globals {
             around_triangle,
             camera_medium: settings.camera_medium.unwrap_or(NO_MEDIUM),
             first_hidden_slot: settings.first_hidden_slot,
-            unused: 0,
+            light_groups: settings.light_groups,
             rounds_surfaces: u32::from(settings.rounds_surfaces),
             roulette_floor: settings.roulette_floor as f32,
         }

@@ -4,7 +4,7 @@ use super::compute::{self, UNIFORMS, WRITE, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
 use crate::job::Job;
-use crate::job::effect::EffectId;
+use crate::job::film::Extras;
 use crate::job::guides::GuideSums;
 use crate::job::tiles::TILE_SIDE;
 
@@ -27,7 +27,7 @@ pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
 #[derive(Clone, Debug)]
 pub struct Sums {
     size: [u32; 2],
-    has_guides: bool,
+    extras: Extras,
     band_rows: u32,
     bands: Vec<Band>,
     tiles: wgpu::Texture,
@@ -40,7 +40,7 @@ pub struct Band {
     pub first_row: u32,
     /// Number of pixels.
     pub pixels: usize,
-    /// Sums of colours, statistics and guides.
+    /// Sums of colours (of all light, then of each light group), statistics and guides.
     pub buffers: [wgpu::Buffer; 3],
     /// The group to bind.
     pub group: wgpu::BindGroup,
@@ -49,7 +49,7 @@ pub struct Band {
 impl Sums {
     /// Whether these fit a job.
     pub fn fit(&self, job: &Job) -> bool {
-        self.size == job.settings.image_size && self.has_guides == job.plan.has(EffectId::Guides)
+        self.size == job.settings.image_size && self.extras == Extras::of(job)
     }
 
     /// Sums for a job's image; not cleared, if the driver does not clear memory.
@@ -59,12 +59,8 @@ impl Sums {
     /// [`GpuError::TooLarge`] if not even a row of tiles fits a binding.
     pub fn new(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, job: &Job) -> Result<Self, GpuError> {
         let [width, height] = job.settings.image_size;
-        let has_guides = job.plan.has(EffectId::Guides);
-        let widest = if has_guides {
-            size_of::<[GuideSums; 2]>().max(size_of::<PixelColors>())
-        } else {
-            size_of::<PixelColors>()
-        };
+        let extras = Extras::of(job);
+        let widest = pixel_bytes(extras).into_iter().max().unwrap_or(1);
         let tile_row_bytes = u64::from(TILE_SIDE * width) * widest as u64;
         let tile_rows = (gpu.binding_bytes() / tile_row_bytes).clamp(1, u64::from(height.div_ceil(TILE_SIDE)));
         let band_rows = tile_rows as u32 * TILE_SIDE;
@@ -91,12 +87,12 @@ impl Sums {
                 &list,
                 first_row,
                 u64::from(rows) * u64::from(width),
-                has_guides,
+                extras,
             )
         });
         Ok(Self {
             size: [width, height],
-            has_guides,
+            extras,
             band_rows,
             bands: bands.collect::<Result<_, _>>()?,
             tiles,
@@ -144,6 +140,13 @@ impl Sums {
     }
 }
 
+/// Bytes per pixel of the three buffers of a band.
+fn pixel_bytes(extras: Extras) -> [usize; 3] {
+    let guides = if extras.guides { size_of::<[GuideSums; 2]>() } else { 0 };
+    let colors = (1 + extras.light_groups as usize) * size_of::<PixelColors>();
+    [colors, size_of::<PixelStatistics>(), guides]
+}
+
 impl Band {
     fn new(
         gpu: &GpuDevice,
@@ -151,14 +154,12 @@ impl Band {
         tiles: &wgpu::TextureView,
         first_row: u32,
         pixels: u64,
-        has_guides: bool,
+        extras: Extras,
     ) -> Result<Self, GpuError> {
-        let guide_bytes = if has_guides { size_of::<[GuideSums; 2]>() } else { 0 };
-        let sizes = [size_of::<PixelColors>(), size_of::<PixelStatistics>(), guide_bytes];
         let buffer = |bytes: usize| gpu.empty_storage("the image", pixels * bytes as u64);
-        let [colors, statistics, guides] = sizes.map(buffer);
+        let [colors, statistics, guides] = pixel_bytes(extras).map(buffer);
         let buffers = [colors?, statistics?, guides?];
-        let uniforms = gpu.uniforms(&[first_row, 0, 0, 0]);
+        let uniforms = gpu.uniforms(&[first_row, pixels as u32, 0, 0]);
         let [colors, statistics, guides] = &buffers;
         let bound = [(0, &uniforms), (2, colors), (3, statistics), (4, guides)];
         let group = compute::bind_group(gpu, layout, &bound, &[(1, tiles)]);

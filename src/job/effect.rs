@@ -93,6 +93,7 @@ effects! {
     EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
     VertexColors "vertex-colors" flag "PLAN_VERTEX_COLORS";
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
+    CoatNormalMap "coat-normal-map" flag "PLAN_COAT_NORMALS";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";
     DepthOfField "depth-of-field" flag "PLAN_LENS";
@@ -101,6 +102,7 @@ effects! {
     Variance "variance";
     PictureLayers "picture-layers";
     Guides "guides" flag "PLAN_GUIDES";
+    LightGroups "light-groups" flag "PLAN_LIGHT_GROUPS";
     Denoising "denoising";
 }
 

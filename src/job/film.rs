@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::effect::EffectId;
 use super::guides::{GUIDE_SAMPLES, GuideSums};
+use super::light_sums::LightSums;
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
 /// Pixels at least that a thread adds to at once.
-const ADDED_AT_ONCE: usize = 4096;
+pub(super) const ADDED_AT_ONCE: usize = 4096;
 
 /// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 72
 /// bytes per pixel and 32 per tile, plus the requested [`Extras`].
@@ -19,12 +20,14 @@ pub struct Film {
     /// Height in pixels.
     pub height: u32,
     /// Sums of each pixel, row by row from the top.
-    pixels: Vec<KeptHalves>,
+    pub(super) pixels: Vec<KeptHalves>,
     /// Sums of coverage; empty if every pixel is covered.
-    coverage: Vec<f64>,
+    pub(super) coverage: Vec<f64>,
     /// First-hit guides of the first [`GUIDE_SAMPLES`] samples of each pixel, of the even and the odd ones; empty if not
     /// requested.
     pub guides: Vec<[GuideSums; 2]>,
+    /// Sums of each light group, those of a pixel in a row; empty if not requested.
+    pub(super) lights: Vec<LightSums>,
     /// Costs and removed energy per tile.
     pub costs: Vec<TileCosts>,
 }
@@ -36,6 +39,8 @@ pub struct Extras {
     pub coverage: bool,
     /// First-hit guides, 64 bytes per pixel: for layers and the denoiser.
     pub guides: bool,
+    /// Light groups that are summed apart, 48 bytes per pixel each.
+    pub light_groups: u32,
 }
 
 /// Sums over the samples of all pixels of a tile.
@@ -66,7 +71,7 @@ pub struct HalfSums {
 /// f32 would be precise enough for the spread, but rounded after each pass, whose length depends on the clock: the same
 /// render twice would differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct KeptHalves {
+pub(super) struct KeptHalves {
     color: [[f64; 3]; 2],
     squared_deviations: [f64; 2],
     samples: [u32; 2],
@@ -140,7 +145,7 @@ fn added(mut sum: [f64; 3], color: [f64; 3]) -> [f64; 3] {
 }
 
 impl KeptHalves {
-    fn sums(&self) -> [HalfSums; 2] {
+    pub(super) fn sums(&self) -> [HalfSums; 2] {
         std::array::from_fn(|half| HalfSums {
             color: self.color[half],
             squared_deviations: self.squared_deviations[half],
@@ -153,7 +158,7 @@ impl KeptHalves {
         even.with(&odd)
     }
 
-    fn of(sums: &[HalfSums; 2]) -> Self {
+    pub(super) fn of(sums: &[HalfSums; 2]) -> Self {
         Self {
             color: sums.map(|half| half.color),
             squared_deviations: sums.map(|half| half.squared_deviations),
@@ -168,6 +173,7 @@ impl Extras {
         Self {
             coverage: job.settings.background == BackgroundKind::Transparent,
             guides: job.plan.has(EffectId::Guides),
+            light_groups: job.settings.light_groups,
         }
     }
 
@@ -176,7 +182,8 @@ impl Extras {
         let extra = |is_kept: bool, size: usize| if is_kept { size } else { 0 };
         let tile = size_of::<TileCosts>().div_ceil(64);
         let coverage = extra(self.coverage, size_of::<f64>());
-        (size_of::<KeptHalves>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>())) as u64
+        let lights = self.light_groups as usize * size_of::<LightSums>();
+        (size_of::<KeptHalves>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>()) + lights) as u64
     }
 }
 
@@ -196,6 +203,7 @@ impl Film {
             pixels: vec![Default::default(); pixels],
             coverage: vec![0.0; kept(extras.coverage)],
             guides: vec![Default::default(); kept(extras.guides)],
+            lights: vec![Default::default(); pixels * extras.light_groups as usize],
             costs: vec![TileCosts::default(); TileGrid { width, height }.tiles()],
         }
     }
@@ -211,6 +219,7 @@ impl Film {
         Extras {
             coverage: !self.coverage.is_empty(),
             guides: !self.guides.is_empty(),
+            light_groups: self.light_groups() as u32,
         }
     }
 
@@ -321,7 +330,8 @@ impl Film {
             let from = from..from + size[0] as usize;
             part.pixels[to.clone()].copy_from_slice(&self.pixels[from.clone()]);
             copy_kept(&mut part.coverage, to.clone(), &self.coverage, from.clone());
-            copy_kept(&mut part.guides, to, &self.guides, from);
+            copy_kept(&mut part.guides, to.clone(), &self.guides, from.clone());
+            part.copy_lights(to, self, from);
         }
         part
     }
@@ -340,7 +350,8 @@ impl Film {
             let to = to..to + width;
             self.pixels[to.clone()].copy_from_slice(&part.pixels[from.clone()]);
             copy_kept(&mut self.coverage, to.clone(), &part.coverage, from.clone());
-            copy_kept(&mut self.guides, to, &part.guides, from);
+            copy_kept(&mut self.guides, to.clone(), &part.guides, from.clone());
+            self.copy_lights(to, part, from);
         }
     }
 
@@ -352,6 +363,7 @@ impl Film {
             film.pixels[to] = self.pixels[from];
             copy_kept(&mut film.coverage, to..to + 1, &self.coverage, from..from + 1);
             copy_kept(&mut film.guides, to..to + 1, &self.guides, from..from + 1);
+            film.copy_lights(to..to + 1, self, from..from + 1);
         }
         film
     }
@@ -443,7 +455,12 @@ impl Film {
 }
 
 /// Copies optional values.
-fn copy_kept<T: Copy>(to: &mut [T], to_range: std::ops::Range<usize>, from: &[T], from_range: std::ops::Range<usize>) {
+pub(super) fn copy_kept<T: Copy>(
+    to: &mut [T],
+    to_range: std::ops::Range<usize>,
+    from: &[T],
+    from_range: std::ops::Range<usize>,
+) {
     if let (Some(to), Some(from)) = (to.get_mut(to_range), from.get(from_range)) {
         to.copy_from_slice(from);
     }
@@ -534,8 +551,9 @@ mod tests {
         let all = Extras {
             coverage: true,
             guides: true,
+            light_groups: 3,
         };
-        assert_eq!(all.pixel_bytes(), 72 + 1 + 8 + 64);
+        assert_eq!(all.pixel_bytes(), 72 + 1 + 8 + 64 + 3 * 48);
         let mut plain = Film::new(2, 1);
         assert_eq!(plain.extras(), Extras::default());
         plain.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
@@ -555,11 +573,13 @@ mod tests {
             Extras {
                 coverage: true,
                 guides: true,
+                light_groups: 2,
             },
         );
         for pixel in 0..film.pixel_count() {
             film.add(pixel, pixel as u32, [pixel as f64, 1.0, 2.0, 0.5]);
             film.guides[pixel][1].hits = pixel as f32;
+            film.add_lights(pixel, 1, [[pixel as f64; 3], [0.5; 3]]);
         }
         for (tile, costs) in film.costs.iter_mut().enumerate() {
             costs.rays = tile as f64;

@@ -5,6 +5,7 @@ pub mod effect;
 pub mod features;
 pub mod film;
 pub mod guides;
+pub mod light_sums;
 pub mod plan;
 pub mod precision;
 pub mod probe;
@@ -87,6 +88,8 @@ pub struct Settings {
     pub roulette_floor: f64,
     /// Light that was reflected less often does not count.
     pub least_reflections: u32,
+    /// Light groups whose light is also summed apart, see [`light_sums`]; 0: none.
+    pub light_groups: u32,
     /// Largest radiance of indirect contributions; infinite for no limit.
     pub firefly_clamp: f64,
     /// Random sequence.

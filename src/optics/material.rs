@@ -38,6 +38,10 @@ pub const COAT_ABSORBS: u32 = 256;
 pub const COAT_IS_GGX: u32 = 512;
 /// Flag: a texture uses box projection.
 pub const HAS_BOX: u32 = 32;
+/// Flag: what it emits depends on the direction as the profile at `lobe_table` says.
+pub const HAS_PROFILE: u32 = 1024;
+/// The flags' bits from here on: the light group of what the material emits, see [`Material::light_group`].
+pub const LIGHT_GROUP_SHIFT: u32 = 24;
 
 /// A field's value in another precision.
 trait Cast<U> {
@@ -157,7 +161,8 @@ material! {
         horizon: u32,
         /// [`Fresnel`] as a number.
         fresnel: u32,
-        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)).
+        /// Start of the lobe's table: the custom curve's, or the energies of GGX ([`scattering_table`](super::scattering::scattering_table)); that of the
+        /// profile of a light with [`HAS_PROFILE`], which has no lobe.
         lobe_table: u32,
         /// Start of the albedo table.
         albedo_table: u32,
@@ -235,6 +240,14 @@ material! {
         coat_inner: T,
         /// Stretch of the coat's lobe in [−1, 1].
         coat_anisotropy: T,
+        /// The texture that multiplies the roughness of the coat, or [`NO_TEXTURE`].
+        coat_roughness_texture: u32,
+        /// The texture that multiplies the colour of the coat, or [`NO_TEXTURE`].
+        coat_color_texture: u32,
+        /// The texture of the coat's normals, or [`NO_TEXTURE`].
+        coat_normal_texture: u32,
+        /// Scales the slopes of the coat's normal texture.
+        coat_normal_strength: T,
     }
 }
 
@@ -327,7 +340,8 @@ impl<T: Real> Material<T> {
     /// True where textures change how the coat changes the roughness below it.
     #[inline(always)]
     pub fn has_varied_blur(&self) -> bool {
-        let is_varied = self.textures[1] != NO_TEXTURE || self.coat_texture != NO_TEXTURE;
+        let varying = [self.textures[1], self.coat_texture, self.coat_roughness_texture];
+        let is_varied = varying != [NO_TEXTURE; 3];
         is_varied && T::zero().less(self.coat_blur).any()
     }
 
@@ -365,8 +379,14 @@ impl<T: Real> Material<T> {
     /// True if textured.
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
-        let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
-        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4]
+        let others = [self.opacity_texture, self.metalness_texture, self.coat_normal_texture];
+        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4] || self.has_textured_coat()
+    }
+
+    /// True if textures vary weight, roughness or colour of the coat.
+    #[inline(always)]
+    pub fn has_textured_coat(&self) -> bool {
+        [self.coat_texture, self.coat_roughness_texture, self.coat_color_texture] != [NO_TEXTURE; 3]
     }
 
     /// True if some light may pass straight through the surface.
@@ -382,6 +402,12 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn has_flag(&self, flag: u32) -> bool {
         self.flags & flag != 0
+    }
+
+    /// Number of the light group of what it emits.
+    #[inline(always)]
+    pub fn light_group(&self) -> u32 {
+        self.flags >> LIGHT_GROUP_SHIFT
     }
 
     /// True if it varies over the surface: by a texture or vertex colours.
@@ -412,6 +438,13 @@ impl<T: Real> Material<T> {
     }
 }
 
+/// What a coat of this roughness, that of GGX, adds to the fourth power of the roughness below it: light crosses it twice.
+#[inline(always)]
+pub fn coat_blur<T: Real>(roughness: T) -> T {
+    let square = roughness * roughness;
+    T::from_f64(2.0) * square * square
+}
+
 /// The registry's entry with this index, or the first one.
 #[inline(always)]
 pub(super) fn by_index<E: Copy>(all: &[E], index: u32) -> E {
@@ -427,7 +460,7 @@ pub struct Surface<T: Real> {
     pub normal: Vec3<T>,
     /// Unit direction to the viewer.
     pub wo: Vec3<T>,
-    /// The shading normal without the normal texture, on the side of the viewer: a coat is smooth over it.
+    /// The coat's shading normal, on the side of the viewer: it does not follow the normal texture of what lies below.
     pub coat_normal: Vec3<T>,
     /// True if the viewer is on the triangle's back: inside the solid, for a closed mesh.
     pub is_inside: T::Mask,

@@ -5,22 +5,26 @@ use std::sync::Arc;
 use super::assets::Assets;
 use super::error::SessionError;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
+use crate::document::light_groups::emission_group;
 use crate::document::{
-    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,
-    texture_assignments,
+    AreaLight, Background, CameraSettings, Document, GroupName, MaterialSettings, RenderSettings, Shine,
+    compile_textured, texture_assignments,
 };
 use crate::job::effect::EffectId;
+use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{BackgroundKind, Catcher, Job, Settings, Strategy};
-use crate::optics::material::Material;
+use crate::optics::material::{HAS_PROFILE, LIGHT_GROUP_SHIFT, Material};
 use crate::optics::table::append_table;
 use crate::optics::vector::Vec3;
-use crate::scene::Geometry;
 use crate::scene::camera::{Camera, Projection, framing_distance, orbit_direction};
 use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
+use crate::scene::light_profile::LightProfile;
 use crate::scene::medium::medium_at;
 use crate::scene::texture::{Textures, UserTextureFile};
+use crate::scene::{AreaFrame, Geometry};
+use crate::store::light_profile;
 
 /// How far from its target parallel rays start at least, bounding radii of the model, and how far behind the camera.
 const PARALLEL_REACH: f64 = 4.0;
@@ -29,8 +33,50 @@ const PARALLEL_MIN: f64 = 0.01;
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
-/// Key of materials and tables: settings, textures, and the slots of area lights with their emission profiles.
-type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
+/// Key of materials and tables: settings, textures, and what lights are.
+type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Emission);
+
+/// What lights are, by the slots of their materials.
+#[derive(Debug, PartialEq)]
+struct Emission {
+    shines: Vec<(usize, Shine)>,
+    /// The light group of each slot; none where they are not summed apart.
+    groups: Vec<u32>,
+    /// Slots of lights whose profiles could be read.
+    profiles: Vec<(usize, AreaFrame, Arc<LightProfile>)>,
+}
+
+impl Emission {
+    /// Of a document whose area lights begin at a slot.
+    fn of(document: &Document, model_slots: usize, first_light: usize) -> Self {
+        let shines: Vec<_> = (first_light..)
+            .zip(document.lighting.shining().map(AreaLight::shine))
+            .collect();
+        let profile = |(slot, shine): &(usize, Shine)| {
+            let (file, frame) = shine.profile()?;
+            Some((*slot, frame, light_profile::remembered(file.path())?))
+        };
+        Self {
+            groups: slot_groups(document, model_slots),
+            profiles: shines.iter().filter_map(profile).collect(),
+            shines,
+        }
+    }
+
+    /// Puts it on the compiled materials.
+    fn finish(&self, materials: &mut [Material<f32>], tables: &mut Vec<f32>) {
+        for (slot, shine) in &self.shines {
+            shine.finish(&mut materials[*slot]);
+        }
+        for (material, group) in materials.iter_mut().zip(&self.groups) {
+            material.flags |= group << LIGHT_GROUP_SHIFT;
+        }
+        for (slot, frame, profile) in &self.profiles {
+            materials[*slot].flags |= HAS_PROFILE;
+            materials[*slot].lobe_table = append_table(tables, &profile.table(frame));
+        }
+    }
+}
 
 /// Key of the emitters' table: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
@@ -106,8 +152,8 @@ impl Compiler {
         let textures = textures_of(document, &slots[..model.slots.len()], assets)?;
         slots.extend(document.catcher_reflection());
         let first_light = model.slots.len() + usize::from(document.ground);
-        let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();
-        let (materials, tables) = self.materials(&slots, &textures, shines);
+        let emission = Emission::of(document, model.slots.len(), first_light);
+        let (materials, tables) = self.materials(&slots, &textures, emission);
         let (catcher, tables) = if document.catches_shadows() {
             let (table, tables) = self.with_catcher(document, &geometry, &environment, tables);
             let catcher = Catcher {
@@ -150,6 +196,7 @@ impl Compiler {
             bounces,
             roulette_floor: roulette_floor(&materials),
             least_reflections,
+            light_groups: document.light_groups().len() as u32,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
             strategy: document.render.strategy,
@@ -176,24 +223,17 @@ impl Compiler {
         })
     }
 
-    fn materials(
-        &mut self,
-        wanted: &[MaterialSettings],
-        textures: &Arc<Textures>,
-        shines: Vec<(usize, Shine)>,
-    ) -> Compiled {
-        let is_known = |(of, looked_up, shone): &MaterialsKey| {
-            of == wanted && Arc::ptr_eq(looked_up, textures) && *shone == shines
+    fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>, emission: Emission) -> Compiled {
+        let is_known = |(of, looked_up, emitted): &MaterialsKey| {
+            of == wanted && Arc::ptr_eq(looked_up, textures) && *emitted == emission
         };
         if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (mut materials, tables) = compile_textured(wanted, &textures.slots);
-        for (slot, shine) in &shines {
-            shine.finish(&mut materials[*slot]);
-        }
+        let (mut materials, mut tables) = compile_textured(wanted, &textures.slots);
+        emission.finish(&mut materials, &mut tables);
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some(((wanted.to_vec(), textures.clone(), shines), compiled.clone()));
+        self.materials = Some(((wanted.to_vec(), textures.clone(), emission), compiled.clone()));
         compiled
     }
 
@@ -260,6 +300,22 @@ pub(crate) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialS
     }
     materials.extend(document.lighting.shining().map(AreaLight::material));
     materials
+}
+
+/// The number of each slot's light group, up to the area lights'; none without groups.
+fn slot_groups(document: &Document, model_slots: usize) -> Vec<u32> {
+    let names = document.light_groups();
+    if names.is_empty() {
+        return Vec::new();
+    }
+    let number = |name: GroupName| {
+        let last = names.len() - 1;
+        names.iter().position(|other| *other == name).unwrap_or(last) as u32
+    };
+    let mut groups = vec![number(emission_group()); model_slots];
+    groups.resize(model_slots + usize::from(document.ground), ENVIRONMENT_GROUP);
+    groups.extend(document.lighting.shining().map(|light| number(light.group_name())));
+    groups
 }
 
 /// See [`Settings::first_hidden_slot`]; the slots of the area lights begin at `first_light`.

@@ -104,9 +104,11 @@ impl Needs {
     pub(super) fn of(job: &Job, is_software_gpu: bool) -> Self {
         let given = |is_given: bool, bytes: u64| if is_given { bytes } else { 0 };
         let extras = Extras::of(job);
-        let guides = extras.pixel_bytes()
+        // The GPU's sums of both are at most as large as the film's.
+        let kept = extras.pixel_bytes()
             - Extras {
                 guides: false,
+                light_groups: 0,
                 ..extras
             }
             .pixel_bytes();
@@ -117,7 +119,7 @@ impl Needs {
             pixel_bytes: extras.pixel_bytes()
                 + PICTURE_BYTES
                 + given(is_denoised, DENOISED_BYTES)
-                + given(is_software_gpu, SOFTWARE_GPU_BYTES + guides),
+                + given(is_software_gpu, SOFTWARE_GPU_BYTES + kept),
             is_denoised,
         }
     }

@@ -43,9 +43,14 @@ pub struct Rendered<'a> {
     pub denoised: Option<&'a Image>,
     /// Layers written beside the colours in an .exr file.
     pub layers: Option<&'a Layers>,
+    /// Light groups, written into an .exr file.
+    pub lights: &'a [LightLayer],
     /// The sums that an .exr file keeps, to be joined with others.
     pub sums: Option<&'a KeptFilm>,
 }
+
+/// The light of a group, under its name.
+pub type LightLayer = (String, Image);
 
 impl<'a> From<&'a Image> for Rendered<'a> {
     fn from(image: &'a Image) -> Self {
@@ -53,6 +58,7 @@ impl<'a> From<&'a Image> for Rendered<'a> {
             image,
             denoised: None,
             layers: None,
+            lights: &[],
             sums: None,
         }
     }
@@ -63,6 +69,7 @@ impl<'a> From<&'a Layers> for Rendered<'a> {
         Self {
             denoised: layers.denoised.as_deref(),
             layers: Some(layers),
+            lights: &layers.lights,
             ..Self::from(&layers.image)
         }
     }
@@ -77,6 +84,8 @@ pub struct Layers {
     pub denoised: Option<Arc<Image>>,
     /// First-hit features.
     pub features: Features,
+    /// Light groups as rendered, before the mix.
+    pub lights: Vec<LightLayer>,
     /// Samples in each pixel's mean.
     pub samples: Vec<f32>,
     /// Variance of each pixel's mean luminance; infinite below two samples.
@@ -91,6 +100,7 @@ impl Layers {
             image: film.image(),
             denoised: None,
             features,
+            lights: Vec::new(),
             samples: pixels.clone().map(|pixel| film.samples_of(pixel) as f32).collect(),
             variance: pixels.map(|pixel| film.variance_of_mean_at(pixel) as f32).collect(),
         }
@@ -125,7 +135,8 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
 
 /// Writes an image of a document in the format of the file extension. A .png has the document's exposure and tone curve, and
 /// contains the document. A denoised image replaces the samples; in an .exr file it is added as `denoised.R`, `.G`, `.B`,
-/// and so are layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`) and sums.
+/// and so are layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`), light
+/// groups (`light.NAME.R`, `.G`, `.B`) and sums.
 ///
 /// # Errors
 ///
@@ -169,6 +180,9 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
         channels.extend(color_channels("denoised.", denoised, &COLORS[..3]));
     }
     channels.extend(rendered.layers.into_iter().flat_map(layer_channels));
+    for (name, light) in rendered.lights {
+        channels.extend(color_channels(&format!("light.{name}."), light, &COLORS[..3]));
+    }
     let numbers = channels
         .into_iter()
         .map(|(name, values)| (name, FlatSamples::F32(values)));

@@ -370,8 +370,9 @@ fn picture(
     if !ended.progress.is_done {
         return Ok(format!("{} cancelled: nothing was written", path.display()));
     }
-    let image = session.image()?;
+    let (image, lights) = (session.image()?, session.light_layers()?);
     let rendered = Rendered {
+        lights: &lights,
         denoised: ended.denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         ..Rendered::from(&image)
     };

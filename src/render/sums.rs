@@ -214,6 +214,7 @@ impl KeptFilm {
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
             guides: file.find(&format!("{}samples", file.guides_of(HALVES[0]))).is_some(),
+            light_groups: 0,
         };
         let [width, height] = file.size();
         let mut film = Film::keeping(width, height, extras);

@@ -132,7 +132,9 @@ pub fn render(
         let image = session.image()?;
         let denoised = ended.denoised.as_ref().map(|denoised| denoised.image.as_ref());
         if let Some(folder) = &table.folder {
+            let lights = session.light_layers()?;
             let rendered = Rendered {
+                lights: &lights,
                 denoised,
                 ..Rendered::from(&image)
             };

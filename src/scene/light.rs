@@ -15,10 +15,11 @@ use super::alias::{AliasEntry, alias_table, grid_place};
 use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
+use super::light_profile::profile_share;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, coat_weight_at, emission_at, uvs_at, vertex_factors};
+use super::texture::{Textures, emission_at, put_coat, uvs_at, vertex_factors};
 use crate::optics::coat_medium::coat_over_emission;
-use crate::optics::material::{COAT_ABSORBS, HAS_BOX, Material};
+use crate::optics::material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
@@ -171,6 +172,8 @@ pub struct LightSample<T> {
     pub distance: T,
     /// Emitted radiance, linear RGB.
     pub radiance: Vec3<T>,
+    /// Number of its light group.
+    pub group: T,
 }
 
 /// The emitters, as light sampling needs them.
@@ -184,6 +187,8 @@ pub struct Emitters<'a, T> {
     pub textures: &'a Textures,
     /// The emitting triangles.
     pub lights: &'a Lights,
+    /// Tables of the materials.
+    pub tables: &'a [f32],
     /// See [`LightChoice`].
     pub density_per_luminance: T,
 }
@@ -219,7 +224,9 @@ pub fn light_sample<T: Scalar>(
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
-        coated.coat_weight = coat_weight_at(emitters.textures, material, uvs);
+        if material.has_textured_coat() {
+            put_coat(&mut coated, emitters.textures, uvs);
+        }
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));
@@ -227,6 +234,10 @@ pub fn light_sample<T: Scalar>(
     if material.has_flag(COAT_ABSORBS) {
         let facing = -normal.dot(direction);
         radiance = radiance * coat_over_emission(&coated, facing, facing.less(T::zero()));
+    }
+    if material.has_flag(HAS_PROFILE) {
+        let table = &emitters.tables[material.lobe_table as usize..];
+        radiance = radiance * profile_share(table, -direction);
     }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;
@@ -240,6 +251,7 @@ pub fn light_sample<T: Scalar>(
         ),
         distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
         radiance,
+        group: T::from_count(material.light_group()),
     }
 }
 

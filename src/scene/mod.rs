@@ -15,6 +15,7 @@ mod instanced;
 mod intersect;
 pub mod inversion;
 pub mod light;
+pub mod light_profile;
 mod loading;
 pub mod medium;
 mod memory;

@@ -17,6 +17,7 @@ named! {
         Material, "material", "Materials of other programs", "Materials in other programs' formats.";
         Measured, "measured", "Measured materials (MERL)", "Measurements that a material is fitted to.";
         ColorTable, "color-table", "Tables of colours", "Tables that the image's colours go through.";
+        LightProfile, "light-profile", "Light profiles", "Intensities of a lamp by direction, for spheres among the lights.";
         Part, "part", "Parts of models", "What models refer to; dropped together with them.";
     }
 }
@@ -57,6 +58,7 @@ impl FileKind {
             }
             Self::Measured => vec!["binary"],
             Self::ColorTable => vec!["cube"],
+            Self::LightProfile => vec!["ies"],
             Self::Part => PARTS.to_vec(),
         }
     }

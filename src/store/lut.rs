@@ -2,13 +2,12 @@
 //!
 //! The crate that exists (`lut_parser` 2.1) refuses tables without a title, and most tables have none.
 
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
-use std::time::SystemTime;
+use std::path::Path;
+use std::sync::Arc;
 
+use super::remembered::Remembered;
 use super::{FileError, file};
 use crate::optics::tone::Lut;
-use crate::panics::lock;
 
 /// Most entries along a side, of a cube and of curves.
 const SIZES: [usize; 2] = [129, 65536];
@@ -77,32 +76,10 @@ fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
     all?.try_into().ok()
 }
 
-/// A file, when it was saved, and what it holds.
-type Remembered = (PathBuf, Option<SystemTime>, Option<Arc<Lut>>);
-
-/// The tables that were asked for last, the latest at the end.
-static TABLES: Mutex<Vec<Remembered>> = Mutex::new(Vec::new());
-
 /// The table in a file, read again if the file was saved since. `None`, logged once, if it can't be read.
 pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
-    let saved = std::fs::metadata(path).and_then(|file| file.modified()).ok();
-    let mut tables = lock(&TABLES);
-    if let Some((.., table)) = tables.iter().find(|(of, at, _)| of == path && *at == saved) {
-        return table.clone();
-    }
-    let table = match load(path) {
-        Ok(table) => Some(Arc::new(table)),
-        Err(error) => {
-            log::warn!("{error}; the image is shown without it");
-            None
-        }
-    };
-    tables.retain(|(of, ..)| of != path);
-    if tables.len() >= REMEMBERED {
-        tables.remove(0);
-    }
-    tables.push((path.to_owned(), saved, table.clone()));
-    table
+    static TABLES: Remembered<Lut> = Remembered::new(REMEMBERED);
+    TABLES.get(path, load, "the image is shown without it")
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::error::SIZE_MAX;
 use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
 use super::{own, preset};
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, MaterialSettings, ProfileFile};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::{TextureTarget, UserTexture};
@@ -238,6 +238,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     }
     if let Some(file) = &mut document.view.lut {
         *file = map(file);
+    }
+    for light in &mut document.lighting.area_lights {
+        light.profile = light.profile.map(|profile| ProfileFile::new(&map(profile.path())));
     }
     if let Some(reference) = &mut document.view.reference {
         reference.file = map(&reference.file);

@@ -153,7 +153,7 @@ impl Key {
             EnvironmentSource::File(path) => Some(path),
             _ => None,
         };
-        let stamp = |path: &PathBuf| {
+        let stamp = |path: &Path| {
             let metadata = std::fs::metadata(path).ok()?;
             Some((metadata.len(), metadata.modified().ok()?))
         };
@@ -167,6 +167,7 @@ impl Key {
             files: [model, environment]
                 .into_iter()
                 .flatten()
+                .map(PathBuf::as_path)
                 .chain(document.pictures())
                 .map(stamp)
                 .collect(),

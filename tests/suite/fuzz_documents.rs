@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{
-    AreaLight, AreaLightShape, Background, Document, Kind, MaterialSettings, PARAMETERS, PixelFilter, Strategy, Value,
+    AreaLight, AreaLightShape, Background, Document, GroupName, Kind, MaterialSettings, PARAMETERS, PixelFilter,
+    Strategy, Value,
 };
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
@@ -131,6 +132,8 @@ fn any_document(seed: u64) -> Document {
             target: [(); 3].map(|()| f64::from(setting(random, [-1e3, 1e3]))),
             turn_deg: f64::from(setting(random, [-180.0, 180.0])),
             shape: AreaLightShape::ALL[random.below(AreaLightShape::ALL.len())],
+            profile: None,
+            group: GroupName::new(["", "key", "rim"][random.below(3)]),
             cone_deg: f64::from(setting(random, [1.0, 180.0])),
             softness: f64::from(setting(random, [0.0, 1.0])),
             angle_deg: f64::from(setting(random, [0.01, 90.0])),

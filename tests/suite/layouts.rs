@@ -44,7 +44,7 @@ fn rust_layouts() -> Vec<Layout> {
             camera, image_size, bounces, sequence, background, background_kind, environment_rotation,
             environment_cells_size, environment_strength, strategy, seed, node_count, light_cells_size,
             environment_probability, density_per_luminance, firefly_clamp, catcher_slot, catcher_reflection_slot,
-            catcher_table, least_reflections, around_root, around_triangle, camera_medium, first_hidden_slot, unused,
+            catcher_table, least_reflections, around_root, around_triangle, camera_medium, first_hidden_slot, light_groups,
             rounds_surfaces, roulette_floor,
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),

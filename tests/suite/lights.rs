@@ -123,6 +123,7 @@ fn chi_square_p<T: Scalar>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> 
         materials: &materials,
         textures: &Textures::default(),
         lights: &lights,
+        tables: &[],
         density_per_luminance: density,
     };
     for _ in 0..DRAWS {

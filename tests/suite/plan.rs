@@ -23,7 +23,7 @@ use crate::own_textures::coated_on_a_box;
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
 use crate::terminator::coarse;
-use crate::textures::all_at_once;
+use crate::textures::{all_at_once, coated_all_over};
 
 type Edit = fn(&mut Document);
 
@@ -174,6 +174,7 @@ fn needing(effect: &str) -> Document {
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
         "spot" => document.lighting.area_lights.push(AreaLight::spot()),
         "guides" => document.view.denoise = Denoise::Fast,
+        "light-groups" => document.lighting.light_groups = true,
         "shadow-catcher" => {
             document.ground = true;
             document.lighting.ground.kind = GroundKind::ShadowCatcher;
@@ -206,13 +207,18 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         engine.submit(Arc::new(job)).unwrap();
         engine.step(Duration::from_secs(60), 4).unwrap();
         let film = engine.film().unwrap();
-        (film.luminance(), film.guides.clone())
+        let lights: Vec<_> = (0..film.light_groups())
+            .map(|group| film.light_image(group).pixels)
+            .collect();
+        (film.luminance(), (film.guides.clone(), lights))
     };
     for effect in EFFECTS.iter().filter(switched) {
         let is_of_texture =
             effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
         let document = if ["coat-texture", "box-projection"].contains(&effect.name()) {
             coated_on_a_box(&folder)
+        } else if effect.id == EffectId::CoatNormalMap {
+            small(coated_all_over(&folder))
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {
@@ -232,15 +238,15 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             plan: Plan::general(),
             ..right
         };
-        let ((general, all_guides), (wrong, guides)) = (picture(general), picture(wrong));
+        let ((general, all_layers), (wrong, layers)) = (picture(general), picture(wrong));
         let [off, whole] = apart(&wrong, &general);
         println!(
             "without {}: {:.0} % of pixels off, the whole by {whole:.1e}",
             effect.name(),
             100.0 * off
         );
-        let shows = if effect.id == EffectId::Guides {
-            guides != all_guides
+        let shows = if [EffectId::Guides, EffectId::LightGroups].contains(&effect.id) {
+            layers != all_layers
         } else {
             off >= ROUNDED_PIXELS || whole >= ROUNDED_WHOLE
         };

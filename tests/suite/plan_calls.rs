@@ -97,7 +97,9 @@ fn textured(folder: &Folder) -> Document {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    material.user_textures.set(TextureTarget::Coat, Some(coat));
+    for target in [TextureTarget::Coat, TextureTarget::CoatColor, TextureTarget::CoatNormal] {
+        material.user_textures.set(target, Some(coat.clone()));
+    }
     document
 }
 
@@ -309,7 +311,14 @@ fn calls_for(effect: &str) -> Calls {
         "vertex-colors" => (metal, &[]),
         "coat-texture" => (
             metal,
-            &[|d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST)],
+            &[
+                |d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.coat_color, d.materials[0].coat_weight) = (true, LEAST),
+            ],
+        ),
+        "coat-normal-map" => (
+            metal,
+            &[|d, _| (d.materials[0].textures.coat_normal, d.materials[0].coat_weight) = (true, LEAST)],
         ),
         "box-projection" => (
             metal,
@@ -322,6 +331,7 @@ fn calls_for(effect: &str) -> Calls {
         "alpha" => (metal, &[|d, _| d.materials[0].opacity = MOST]),
         "depth-of-field" => (metal, &[|d, _| d.camera.aperture = f64::from(LEAST)]),
         "firefly-clamp" => (metal, &[|d, _| d.render.firefly_clamp = Some(1e6)]),
+        "light-groups" => (metal, &[|d, _| d.lighting.light_groups = true]),
         "adaptive-sampling" => (
             metal,
             &[

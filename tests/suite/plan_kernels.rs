@@ -13,7 +13,7 @@ use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
 use glossmith::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
     VERTEX_OPACITY,
 };
 use glossmith::optics::vector::Vec3;
@@ -35,6 +35,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
     let without: fn(&mut Material<f32>, u32) = match effect {
         // Their code is guarded on both engines: the processor reads the plan, too.
         "light-sampling" | "emitter-sampling" | "interreflection" | "firefly-clamp" | "guides" => return,
+        "light-groups" => return settings.light_groups = 0,
         "depth-of-field" => return settings.camera.lens_radius = 0.0,
         "shadow-catcher" => return settings.catcher = None,
         "shadow-terminator" => return settings.rounds_surfaces = false,
@@ -55,7 +56,10 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
             material.flags &= !SPARES_METAL;
         },
         "emission" => |material, _| material.emission = Vec3::zero(),
-        "spot" => |material, _| (material.spot_scale, material.spot_offset) = (0.0, 1.0),
+        "spot" => |material, _| {
+            (material.spot_scale, material.spot_offset) = (0.0, 1.0);
+            material.flags &= !HAS_PROFILE;
+        },
         "transmission" => |material, _| material.transmission_weight = 0.0,
         "absorption" => |material, _| material.absorption = Vec3::zero(),
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
@@ -75,7 +79,11 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
-        "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
+        "coat-texture" => |material, _| {
+            (material.coat_texture, material.coat_roughness_texture) = (NO_TEXTURE, NO_TEXTURE);
+            material.coat_color_texture = NO_TEXTURE;
+        },
+        "coat-normal-map" => |material, _| material.coat_normal_texture = NO_TEXTURE,
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,

@@ -93,7 +93,7 @@ pub fn random_document(random: &mut Random) -> Document {
     // parts by rounding.
     for parameter in PARAMETERS
         .iter()
-        .filter(|parameter| parameter.key != "coat.weight_texture")
+        .filter(|parameter| !(parameter.key.starts_with("coat.") && parameter.key.ends_with("_texture")))
     {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));

@@ -268,6 +268,8 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("COMPENSATES", f64::from(material::COMPENSATES)),
         ("HAS_BOX", f64::from(material::HAS_BOX)),
         ("WEIGHS_INDEX", f64::from(material::WEIGHS_INDEX)),
+        ("HAS_PROFILE", f64::from(material::HAS_PROFILE)),
+        ("LIGHT_GROUP_SHIFT", f64::from(material::LIGHT_GROUP_SHIFT)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
         ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),

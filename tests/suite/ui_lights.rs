@@ -310,3 +310,51 @@ fn what_has_no_effect_on_a_light_is_not_shown_nor_the_rows_of_others() {
     harness.run_steps(2);
     assert_eq!(light(&harness).target, [0.0, 0.5, 0.0]);
 }
+
+/// The arrows of lights outside the image: their tips, and where they point.
+fn arrows(harness: &Editor) -> Vec<(Pos2, Vec2)> {
+    fn collect(shape: &egui::Shape, found: &mut Vec<(Pos2, Vec2)>) {
+        match shape {
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, found)),
+            egui::Shape::Path(path) if path.closed && path.points.len() == 3 && path.fill == egui::Color32::WHITE => {
+                let [tip, a, b] = [path.points[0], path.points[1], path.points[2]];
+                found.push((tip, (tip - a.lerp(b, 0.5)).normalized()));
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    let shapes = &harness.output().shapes;
+    shapes.iter().for_each(|clipped| collect(&clipped.shape, &mut found));
+    found
+}
+
+/// A light outside the image has its mark at the edge, with an arrow that points outwards; one inside has none.
+#[test]
+fn an_arrow_at_the_edge_points_to_a_light_outside() {
+    let beside = |yaw_deg: f64, pitch_deg: f64| AreaLight {
+        yaw_deg,
+        pitch_deg,
+        distance: 3.0,
+        ..in_view()
+    };
+    assert_eq!(arrows(&editor_lit_by(&[in_view()])), []);
+    for (light, outwards) in [
+        (beside(90.0, 0.0), Vec2::RIGHT),
+        (beside(-90.0, 0.0), Vec2::LEFT),
+        (beside(0.0, 90.0), Vec2::UP),
+        (beside(0.0, -90.0), Vec2::DOWN),
+    ] {
+        let harness = editor_lit_by(&[light, in_view()]);
+        let found = arrows(&harness);
+        let [(tip, direction)] = found[..] else {
+            panic!("{outwards:?}: {found:?}");
+        };
+        assert!(direction.dot(outwards) > 0.9, "{outwards:?}: {direction:?}");
+        let mark = place(&harness, "Move area light 1");
+        assert!(
+            (tip - mark).normalized().dot(outwards) > 0.9 && tip.distance(mark) < 20.0,
+            "{tip} at {mark}"
+        );
+    }
+}

@@ -37,6 +37,7 @@ impl App {
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
             Action::ChooseLut => self.dialogs.ask(Purpose::OpenLut, String::new(), ctx),
+            Action::ChooseProfile(light) => self.dialogs.ask(Purpose::LightProfile(light), String::new(), ctx),
             Action::ChooseReference => self.dialogs.ask(Purpose::Reference, String::new(), ctx),
             Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),

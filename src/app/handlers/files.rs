@@ -11,7 +11,7 @@ use crate::app::services::watched::{self, Watched};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
-use crate::document::{Document, MaterialSettings, Reference};
+use crate::document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference};
 use crate::import::endings::ending;
 use crate::import::holds_model;
 use crate::render::output::format_of;
@@ -22,7 +22,7 @@ use crate::scene::{ModelOptions, ModelSource};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::opened::Opened;
-use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
+use crate::store::{FileError, Loaded, light_profile, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
 const KIND: &str = ".glossmith";
@@ -82,6 +82,7 @@ enum Opening {
     Environment,
     Document,
     Textures,
+    Profile,
     Unknown,
 }
 
@@ -94,6 +95,7 @@ fn opening(path: &Path) -> Opening {
         Some(FileKind::Model) => Opening::Model,
         Some(FileKind::Light | FileKind::Picture) => Opening::Environment,
         Some(FileKind::Material) => Opening::Document,
+        Some(FileKind::LightProfile) => Opening::Profile,
         _ => Opening::Unknown,
     }
 }
@@ -117,6 +119,10 @@ impl App {
             }
             Opening::Textures => {
                 self.drop_files(vec![path]);
+                return false;
+            }
+            Opening::Profile => {
+                self.drop_profile(path);
                 return false;
             }
             Opening::Unknown => {
@@ -319,6 +325,7 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenLut => self.use_lut(path),
+            Purpose::LightProfile(light) => self.use_profile(light, path),
             Purpose::Reference => {
                 let before = self.document.view.reference.take().unwrap_or_default();
                 self.document.view.reference = Some(Reference { file: path, ..before });
@@ -367,6 +374,34 @@ impl App {
                 self.edits.note(format!("Show through {name}"), "");
             }
             Err(error) => self.report(Level::Error, error.to_string()),
+        }
+    }
+
+    /// Gives an area light a profile, and its shape for it.
+    fn use_profile(&mut self, number: usize, path: PathBuf) {
+        if let Err(error) = light_profile::load(&path) {
+            self.report(Level::Error, error.to_string());
+            return;
+        }
+        let Some(light) = self.document.lighting.area_lights.get_mut(number) else {
+            return;
+        };
+        (light.profile, light.shape) = (Some(ProfileFile::new(&path)), AreaLightShape::Sphere);
+        self.edits.note("Choose a light profile", "");
+    }
+
+    /// Gives a dropped profile to the chosen light, or to the only one.
+    fn drop_profile(&mut self, path: PathBuf) {
+        let lights = self.document.lighting.area_lights.len();
+        match self.shared.selection.light.or((lights == 1).then_some(0)) {
+            Some(light) => self.use_profile(light, path),
+            None => {
+                let text = format!(
+                    "{}: choose the area light for it in the panel Light first",
+                    path.display()
+                );
+                self.report(Level::Error, text);
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! Models that were loaded: their materials, and what was edited of them.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::app::App;
@@ -119,7 +120,7 @@ impl App {
         if let EnvironmentSource::File(path) = &scene.document.lighting.environment {
             files.push(path.clone());
         }
-        files.extend(scene.document.pictures().cloned());
+        files.extend(scene.document.pictures().map(Path::to_owned));
         self.files.watched.watch(&files);
         if !self.files.watched.take_changed().is_empty() {
             self.worker.reload();

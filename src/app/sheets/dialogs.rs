@@ -40,6 +40,8 @@ pub(in crate::app) enum Purpose {
     WatchFolder,
     Texture(TextureTarget),
     OpenLut,
+    /// Of the area light of this number.
+    LightProfile(usize),
     Reference,
 }
 
@@ -68,6 +70,7 @@ impl Purpose {
             Self::WatchFolder => ("Watch a folder", false, ("Folders", Vec::new())),
             Self::Texture(_) => ("Choose a texture", false, ("Images", endings(PICTURE_KINDS))),
             Self::OpenLut => ("Choose a table of colours", false, of_kind(FileKind::ColorTable)),
+            Self::LightProfile(_) => ("Choose a light profile", false, of_kind(FileKind::LightProfile)),
             Self::Reference => ("Choose a reference image", false, ("Images", endings(PICTURE_KINDS))),
         }
     }

@@ -153,8 +153,9 @@ impl<'a> Maker<'a> {
         };
         let (progress, denoised) = render_to_end(&mut self.session, self.engine, &document)?;
         let mut row = self.message(&wanted, Status::Rendered, &progress);
-        let image = self.session.image()?;
+        let (image, lights) = (self.session.image()?, self.session.light_layers()?);
         let rendered = Rendered {
+            lights: &lights,
             denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
             ..Rendered::from(&image)
         };

@@ -8,8 +8,8 @@
 
 use super::catcher_hit::CatcherHit;
 use super::paths::Paths;
-use super::{Integrator, PathVertex};
-use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
+use super::{Integrator, Origin, PathVertex};
+use crate::cpu::recorder::{Event, Purpose, Recorder};
 use crate::job::Catcher;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
@@ -125,10 +125,10 @@ impl<T: Real> Integrator<'_, T> {
         self.add(
             &members,
             is_visible & !is_mirrored,
-            Source::Background,
+            Origin::Background,
             unshadowed,
             0,
-            &mut paths.outputs,
+            paths,
         );
         CatcherMasks {
             is_visible,

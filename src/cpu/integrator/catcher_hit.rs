@@ -31,19 +31,24 @@ impl<S: Scalar> CatcherHit<S> {
         matches!(self, Self::Mirrored { .. })
     }
 
+    /// True if the path's light becomes alpha.
+    pub(super) fn is_alpha(&self) -> bool {
+        matches!(self, Self::Shadow { is_transparent: true })
+    }
+
     /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
     /// light has no shadow.
     pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
-        match self {
-            Self::Shadow { is_transparent: true } => PathResult {
-                alpha: match is_all_light {
-                    true => S::one() - path.radiance.luminance(),
-                    false => S::zero(),
-                },
-                radiance: Vec3::zero(),
-                ..path
+        if !self.is_alpha() {
+            return path;
+        }
+        PathResult {
+            alpha: match is_all_light {
+                true => S::one() - path.radiance.luminance(),
+                false => S::zero(),
             },
-            _ => path,
+            radiance: Vec3::zero(),
+            ..path
         }
     }
 }

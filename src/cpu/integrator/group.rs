@@ -206,6 +206,24 @@ impl<T: Real> Members<T> {
         }
     }
 
+    /// Adds light to one of the `groups` light groups of each path in the mask; `of` gives a lane's group and light.
+    #[inline(always)]
+    pub fn add_to_groups(
+        &self,
+        per_path: &mut [Vec3<T::Scalar>],
+        groups: usize,
+        mask: T::Mask,
+        of: impl Fn(usize) -> (usize, Vec3<T::Scalar>),
+    ) {
+        let mut bits = mask.to_bits();
+        while bits != 0 {
+            let lane = bits.trailing_zeros() as usize % T::LANES;
+            bits &= bits - 1;
+            let (group, light) = of(lane);
+            per_path[usize::from(self.0.as_ref()[lane]) * groups + group] += light;
+        }
+    }
+
     /// Records an event per path in the mask.
     #[inline(always)]
     pub fn record<R: Recorder>(

@@ -4,13 +4,13 @@
 use super::group::Group;
 use super::paths::Paths;
 use super::shadow_rays::{ShadowRay, ShadowRays};
-use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex};
+use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, Origin, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::layer::{Layers, material_evaluate};
-use crate::optics::material::{COAT_ABSORBS, Material};
+use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE, Material};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
@@ -19,6 +19,7 @@ use crate::scene::environment::{
     environment_world_from_local, prefetch_cell, prefetch_chosen, prefetch_guide, prefetch_texels, sample_in_rows,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
+use crate::scene::light_profile::profile_share;
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
@@ -126,6 +127,9 @@ impl<T: Real> Integrator<'_, T> {
         if material.has_flag(COAT_ABSORBS) {
             emission = emission * coat_over_emission(material, cosine, point.surface.is_inside);
         }
+        if material.has_flag(HAS_PROFILE) {
+            emission = emission * self.profile_shares(material, point.surface.wo);
+        }
         let density = light_density(
             material.light_luminance,
             cosine,
@@ -133,6 +137,14 @@ impl<T: Real> Integrator<'_, T> {
             self.density_per_luminance,
         );
         self.mis_weighted(Source::Surface, emission, density, vertex, paths)
+    }
+
+    /// The share of its mean radiance that a light with a profile sends in each lane's direction.
+    #[inline(always)]
+    fn profile_shares(&self, material: &Material<T>, directions: Vec3<T>) -> T {
+        let table = &self.tables[material.lobe_table as usize..];
+        let directions = directions.to_each();
+        T::from_lanes(|lane| profile_share(table, directions.as_ref()[lane]))
     }
 
     /// Radiance times the MIS weight of BSDF sampling. The weight is 1 if light sampling does not sample this source or
@@ -203,6 +215,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
+            group: T::zero(),
         };
         if of_environment.any() {
             let rows = group.each(&paths.light_rows);
@@ -219,6 +232,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::select(of_emitters, emitted.density, sampled.density),
             distance: T::select(of_emitters, emitted.distance, sampled.distance),
             radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
+            group: emitted.group,
         }
     }
 
@@ -240,6 +254,7 @@ impl<T: Real> Integrator<'_, T> {
             materials: &self.scalar_materials,
             textures: self.textures,
             lights: self.lights,
+            tables: self.tables,
             density_per_luminance: self.density_per_luminance.lane(0),
         };
         let (positions, errors, numbers) = (point.position.to_each(), point.error.to_each(), xi.to_each());
@@ -253,6 +268,7 @@ impl<T: Real> Integrator<'_, T> {
             density: T::from_lanes(|lane| samples[lane].density),
             distance: T::from_lanes(|lane| samples[lane].distance),
             radiance: Vec3::from_lanes(|lane| samples[lane].radiance),
+            group: T::from_lanes(|lane| samples[lane].group),
         }
     }
 
@@ -307,6 +323,9 @@ impl<T: Real> Integrator<'_, T> {
         group.set_flags(&mut shadow_rays.is_pending, all, is_lit);
         if self.samples_emitters {
             group.set_vector(&mut shadow_rays.radiance, all, radiance);
+            if self.light_groups > 0 {
+                group.set_number(&mut shadow_rays.groups, all, sampled.group);
+            }
         }
         if R::KEEPS {
             let light = paths.shadow_rays.get(0);
@@ -363,23 +382,11 @@ impl<T: Real> Integrator<'_, T> {
         // A path has one light sample; accounts differ by its source.
         let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
         if of_emitters.any() {
-            self.add(
-                &members,
-                of_emitters,
-                Source::Surface,
-                light,
-                bounce + 1,
-                &mut paths.outputs,
-            );
+            let groups = group.number(&shadow_rays.groups);
+            let origin = Origin::Surface(groups);
+            self.add(&members, of_emitters, origin, light, bounce + 1, paths);
         }
-        self.add(
-            &members,
-            of_environment,
-            Source::Environment,
-            light,
-            bounce + 1,
-            &mut paths.outputs,
-        );
+        self.add(&members, of_environment, Origin::Environment, light, bounce + 1, paths);
     }
 
     /// Radiance and alpha of the background for camera rays. `dimension` is the random pair that a blur draws.

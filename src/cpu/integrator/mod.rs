@@ -20,6 +20,7 @@ use std::borrow::Cow;
 use super::recorder::{End, Event, Recorder, Source, single};
 use crate::job::effect::EffectId;
 use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
+use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{Job, Settings, Strategy};
 use crate::optics::layer::{Layers, material_albedo, material_layers, material_normal};
 use crate::optics::material::Material;
@@ -36,7 +37,7 @@ use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
 use group::{Group, Members};
-use paths::{GuideRecord, PathOutput, Paths, StartOptions};
+use paths::{GuideRecord, Paths, StartOptions};
 pub(in crate::cpu) use results::Results;
 pub use wave::WAVE_SAMPLES;
 pub(in crate::cpu) use wave::{BLOCK_PIXELS, Tile, Wave};
@@ -96,8 +97,37 @@ pub(in crate::cpu) struct Integrator<'a, T: Real> {
     is_interreflecting: bool,
     /// Samples per pixel that record first-hit guides.
     guide_samples: u32,
+    /// Light groups that are summed apart.
+    light_groups: usize,
     /// Largest component of an indirect contribution; `None` without a limit.
     firefly_clamp: Option<T>,
+}
+
+/// Where a contribution comes from.
+#[derive(Clone, Copy)]
+enum Origin<T> {
+    Environment,
+    Background,
+    /// Surfaces that emit, with the numbers of their light groups.
+    Surface(T),
+}
+
+impl<T: Real> Origin<T> {
+    fn source(&self) -> Source {
+        match self {
+            Self::Environment => Source::Environment,
+            Self::Background => Source::Background,
+            Self::Surface(_) => Source::Surface,
+        }
+    }
+
+    /// Numbers of the light groups.
+    fn group(&self) -> T {
+        match self {
+            Self::Surface(groups) => *groups,
+            _ => T::from_f64(f64::from(ENVIRONMENT_GROUP)),
+        }
+    }
 }
 
 /// Path vertices of a group: where its rays ended, on a surface or outside the scene, and how they got there.
@@ -154,6 +184,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             } else {
                 0
             },
+            light_groups: job.settings.light_groups as usize,
             firefly_clamp: job
                 .plan
                 .has(EffectId::FireflyClamp)
@@ -175,6 +206,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     fn start_options(&self) -> StartOptions {
         StartOptions {
             guide_samples: self.guide_samples,
+            light_groups: self.light_groups,
             has_catcher: self.settings.catcher.is_some(),
             counts_rough: self.settings.roulette_floor < 1.0,
             medium: self
@@ -262,10 +294,10 @@ impl<'a, T: Real> Integrator<'a, T> {
             self.add(
                 &vertex.members,
                 vertex.active,
-                Source::Surface,
+                Origin::Surface(T::from_count(material.light_group())),
                 contribution,
                 vertex.bounce,
-                &mut paths.outputs,
+                paths,
             );
         }
         let is_active = vertex.bounce < self.settings.bounces;
@@ -334,7 +366,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         if bounce == 0 {
             // The dimensions of the first bounce are free, because there is none.
             let (radiance, alpha) = self.camera_background(&group, vertex.direction, uv, FIRST_DIMENSION, paths);
-            self.add(&members, active, Source::Background, radiance, 0, &mut paths.outputs);
+            self.add(&members, active, Origin::Background, radiance, 0, paths);
             let alphas = alpha.to_each();
             members.for_each(&mut paths.outputs, active, |path, lane| {
                 path.alpha = alphas.as_ref()[lane]
@@ -353,14 +385,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             if ray.active.any() {
                 let contribution = vertex.throughput * self.weighted_environment(&ray, uv, paths);
-                self.add(
-                    &members,
-                    ray.active,
-                    Source::Environment,
-                    contribution,
-                    bounce,
-                    &mut paths.outputs,
-                );
+                self.add(&members, ray.active, Origin::Environment, contribution, bounce, paths);
             }
         }
         group.set_flags(&mut paths.is_active, active, T::Mask::splat(false));
@@ -376,14 +401,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         bounce: u32,
         paths: &mut Paths<T::Scalar, R>,
     ) {
-        let Paths {
-            outputs, catcher_hits, ..
-        } = paths;
-        let background = Vec3::from_lanes(|lane| match *members.of(catcher_hits, lane) {
+        let background = Vec3::from_lanes(|lane| match *members.of(&paths.catcher_hits, lane) {
             CatcherHit::Mirrored { background, .. } => background,
             _ => Vec3::zero(),
         });
-        self.add(members, active, Source::Background, background, bounce, outputs);
+        self.add(members, active, Origin::Background, background, bounce, paths);
+        let Paths {
+            outputs, catcher_hits, ..
+        } = paths;
         members.for_each(outputs, active, |path, lane| {
             if let CatcherHit::Mirrored { alpha, .. } = *members.of(catcher_hits, lane) {
                 path.alpha = alpha;
@@ -397,20 +422,27 @@ impl<'a, T: Real> Integrator<'a, T> {
         &self,
         members: &Members<T>,
         active: T::Mask,
-        source: Source,
+        origin: Origin<T>,
         light: Vec3<T>,
         reflections: u32,
-        outputs: &mut [PathOutput<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
         let [added, clamped] = self.clamp_fireflies(light, reflections);
         let radiances = added.to_each();
+        if self.light_groups > 0 {
+            let groups = origin.group().to_each();
+            members.add_to_groups(&mut paths.light_groups, self.light_groups, active, |lane| {
+                (groups.as_ref()[lane].to_f64() as usize, radiances.as_ref()[lane])
+            });
+        }
+        let outputs = &mut paths.outputs;
         members.for_each(outputs, active, |path, lane| path.radiance += radiances.as_ref()[lane]);
         if self.firefly_clamp.is_some() {
             let clamped = clamped.luminance().to_each();
             members.for_each(outputs, active, |path, lane| path.clamped += clamped.as_ref()[lane]);
         }
         members.record(outputs, active & light.is_any(), |lane| Event::Contribution {
-            source,
+            source: origin.source(),
             reflections,
             found: light.to_each().as_ref()[lane].to_f32(),
             added: added.to_each().as_ref()[lane].to_f32(),

@@ -78,6 +78,8 @@ impl<S: Scalar> State<S> {
 pub(super) struct StartOptions {
     /// Samples per pixel that record first-hit guides.
     pub guide_samples: u32,
+    /// Light groups that are summed apart.
+    pub light_groups: usize,
     pub has_catcher: bool,
     /// Whether non-specular bounces are counted.
     pub counts_rough: bool,
@@ -116,6 +118,8 @@ pub(super) struct Paths<S, R> {
     pub outputs: Vec<PathOutput<S, R>>,
     /// First-hit guides by path id; empty if no path records them.
     pub guides: Vec<GuideRecord>,
+    /// Light of each group, those of a path in a row by its id; empty if they are not summed apart.
+    pub light_groups: Vec<Vec3<S>>,
     /// Shadow-catcher hits by path id; empty without a catcher.
     pub catcher_hits: Vec<CatcherHit<S>>,
     /// Sum over paths of the throughput's luminance where the bounce limit ended them.
@@ -151,6 +155,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             samples: vec![0; count],
             outputs: Vec::with_capacity(count),
             guides: Vec::new(),
+            light_groups: Vec::new(),
             catcher_hits: Vec::new(),
             cut: 0.0,
         }
@@ -161,6 +166,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         self.count = 0;
         self.outputs.clear();
         self.guides.clear();
+        self.light_groups.clear();
         self.catcher_hits.clear();
         self.cut = 0.0;
     }
@@ -212,6 +218,8 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             self.guides
                 .extend(samples.iter().map(|sample| GuideRecord::new(*sample < guide_samples)));
         }
+        self.light_groups
+            .resize(self.count * start_options.light_groups, Vec3::zero());
         if start_options.has_catcher {
             self.catcher_hits.resize(self.count, CatcherHit::Miss);
         }
@@ -262,6 +270,16 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         };
         let catcher_hit = self.catcher_hits.get(number).copied().unwrap_or_default();
         catcher_hit.result(result, is_all_light)
+    }
+
+    /// Takes the light of the groups from paths whose light has become alpha, see [`CatcherHit::result`].
+    pub fn finish_groups(&mut self) {
+        let groups = self.light_groups.len() / self.count.max(1);
+        for (id, hit) in self.catcher_hits.iter().enumerate() {
+            if hit.is_alpha() {
+                self.light_groups[id * groups..(id + 1) * groups].fill(Vec3::zero());
+            }
+        }
     }
 
     /// Accumulated result of the path at an index.

@@ -20,6 +20,8 @@ pub struct Results<S> {
     rays: Vec<u32>,
     /// First-hit guides; empty if no path records them.
     guides: Vec<GuideSums>,
+    /// Light of each group, those of a path in a row; empty if they are not summed apart.
+    light_groups: Vec<Vec3<S>>,
 }
 
 impl<S: Scalar> Results<S> {
@@ -34,6 +36,7 @@ impl<S: Scalar> Results<S> {
             clamped: vec![S::zero(); count],
             rays: vec![0; count],
             guides: Vec::with_capacity(count),
+            light_groups: Vec::new(),
         }
     }
 
@@ -46,6 +49,13 @@ impl<S: Scalar> Results<S> {
             clamped: self.clamped[path],
             guides: self.guides.get(path).copied().unwrap_or_default(),
         }
+    }
+
+    /// Light of each group of one path; empty if they are not summed apart.
+    pub fn groups(&self, path: usize) -> impl Iterator<Item = [f64; 3]> {
+        let groups = self.light_groups.len() / self.count.max(1);
+        let lights = &self.light_groups[path * groups..(path + 1) * groups];
+        lights.iter().map(|light| light.to_f64().into())
     }
 
     /// Radiances of `N` consecutive paths, channel by channel; arbitrary beyond the last path.
@@ -89,6 +99,12 @@ impl<S: Scalar> Results<S> {
                 self.guides.push(result.guides);
             }
         }
+    }
+
+    /// Stores the light of the groups of all paths.
+    pub(super) fn set_groups(&mut self, lights: &[Vec3<S>]) {
+        self.light_groups.clear();
+        self.light_groups.extend_from_slice(lights);
     }
 
     /// Stores the results of a group of consecutive paths.

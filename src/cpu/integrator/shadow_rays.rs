@@ -19,6 +19,8 @@ pub(super) struct ShadowRays<S> {
     pub distance: Vec<S>,
     /// Of the emitter; unused for the environment.
     pub radiance: Vectors<S>,
+    /// Numbers of the emitters' light groups; only where these are summed apart.
+    pub groups: Vec<S>,
     /// True for a sample of the environment, whose radiance is looked up later. Always true if no emitters are sampled. Set
     /// together with the random numbers, for all hits.
     pub is_environment: Vec<bool>,
@@ -46,6 +48,7 @@ impl<S: Scalar> ShadowRays<S> {
             density: numbers(),
             distance: numbers(),
             radiance: Vectors::new(count),
+            groups: numbers(),
             is_environment: vec![true; count],
             value: Vectors::new(count),
             throughput: Vectors::new(count),
@@ -77,6 +80,7 @@ impl<S: Scalar> ShadowRays<S> {
         gather(&mut self.density, &from.density, order);
         if samples_emitters {
             self.radiance.gather(&from.radiance, order);
+            gather(&mut self.groups, &from.groups, order);
             gather(&mut self.is_environment, &from.is_environment, order);
         }
         self.value.gather(&from.value, order);

@@ -108,6 +108,8 @@ impl<T: Real> Integrator<'_, T> {
             if !is_all_background {
                 let results = (0..wave.paths.count()).map(|number| self.result(&wave.paths, number));
                 wave.results.fill(results);
+                wave.paths.finish_groups();
+                wave.results.set_groups(&wave.paths.light_groups);
                 wave.results.cut = wave.paths.cut;
             }
             report(samples, &wave.results);
@@ -125,7 +127,8 @@ impl<T: Real> Integrator<'_, T> {
         // is cheaper, because no path state is set up. Surfaces with holes need a random number per hit instead (`intersect`).
         if !self.has_holes {
             self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.intersections);
-            if self.has_plain_background() && wave.intersections.iter().all(Option::is_none) {
+            let is_short = self.has_plain_background() && self.light_groups == 0;
+            if is_short && wave.intersections.iter().all(Option::is_none) {
                 self.shade_background(&wave.paths, &mut wave.results);
                 return true;
             }

@@ -62,12 +62,22 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::Spot,
         label: "Spots",
-        help: "Area lights that send their light into a cone.",
-        decide: |facts| match facts.document.lighting.shining().any(AreaLight::is_spot) {
-            true => Decision::on("an area light is a spot"),
-            false => Decision::off("no area light is a spot"),
+        help: "Area lights that send their light into a cone, or by a profile.",
+        decide: |facts| {
+            let lighting = &facts.document.lighting;
+            match (
+                lighting.shining().any(AreaLight::is_spot),
+                lighting.shining().any(AreaLight::has_profile),
+            ) {
+                (true, _) => Decision::on("an area light is a spot"),
+                (_, true) => Decision::on("an area light has a profile"),
+                _ => Decision::off("no area light is a spot or has a profile"),
+            }
         },
-        remove: Some(|document| document.lighting.area_lights.retain(|light| !light.is_spot())),
+        remove: Some(|document| {
+            let lights = &mut document.lighting.area_lights;
+            lights.retain(|light| !light.is_spot() && !light.has_profile());
+        }),
     },
     Effect {
         id: EffectId::Emission,
@@ -416,14 +426,21 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::CoatTexture,
         label: "Coat textures",
-        help: "Coat weights from textures.",
-        decide: |facts| {
-            facts.needed_by(
-                |m| m.coat_texture != NO_TEXTURE,
-                "takes the weight of its coat from a texture",
-            )
-        },
-        remove: Some(|document| each_material(document, |material| material.textures.coat = false)),
+        help: "Weight, roughness and colour of coats from textures.",
+        decide: |facts| facts.needed_by(Material::has_textured_coat, "has a texture of its coat"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                let uses = &mut material.textures;
+                (uses.coat, uses.coat_roughness, uses.coat_color) = (false, false, false);
+            });
+        }),
+    },
+    Effect {
+        id: EffectId::CoatNormalMap,
+        label: "Coat normal maps",
+        help: "Normals of coats bent by a texture of their own.",
+        decide: |facts| facts.needed_by(|m| m.coat_normal_texture != NO_TEXTURE, "bends the normals of its coat"),
+        remove: Some(|document| each_material(document, |material| material.textures.coat_normal = false)),
     },
     Effect {
         id: EffectId::BoxProjection,
@@ -518,6 +535,16 @@ pub static EFFECTS: &[Effect] = &[
             _ => Decision::on("they guide the denoiser"),
         },
         remove: None,
+    },
+    Effect {
+        id: EffectId::LightGroups,
+        label: "Light groups",
+        help: "The light of each group summed apart, for layers and for a mix after rendering.",
+        decide: |facts| match facts.settings.light_groups {
+            0 => Decision::off("all light is summed together"),
+            groups => Decision::on(format!("{groups} groups are summed apart")),
+        },
+        remove: Some(|document| document.lighting.light_groups = false),
     },
     Effect {
         id: EffectId::Denoising,

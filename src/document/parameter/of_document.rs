@@ -38,6 +38,8 @@ fn lighting() -> Vec<Parameter<Document>> {
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment),
         of("scene.unit", Stage::Display, "Scene unit", "Metres per scene unit. Used only to convert the power of lights.", real(range::UNIT_M, "m"), field!(Real unit_m))
             .named("Scene unit").group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty()),
+        of("lighting.light_groups", Stage::Sampling, "Separate", "Sums the light of each group apart: the mix changes without rendering again, and .exr images get a layer of each group.", Kind::Toggle, field!(Toggle lighting.light_groups))
+            .named("Light groups").group("Light groups").flag("light-groups"),
         of("scene.ground", Geometry, "Ground", "A surface under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
             .named("Ground").group("Ground").flag("ground"),
         of("lighting.ground.kind", Geometry, "Kind", "What the ground is.", choices::<GroundKind>(), choice!(lighting.ground.kind))

@@ -1,11 +1,14 @@
 //! Access to the rendered film.
 
+use std::borrow::Cow;
+
 use super::{Session, SessionError};
 use crate::document::ViewSettings;
+use crate::document::effect::without_what_is_off;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::render::denoise::Noisy;
-use crate::render::output::Layers;
+use crate::render::output::{Layers, LightLayer};
 use crate::render::shown::Source;
 use crate::render::sums::KeptFilm;
 
@@ -19,13 +22,35 @@ impl Session {
         Ok(self.engine.film()?)
     }
 
-    /// The mean image, linear.
+    /// The film with the mix of its light groups.
+    fn mixed_film(&mut self) -> Result<Cow<'_, Film>, SessionError> {
+        let document = self.document.as_deref().map(without_what_is_off);
+        let factors = document.map(|document| document.light_factors()).unwrap_or_default();
+        Ok(self.engine.film()?.mixed(&factors))
+    }
+
+    /// The light of each group as it was rendered, by the group's name.
+    ///
+    /// # Errors
+    ///
+    /// If the GPU fails.
+    pub fn light_layers(&mut self) -> Result<Vec<LightLayer>, SessionError> {
+        let document = self.document.as_deref().map(without_what_is_off);
+        let names = document.map(|document| document.light_groups()).unwrap_or_default();
+        let film = self.engine.film()?;
+        let layers = names.into_iter().zip(0..film.light_groups());
+        Ok(layers
+            .map(|(name, group)| (name.into(), film.light_image(group)))
+            .collect())
+    }
+
+    /// The mean image, linear, with the mix of its light groups.
     ///
     /// # Errors
     ///
     /// If the GPU fails.
     pub fn image(&mut self) -> Result<Image, SessionError> {
-        Ok(self.film()?.image())
+        Ok(self.mixed_film()?.image())
     }
 
     /// The mean image with its per-pixel layers.
@@ -35,8 +60,12 @@ impl Session {
     /// If the GPU fails.
     pub fn layers(&mut self) -> Result<Layers, SessionError> {
         let units = self.world_units_per_unit();
-        let film = self.engine.film()?;
-        Ok(Layers::of(film, Features::of(film, units)))
+        let lights = self.light_layers()?;
+        let film = self.mixed_film()?;
+        Ok(Layers {
+            lights,
+            ..Layers::of(&film, Features::of(&film, units))
+        })
     }
 
     /// The film with the data to join it with others.
@@ -73,6 +102,6 @@ impl Session {
     /// If the GPU fails.
     pub fn noisy(&mut self) -> Result<Noisy, SessionError> {
         let region = self.document.as_ref().and_then(|document| document.render.region);
-        Ok(Noisy::of(self.film()?, region))
+        Ok(Noisy::of(&*self.mixed_film()?, region))
     }
 }

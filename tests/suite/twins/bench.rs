@@ -112,6 +112,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 let others = [material.textures[1], of_others.below(textures.records.len()) as u32];
                 material.metalness_texture = others[of_others.below(2)];
                 material.coat_texture = of_others.below(textures.records.len()) as u32;
+                material.coat_color_texture = of_others.below(textures.records.len()) as u32;
                 materials.push(material);
             }
         }
@@ -124,6 +125,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     // Linear pictures: the first with a normal texture, the second with one that shines.
     materials[0].textures = [NO_TEXTURE, NO_TEXTURE, 1, NO_TEXTURE];
     materials[1].textures = [NO_TEXTURE, NO_TEXTURE, NO_TEXTURE, 0];
+    materials[0].coat_normal_texture = 2;
     // Never so steep that the tangent is along the normal.
     materials[0].normal_strength = 0.5;
     for material in &mut materials[..2] {
@@ -297,6 +299,10 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_darkening: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
         coat_inner: rng.range(0.0, 0.9),
         coat_anisotropy: if rng.chance(0.3) { rng.range(-1.0, 1.0) } else { 0.0 },
+        coat_roughness_texture: NO_TEXTURE,
+        coat_color_texture: NO_TEXTURE,
+        coat_normal_texture: NO_TEXTURE,
+        coat_normal_strength: 0.5,
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,
@@ -454,6 +460,7 @@ fn settings() -> Settings {
         light_choice: SCENE.light_choice(),
         bounces: 8,
         least_reflections: 0,
+        light_groups: 0,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,

@@ -39,6 +39,7 @@ fn lights_agree() {
                         materials: &materials,
                         textures: &scene.textures,
                         lights: &scene.lights,
+                        tables: &scene.tables,
                         density_per_luminance: density,
                     };
                     let s = light_sample(&emitters, origin, error, vec3(a, b, c));

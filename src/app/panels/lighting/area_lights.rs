@@ -2,12 +2,13 @@
 
 use egui::{Align, Button, Layout, Ui};
 
+use crate::app::actions::Action;
 use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::app::lights::{View, put_in_view};
-use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
+use crate::document::{AreaLight, GroupName, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
 /// What the buttons beside a light's name ask for.
@@ -54,7 +55,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         let is_open = is_alone || desk.shared.selection.light == Some(index);
         widgets::comes_and_goes(ui, |ui| {
             if is_open {
-                rows(ui, desk, &title, light);
+                rows(ui, desk, (&title, index), light);
                 let help = "Click the model to put the highlight there.";
                 let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
                 pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
@@ -174,7 +175,7 @@ fn header(
     asked
 }
 
-fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
+fn rows(ui: &mut Ui, desk: &mut Desk<'_>, (title, index): (&str, usize), light: &mut AreaLight) {
     for parameter in LIGHT_PARAMETERS.iter() {
         widgets::comes_and_goes(ui, |ui| parameter_of(ui, desk, title, parameter, light));
         if parameter.word() == "color" {
@@ -182,6 +183,57 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
         }
     }
     widgets::comes_and_goes(ui, |ui| power(ui, desk, title, light));
+    widgets::comes_and_goes(ui, |ui| profile(ui, desk, (title, index), light));
+    widgets::comes_and_goes(ui, |ui| group(ui, desk, title, light));
+}
+
+/// The file of a sphere's intensities by direction.
+fn profile(ui: &mut Ui, desk: &mut Desk<'_>, (title, index): (&str, usize), light: &mut AreaLight) {
+    if !light.is_sphere() {
+        return;
+    }
+    let full = format!("{title} profile");
+    let help = "Sends the power of the light as a measured lamp does, by an .ies file.";
+    widgets::row(ui, Name::new(&full, "Profile", help), |ui| {
+        let Some(file) = light.profile else {
+            let choose = ui.button("Choose…");
+            if choose.clicked() {
+                desk.actions.push(Action::ChooseProfile(index));
+            }
+            return choose;
+        };
+        let name = format!("Remove {}", full.to_lowercase());
+        if icons::button(ui, Icon::Close, &name, "Shines evenly again").clicked() {
+            light.profile = None;
+            desk.edits.note("Remove the light profile", "");
+        }
+        let path = file.path();
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        ui.add(egui::Label::new(name).truncate())
+            .on_hover_text(path.display().to_string())
+    });
+}
+
+/// The name of its light group, while groups are summed apart.
+fn group(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
+    if !desk.document.lighting.light_groups {
+        return;
+    }
+    let full = format!("{title} group");
+    let help = "Lights of the same group share a factor and a layer.";
+    let by_kind = AreaLight {
+        group: GroupName::default(),
+        ..*light
+    };
+    let mut text = light.group.to_string();
+    let response = widgets::row(ui, Name::new(&full, "Group", help), |ui| {
+        let field = egui::TextEdit::singleline(&mut text).hint_text(by_kind.group_name().to_string());
+        ui.add(field.desired_width(f32::INFINITY))
+    });
+    if response.changed {
+        light.group = GroupName::new(&text);
+    }
+    edited(desk, response, full, &mut light.group, GroupName::default());
 }
 
 /// The row of a parameter, where it has an effect on a light of this shape.

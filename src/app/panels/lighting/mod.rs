@@ -1,6 +1,7 @@
 //! Environment, area lights, background and ground.
 
 mod area_lights;
+mod groups;
 mod preview;
 
 use egui::{Ui, vec2};
@@ -34,6 +35,7 @@ impl Panel for LightingPanel {
             desk.settings(ui, "Environment");
         });
         widgets::group(ui, "Area lights", |ui| area_lights::show(ui, desk));
+        widgets::group(ui, "Light groups", |ui| groups::show(ui, desk));
         widgets::group(ui, "Background", |ui| background(ui, desk));
         widgets::group(ui, "Ground", |ui| ground(ui, desk));
     }

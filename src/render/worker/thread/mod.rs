@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::denoising::Denoising;
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission};
-use crate::document::{Change, Document};
+use crate::document::{Change, Document, ViewSettings};
 use crate::gpu::GpuError;
 use crate::job::plan::Specialisation;
 use crate::panics::{caught, lock};
@@ -345,9 +345,12 @@ impl State<'_> {
         let Some(stage) = self.stage.clone() else { return Ok(()) };
         self.session()?.submit_shared(&stage.document())?;
         let view = &stage.submission.document.view;
-        let shown = self.snapshot.picture.as_ref().map(|picture| &picture.document.view);
-        let denoises_alike =
-            shown.is_some_and(|old| (old.denoise, old.denoise_when) == (view.denoise, view.denoise_when));
+        let mix = &stage.submission.document.lighting.light_mix;
+        let shown = self.snapshot.picture.as_ref().map(|picture| &picture.document);
+        let has_same_pixels = shown.is_some_and(|old| {
+            let modes = |view: &ViewSettings| (view.denoise, view.denoise_when);
+            modes(&old.view) == modes(view) && old.lighting.light_mix == *mix
+        });
         if let Some(scene) = &self.snapshot.scene {
             let document = stage.submission.document.clone();
             self.snapshot.scene = Some(Arc::new(Scene {
@@ -355,7 +358,7 @@ impl State<'_> {
                 ..Scene::clone(scene)
             }));
         }
-        if !denoises_alike && stage.is_shown {
+        if !has_same_pixels && stage.is_shown {
             self.reset_denoised();
             return self.publish_picture();
         }

@@ -56,6 +56,17 @@ const UNSIGNED_INT: u32 = 5125;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
+/// What it takes of a material: OpenPBR's coat by a draft.
+fn takes(material: &MaterialSettings) -> Takes {
+    let is_draft = material.coat_on_base;
+    Takes {
+        coat_details: is_draft,
+        coat_stretch: is_draft,
+        coat_on_base: is_draft,
+        ..TAKES
+    }
+}
+
 impl Format for Gltf {
     fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         let mut model = match &subject.document {
@@ -84,7 +95,7 @@ impl Format for Gltf {
                 None => Vec::new(),
             };
             let material = &material;
-            let (surface, mut report) = shown(material, &TAKES);
+            let (surface, mut report) = shown(material, &takes(material));
             report.entries.extend(of_own);
             let textures = file.textures(&model, slot, material);
             if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
@@ -131,7 +142,7 @@ impl Format for Gltf {
             };
             let mut shows = material_json(
                 &exact,
-                &shown(&exact, &TAKES).0,
+                &shown(&exact, &takes(&exact)).0,
                 &SlotTextures::default(),
                 radius_of(&model),
             );
@@ -300,6 +311,9 @@ impl Builder {
             normal: texture(uses.normal, TextureTarget::Normal),
             emissive: texture(uses.emission, TextureTarget::Emission),
             coat: texture(uses.coat, TextureTarget::Coat),
+            coat_roughness: texture(uses.coat_roughness, TextureTarget::CoatRoughness),
+            coat_normal: texture(uses.coat_normal, TextureTarget::CoatNormal),
+            coat_color: texture(uses.coat_color, TextureTarget::CoatColor),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

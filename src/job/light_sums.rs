@@ -1,0 +1,136 @@
+//! Light groups: the light of each group's sources summed apart, beside the film's sums of all light. Their mix is another
+//! image of the same samples.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::film::{ADDED_AT_ONCE, Film, HalfSums, Image, KeptHalves, copy_kept, luminance};
+
+/// Light groups at most.
+pub const LIGHT_GROUPS_MAX: usize = 16;
+/// The group of the environment and of the background.
+pub const ENVIRONMENT_GROUP: u32 = 0;
+
+/// Sums of a group's light in one pixel, of the even and the odd samples: linear RGB.
+pub type LightSums = [[f64; 3]; 2];
+
+impl Film {
+    /// Number of light groups that are summed apart.
+    pub fn light_groups(&self) -> usize {
+        self.lights.len() / self.pixel_count().max(1)
+    }
+
+    /// Sums of the light groups of a pixel.
+    pub fn lights(&self, pixel: usize) -> &[LightSums] {
+        let groups = self.light_groups();
+        &self.lights[pixel * groups..(pixel + 1) * groups]
+    }
+
+    /// Adds the light of each group to one half of a pixel's samples.
+    pub fn add_lights(&mut self, pixel: usize, half: usize, lights: impl IntoIterator<Item = [f64; 3]>) {
+        let groups = self.light_groups();
+        let sums = &mut self.lights[pixel * groups..(pixel + 1) * groups];
+        for (sums, light) in sums.iter_mut().zip(lights) {
+            (0..3).for_each(|channel| sums[half][channel] += light[channel]);
+        }
+    }
+
+    /// Adds other sums of a group in a pixel.
+    pub fn add_light(&mut self, pixel: usize, group: usize, more: LightSums) {
+        let place = pixel * self.light_groups() + group;
+        let sums = self.lights[place].as_flattened_mut().iter_mut();
+        sums.zip(more.as_flattened()).for_each(|(sum, more)| *sum += more);
+    }
+
+    /// Copies the groups' sums of some pixels of another film.
+    pub(super) fn copy_lights(&mut self, to: Range<usize>, from: &Film, pixels: Range<usize>) {
+        let groups = from.light_groups();
+        let of = |pixels: Range<usize>| pixels.start * groups..pixels.end * groups;
+        copy_kept(&mut self.lights, of(to), &from.lights, of(pixels));
+    }
+
+    /// The mean light of a group: linear RGB with an alpha of 1.
+    pub fn light_image(&self, group: usize) -> Image {
+        let mean = |pixel: usize| {
+            let samples = self.samples_of(pixel).max(1.0);
+            let [even, odd] = self.lights(pixel)[group];
+            let mean = |channel: usize| ((even[channel] + odd[channel]) / samples) as f32;
+            [mean(0), mean(1), mean(2), 1.0]
+        };
+        Image {
+            width: self.width,
+            height: self.height,
+            pixels: (0..self.pixel_count()).into_par_iter().map(mean).collect(),
+        }
+    }
+
+    /// The film with other halves of each pixel's samples, made in parallel, and without light groups.
+    fn with_halves(&self, halves: impl Fn(usize, [HalfSums; 2]) -> [HalfSums; 2] + Sync) -> Film {
+        let pixels = self.pixels.par_iter().with_min_len(ADDED_AT_ONCE).enumerate();
+        Film {
+            pixels: pixels
+                .map(|(pixel, kept)| KeptHalves::of(&halves(pixel, kept.sums())))
+                .collect(),
+            coverage: self.coverage.clone(),
+            guides: self.guides.clone(),
+            lights: Vec::new(),
+            costs: self.costs.clone(),
+            ..*self
+        }
+    }
+
+    /// The film with a factor per channel on each group's light, without the groups; itself if no factor differs from 1. The spread of a
+    /// pixel's samples changes with the square of its luminance, which is exact where one group lights it.
+    pub fn mixed(&self, factors: &[[f64; 3]]) -> Cow<'_, Film> {
+        if self.lights.is_empty() || factors.iter().flatten().all(|factor| *factor == 1.0) {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(self.with_halves(|pixel, halves| {
+            std::array::from_fn(|number| {
+                let lights = self.lights(pixel).iter().map(|sums| sums[number]);
+                mixed_half(&halves[number], lights.zip(factors))
+            })
+        }))
+    }
+}
+
+fn mixed_half<'f>(half: &HalfSums, lights: impl Iterator<Item = ([f64; 3], &'f [f64; 3])>) -> HalfSums {
+    let mut color = [0.0; 3];
+    for (light, factor) in lights {
+        (0..3).for_each(|channel| color[channel] += factor[channel] * light[channel]);
+    }
+    let before = half.luminance();
+    let ratio = if before > 0.0 { luminance(color) / before } else { 1.0 };
+    HalfSums {
+        color,
+        squared_deviations: half.squared_deviations * ratio * ratio,
+        samples: half.samples,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::film::Extras;
+
+    #[test]
+    fn a_mix_weighs_each_group_in_both_halves() {
+        let extras = Extras {
+            light_groups: 2,
+            ..Extras::default()
+        };
+        let mut film = Film::keeping(1, 1, extras);
+        for (sample, [first, second]) in [[1.0, 2.0], [3.0, 5.0], [2.0, 0.5]].into_iter().enumerate() {
+            film.add(0, sample as u32, [first + second, first + second, first + second, 1.0]);
+            film.add_lights(0, sample % 2, [[first; 3], [second; 3]]);
+        }
+        assert!(matches!(film.mixed(&[[1.0; 3], [1.0; 3]]), Cow::Borrowed(_)));
+        let mixed = film.mixed(&[[2.0, 0.0, 1.0], [0.0, 1.0, 1.0]]);
+        let [even, odd] = mixed.halves(0);
+        assert_eq!([even.color, odd.color], [[6.0, 2.5, 5.5], [6.0, 5.0, 8.0]]);
+        assert_eq!([even.samples, odd.samples], [2.0, 1.0]);
+        assert_eq!(film.light_image(0).pixels, [[2.0, 2.0, 2.0, 1.0]]);
+    }
+}

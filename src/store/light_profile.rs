@@ -1,0 +1,153 @@
+//! Light profiles in `.ies` files (ANSI/IES LM-63 of 1986 to 2019, type C photometry).
+//!
+//! Of the crates that read them, `eulumdat` has a licence that this program can't take, and `lidrs` brings five crates, for
+//! a list of numbers behind a line.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::remembered::Remembered;
+use super::{FileError, file};
+use crate::scene::light_profile::{ANGLES_MAX, LightProfile};
+
+/// Profiles that are remembered.
+const REMEMBERED: usize = 64;
+
+/// The profile in a file.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn load(path: &Path) -> Result<LightProfile, FileError> {
+    let bytes = file::read(path)?;
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|reason| FileError::Content {
+        path: path.to_owned(),
+        reason: format!("not a light profile: {reason}; choose an .ies file of type C photometry"),
+    })
+}
+
+/// The profile in a file, read again if the file was saved since. `None`, logged once, if it can't be read.
+pub fn remembered(path: &Path) -> Option<Arc<LightProfile>> {
+    static PROFILES: Remembered<LightProfile> = Remembered::new(REMEMBERED);
+    PROFILES.get(path, load, "the light shines evenly")
+}
+
+fn parse(text: &str) -> Result<LightProfile, String> {
+    let mut lines = text.lines();
+    let tilt = lines.find_map(|line| line.trim().strip_prefix("TILT="));
+    let tilt = tilt.ok_or("it has no line TILT=")?.trim();
+    let words = lines.flat_map(|line| line.split([' ', '\t', ',']));
+    let mut numbers = words.filter(|word| !word.is_empty()).map(|word| {
+        let number = word.parse().ok().filter(|x: &f32| x.is_finite());
+        number.ok_or_else(|| format!("\"{}\" is no number", word.chars().take(40).collect::<String>()))
+    });
+    let mut number = || numbers.next().ok_or_else(|| "it ends too early".to_owned())?;
+    match tilt {
+        "NONE" => {}
+        "INCLUDE" => {
+            // How the lamp dims where it is tilted: this one hangs as it was measured.
+            number()?;
+            let pairs = count("tilt", number()?)?;
+            (0..2 * pairs).try_for_each(|_| number().map(drop))?;
+        }
+        other => return Err(format!("its tilt is in {}", other.chars().take(40).collect::<String>())),
+    }
+    let [_lamps, _lumens, multiplier] = [number()?, number()?, number()?];
+    let verticals = count("vertical", number()?)?;
+    let horizontals = count("horizontal", number()?)?;
+    let photometry = number()?;
+    if photometry != 1.0 {
+        return Err(format!(
+            "its photometry is of type {}",
+            if photometry == 2.0 { "B" } else { "A" }
+        ));
+    }
+    // Units and dimensions of the opening.
+    (0..4).try_for_each(|_| number().map(drop))?;
+    let [ballast, of_future_use, _watts] = [number()?, number()?, number()?];
+    let of_future_use = if of_future_use > 0.0 { of_future_use } else { 1.0 };
+    let factor = multiplier * ballast * of_future_use;
+    let mut list = |count: usize| (0..count).map(|_| number()).collect::<Result<Vec<f32>, String>>();
+    let (vertical_deg, horizontal_deg) = (list(verticals)?, list(horizontals)?);
+    let mut candela = list(verticals * horizontals)?;
+    candela.iter_mut().for_each(|candela| *candela *= factor);
+    LightProfile::new(vertical_deg, &horizontal_deg, &candela)
+}
+
+fn count(kind: &str, number: f32) -> Result<usize, String> {
+    let is_count = number.fract() == 0.0 && (1.0..=ANGLES_MAX as f32).contains(&number);
+    match is_count {
+        true => Ok(number as usize),
+        false => Err(format!("it has {number} {kind} angles")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    const HEAD: &str = "IESNA:LM-63-2002\r\n[TEST] built by a test\r\nTILT=NONE\r\n";
+
+    #[test]
+    fn files_are_read_as_programs_write_them() {
+        let plain = parse(&format!(
+            "{HEAD}1 1000 2 3 1 1 2 0 0 0\n1 1 20\n0 45 90\n0\n50 50\n 50\n"
+        ));
+        assert!((plain.expect("a profile").lumens() - 200.0 * PI).abs() < 1e-3);
+        let tilted = "TILT=INCLUDE\n1\n2\n0 90\n1,0.9\n1 -1 1 2 1 1 1 0 0 0 0.5 1 20 0 180 0 10 10";
+        assert!((parse(tilted).expect("a profile").lumens() - 20.0 * PI).abs() < 1e-6);
+    }
+
+    #[test]
+    fn damaged_files_are_refused_in_words() {
+        for (text, words) in [
+            ("", "TILT="),
+            ("TILT=NONE", "ends too early"),
+            ("TILT=lamp.tlt\n1", "its tilt is in lamp.tlt"),
+            ("TILT=NONE\n1 1 1 1e9 1 1", "vertical angles"),
+            ("TILT=NONE\n1 1 1 2.5 1 1", "vertical angles"),
+            ("TILT=NONE\n1 1 1 2 -1 1", "horizontal angles"),
+            ("TILT=NONE\n1 1 1 2 1 3 1 0 0 0", "type A"),
+            ("TILT=NONE\n1 1 one", "\"one\" is no number"),
+            ("TILT=NONE\n1 1 nan", "no number"),
+            ("TILT=INCLUDE\n1 1e30", "tilt angles"),
+            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1", "ends too early"),
+            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1", "do not ascend"),
+            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1 -1", "negative"),
+            ("TILT=NONE\n1 1 1e38 2 1 1 1 0 0 0 1e38 1 1 0 90 0 1 1", "above 1e9"),
+        ] {
+            let error = parse(text).expect_err(text);
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+
+    /// No file panics, however it is cut or whichever word is replaced.
+    #[test]
+    fn no_damage_panics() {
+        let whole = format!("{HEAD}1 1000 2 3 2 1 2 0 0 0 1 1 20 0 45 90 0 90 50 50 50 40 30 20");
+        for end in 0..whole.len() {
+            let _ = parse(&whole[..end]);
+        }
+        let words: Vec<&str> = whole.split(' ').collect();
+        for place in 0..words.len() {
+            for other in [
+                "",
+                "-1",
+                "0",
+                "1e38",
+                "1e-38",
+                "2048",
+                "99999999999",
+                "nan",
+                "inf",
+                "\u{fffd}",
+                "TILT=",
+            ] {
+                let mut damaged = words.clone();
+                damaged[place] = other;
+                let _ = parse(&damaged.join(" "));
+            }
+        }
+    }
+}

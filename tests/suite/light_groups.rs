@@ -1,0 +1,293 @@
+//! Light groups: their light adds up to all light on both engines, each is the light of its sources alone, and their mix
+//! needs no new samples.
+
+use std::collections::BTreeSet;
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::layout::Pane;
+use glossmith::document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix};
+use glossmith::job::film::Film;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::project::parse_document;
+
+use super::cli_support::{Workplace, channels};
+use super::lights::lit_scenes;
+use super::renders::{document, render};
+use super::ui::{Editor, editor_with, picture, settle, undo};
+use super::worker::small_document;
+
+/// Scenes whose groups are summed apart: with lights, emission and a shadow catcher, of few samples.
+fn scenes() -> Vec<(&'static str, Document)> {
+    let mut scenes = lit_scenes();
+    for kind in [Background::Environment, Background::Transparent] {
+        let mut caught = document(ModelSource::Teapot, EnvironmentSource::Sky, &["base.metalness=0"]);
+        caught.ground = true;
+        (caught.lighting.ground.kind, caught.lighting.ground.reflection) = (GroundKind::ShadowCatcher, 0.5);
+        caught.lighting.background = kind;
+        caught.lighting.area_lights = vec![AreaLight::default()];
+        scenes.push(("shadow catcher", caught));
+    }
+    for (_, document) in &mut scenes {
+        (document.render.width, document.render.height, document.render.samples) = (24, 24, 6);
+        document.lighting.light_groups = true;
+        if let Some(light) = document.lighting.area_lights.first_mut() {
+            light.group = GroupName::new("key");
+        }
+    }
+    scenes
+}
+
+/// Sums of a group over the image, or of all light.
+fn total(film: &Film, group: Option<usize>) -> f64 {
+    let of_pixel = |pixel: usize| match group {
+        Some(group) => film.lights(pixel)[group].as_flattened().iter().sum(),
+        None => film.color(pixel)[..3].iter().sum::<f64>(),
+    };
+    (0..film.pixel_count()).map(of_pixel).sum()
+}
+
+#[test]
+fn the_groups_are_all_light_on_both_engines() {
+    for (name, document) in scenes() {
+        let films = [EngineChoice::Cpu, EngineChoice::Gpu].map(|engine| render(engine, &document));
+        let groups = document.light_groups();
+        for film in &films {
+            assert_eq!(film.light_groups(), groups.len(), "{name}");
+            for pixel in 0..film.pixel_count() {
+                for (number, half) in film.halves(pixel).iter().enumerate() {
+                    for channel in 0..3 {
+                        let parts: f64 = film.lights(pixel).iter().map(|sums| sums[number][channel]).sum();
+                        let whole = half.color[channel];
+                        assert!(
+                            (parts - whole).abs() <= 1e-5 * (1.0 + whole),
+                            "{name}: {parts} of {whole}"
+                        );
+                    }
+                }
+            }
+        }
+        let [cpu, gpu] = &films;
+        for (group, name) in groups.iter().enumerate() {
+            let [on_cpu, on_gpu] = [cpu, gpu].map(|film| total(film, Some(group)));
+            let whole = total(cpu, None);
+            println!("{name}: {on_cpu} and {on_gpu} of {whole}");
+            // Rounding sends a few paths elsewhere.
+            assert!(
+                (on_cpu - on_gpu).abs() <= 0.02 * whole,
+                "{name}: {on_cpu} and {on_gpu} of {whole}"
+            );
+        }
+    }
+}
+
+#[test]
+fn groups_change_no_bit_of_the_image() {
+    for (name, document) in scenes() {
+        let mut together = document.clone();
+        together.lighting.light_groups = false;
+        let [apart, together] = [&document, &together].map(|document| render(EngineChoice::Cpu, document));
+        assert_eq!(together.light_groups(), 0);
+        for pixel in 0..apart.pixel_count() {
+            assert_eq!(apart.halves(pixel), together.halves(pixel), "{name}, pixel {pixel}");
+            assert_eq!(apart.color(pixel), together.color(pixel), "{name}, pixel {pixel}");
+        }
+    }
+}
+
+/// A group's light is that of a render in which nothing else shines.
+#[test]
+fn a_group_is_the_light_of_its_sources() {
+    let (_, mut document) = lit_scenes().swap_remove(0);
+    document.lighting.light_groups = true;
+    let [key, rim] = ["key", "rim"].map(GroupName::new);
+    document.lighting.area_lights.truncate(1);
+    let mut other = AreaLight {
+        yaw_deg: 120.0,
+        ..document.lighting.area_lights[0]
+    };
+    (document.lighting.area_lights[0].group, other.group) = (key, rim);
+    document.lighting.area_lights.push(other);
+    document.render.samples = 256;
+    let film = render(EngineChoice::Cpu, &document);
+    let names: BTreeSet<String> = document.light_groups().into_iter().map(String::from).collect();
+    assert_eq!(names.len(), 3);
+    for (group, name) in document.light_groups().into_iter().enumerate() {
+        let mut alone = document.clone();
+        alone.lighting.light_groups = false;
+        for light in &mut alone.lighting.area_lights {
+            // It still shadows, but sends no light.
+            light.strength *= f32::from(u8::from(light.group == name));
+        }
+        if group > 0 {
+            alone.lighting.strength = 0.0;
+        }
+        let (apart, alone) = (
+            total(&film, Some(group)),
+            total(&render(EngineChoice::Cpu, &alone), None),
+        );
+        println!("{name}: {apart} and {alone}");
+        assert!((apart / alone - 1.0).abs() < 0.02, "{name}: {apart} and {alone}");
+    }
+}
+
+#[test]
+fn a_mix_is_the_weighed_sum_and_starts_nothing_over() {
+    let (_, mut document) = scenes().swap_remove(0);
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let before = super::plan::film(&mut session, &document);
+    document.set_light_mix(LightMix {
+        factor: 3.0,
+        color: [1.0, 0.5, 0.0],
+        ..LightMix::of(GroupName::new("key"))
+    });
+    let change = session.submit(&document).unwrap();
+    assert!(change.display && !change.restarts());
+    let number = document.light_groups().iter().position(|name| name.as_str() == "key");
+    let number = number.expect("it shines");
+    let mixed = session.image().unwrap();
+    for (pixel, found) in mixed.pixels.iter().enumerate() {
+        let samples = before.samples_of(pixel);
+        for (channel, factor) in [3.0, 1.5, 0.0].into_iter().enumerate() {
+            let [even, odd] = before.lights(pixel)[number];
+            let of_key = (even[channel] + odd[channel]) / samples;
+            let expected = before.mean(pixel)[channel] + (factor - 1.0) * of_key;
+            let found = f64::from(found[channel]);
+            assert!(
+                (found - expected).abs() <= 1e-5 * (1.0 + expected),
+                "{found} for {expected}"
+            );
+        }
+    }
+    // The denoiser gets the mix as well.
+    assert_eq!(session.noisy().unwrap().image.pixels, mixed.pixels);
+    let layers = session.layers().unwrap();
+    assert_eq!(layers.image.pixels, mixed.pixels);
+    assert_eq!(layers.lights.len(), document.light_groups().len());
+    assert_eq!(layers.lights[number].1.pixels, before.light_image(number).pixels);
+    assert_eq!(session.progress().samples_per_pixel, document.render.samples);
+}
+
+#[test]
+fn the_command_line_writes_and_mixes_groups() {
+    let place = Workplace::new();
+    let scene = "--model sphere --size 16x16 --samples 4 --light-groups --area-light 20,30,3,1,1,10,group=key \
+                 --spot yaw=-60,power=3 --sun strength=2";
+    for engine in ["cpu", "gpu"] {
+        place.done(&format!(
+            "render {scene} --engine {engine} --output {engine}.exr --output a.png"
+        ));
+        let layers = channels(&place.path(&format!("{engine}.exr")));
+        let names = ["environment", "key", "lights", "sun"];
+        let written: BTreeSet<&str> = layers.keys().filter_map(|name| name.strip_prefix("light.")).collect();
+        let expected = names
+            .iter()
+            .flat_map(|name| ["R", "G", "B"].map(|channel| format!("{name}.{channel}")));
+        assert_eq!(
+            written,
+            expected.collect::<BTreeSet<_>>().iter().map(String::as_str).collect()
+        );
+        for channel in ["R", "G", "B"] {
+            for (pixel, whole) in layers[channel].iter().enumerate() {
+                let parts = names.map(|name| layers[&format!("light.{name}.{channel}")][pixel]);
+                let sum: f32 = parts.iter().sum();
+                assert!(
+                    (sum - whole).abs() <= 1e-5 * (1.0 + whole),
+                    "{engine}: {parts:?} of {whole}"
+                );
+            }
+        }
+    }
+    // The image keeps its groups and their mix; the layers stay as they were rendered.
+    place.done("render a.png --engine cpu --light-mix key=0 --light-mix sun=2,#ff0000 --output b.exr --output b.png");
+    let [before, after] = ["cpu.exr", "b.exr"].map(|name| channels(&place.path(name)));
+    assert_eq!(before["light.key.R"], after["light.key.R"]);
+    for (channel, sun) in [("R", 2.0), ("G", 0.0)] {
+        for (pixel, found) in after[channel].iter().enumerate() {
+            let of = |name: &str| before[&format!("light.{name}.{channel}")][pixel];
+            let expected = of("environment") + of("lights") + sun * of("sun");
+            assert!((found - expected).abs() <= 1e-5 * (1.0 + expected));
+        }
+    }
+    place.done("render b.png --engine cpu --output c.exr");
+    assert_eq!(channels(&place.path("c.exr")), after);
+    place.refused(1, "render --light-mix key=1 --output x.png", &["key", "--light-groups"]);
+    place.refused(
+        1,
+        &format!("render {scene} --light-mix rim=1"),
+        &["rim", "environment, key, lights, sun"],
+    );
+    place.refused(2, "render --light-mix key", &["GROUP=FACTOR"]);
+    place.refused(2, "render --light-mix key=-1", &["-1", "0 to 1000"]);
+    place.refused(2, "render --spot group=a.b", &["a.b", "letters"]);
+}
+
+/// Files without groups open as before; those with them keep them.
+#[test]
+fn projects_keep_groups_and_mix() {
+    let text = r#"{"glossmith-document": 1, "lighting": {"light_groups": true, "area_lights": [{"group": "Rim light"}, {}],
+        "light_mix": [{"group": "Rim-light", "factor": 0.25}]}}"#;
+    let document = parse_document("p.json".as_ref(), text.as_bytes()).unwrap().value;
+    let names: Vec<String> = document.light_groups().into_iter().map(String::from).collect();
+    assert_eq!(names, ["environment", "Rim-light", "lights"]);
+    assert_eq!(document.light_factors()[1], [0.25; 3]);
+    let json = serde_json::to_value(&document.lighting).unwrap();
+    assert_eq!(json["area_lights"][0]["group"], "Rim-light");
+    assert!(json["area_lights"][1].get("group").is_none());
+    let plain = serde_json::to_value(Document::default().lighting).unwrap();
+    assert!(plain.get("light_groups").is_none() && plain.get("light_mix").is_none());
+}
+
+fn spin(harness: &mut Editor, label: &str, value: f64) {
+    let row = harness.get_by_role_and_label(Role::SpinButton, label);
+    row.set_value_accesskit(value);
+    settle(harness);
+}
+
+#[test]
+fn the_window_mixes_what_has_been_rendered() {
+    let mut document = small_document();
+    document.lighting.area_lights = vec![AreaLight::default()];
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    harness.run_steps(4);
+    let before = harness.state().document().clone();
+    assert!(
+        harness.query_by_label("Area light 1 group").is_none(),
+        "there are no groups yet"
+    );
+    harness
+        .get_by_role_and_label(Role::CheckBox, "Light groups")
+        .click_accesskit();
+    settle(&mut harness);
+    assert!(harness.state().document().lighting.light_groups);
+    let all = picture(&harness);
+    // A name of its own.
+    let field = harness.get_by_role_and_label(Role::TextInput, "Area light 1 group");
+    field.set_text_value_accesskit("Key light");
+    settle(&mut harness);
+    assert_eq!(
+        harness.state().document().lighting.area_lights[0].group,
+        GroupName::new("Key-light")
+    );
+    assert_eq!(picture(&harness), all);
+    let samples = |harness: &Editor| harness.state().snapshot().progress.render_seconds;
+    let spent = samples(&harness);
+    spin(&mut harness, "Mix of Key-light", 0.0);
+    spin(&mut harness, "Mix of environment", 0.0);
+    let is_dark = |harness: &Editor| picture(harness).iter().all(|[r, g, b, _]| r + g + b == 0.0);
+    assert!(is_dark(&harness), "{:?}", harness.state().document().lighting.light_mix);
+    assert_eq!(samples(&harness), spent, "nothing is rendered anew");
+    spin(&mut harness, "Mix of environment", 1.0);
+    assert!(!is_dark(&harness) && picture(&harness) != all);
+    spin(&mut harness, "Mix of Key-light", 1.0);
+    assert_eq!(picture(&harness), all);
+    assert!(harness.state().document().lighting.light_mix.is_empty());
+    for _ in 0..6 {
+        undo(&mut harness);
+    }
+    assert_eq!(*harness.state().document(), before);
+}

@@ -1,0 +1,222 @@
+//! Light profiles: the light below a lamp is that of its file's intensities on both engines, by all strategies; files and
+//! names on the command line, in projects and in the window. The files are built here.
+
+use std::f64::consts::PI;
+
+use egui_kittest::kittest::Queryable as _;
+use glam::DVec3;
+use glossmith::app::Options;
+use glossmith::app::actions::Action;
+use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile, Strategy};
+use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
+use glossmith::scene::camera::PixelFilter;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::{light_profile, load_document, save_document};
+
+use super::cli_support::{Workplace, read_exr};
+use super::renders::{assert_same_picture, document, render, with_strategy};
+use super::ui::{Editor, editor_of, options, request, settle, undo};
+use super::ui_files::says;
+use super::ui_hands::type_path;
+use super::worker::small_document;
+
+/// A lamp that shines along its width, hardly along its height, and not upwards.
+const LAMP: &str =
+    "IESNA:LM-63-2002\n[TEST] built by a test\nTILT=NONE\n1 1000 2.0 2 2 1 2 0 0 0\n1 1 20\n0 90\n0 90\n50 20\n50 0\n";
+
+/// Its intensity in candela in a direction in units of its axis, width and height.
+fn candela([axis, width, height]: [f64; 3]) -> f64 {
+    let vertical_deg = width.hypot(height).atan2(axis).to_degrees();
+    let quadrant_deg = height.abs().atan2(width.abs()).to_degrees();
+    let at_side = 40.0 * (1.0 - quadrant_deg / 90.0);
+    100.0 + (at_side - 100.0) * vertical_deg / 90.0
+}
+
+const SIDE: usize = 16;
+/// Height of lamp and camera above the floor, half its side.
+const LAMP_HEIGHT: f64 = 0.8;
+const CAMERA_HEIGHT: f64 = 3.0;
+
+/// A white floor below a small lamp with a file's profile and its lumens, seen from above.
+fn floor(file: &std::path::Path) -> (Document, AreaLight, f64) {
+    let matt = ["base.metalness=0", "specular.weight=0", "base.color=1,1,1"];
+    let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &matt);
+    document.lighting.strength = 0.0;
+    document.lighting.background = Background::Transparent;
+    // The corner of the floor is a bounding radius away.
+    let radius = 2.0_f64.sqrt();
+    let mut lamp = AreaLight {
+        shape: AreaLightShape::Sphere,
+        profile: Some(ProfileFile::new(file)),
+        yaw_deg: 0.0,
+        pitch_deg: 90.0,
+        turn_deg: 25.0,
+        distance: LAMP_HEIGHT / radius,
+        width: 0.02,
+        is_hidden: true,
+        ..AreaLight::default()
+    };
+    lamp.set_power(light_profile::load(file).unwrap().lumens(), radius);
+    document.lighting.area_lights = vec![lamp];
+    document.camera.position = Some([0.0, CAMERA_HEIGHT, 0.0]);
+    document.camera.fov_deg = 30.0;
+    (document.render.width, document.render.height) = (SIDE as u32, SIDE as u32);
+    (document.render.samples, document.render.filter) = (256, PixelFilter::Box);
+    document.render.bounces = 1;
+    (document, lamp, radius)
+}
+
+#[test]
+fn a_floor_is_lit_by_the_intensities_of_the_file() {
+    let place = Workplace::new();
+    place.write("lamp.ies", LAMP.as_bytes());
+    let (document, lamp, _) = floor(&place.path("lamp.ies"));
+    let frame = lamp.shape().frame();
+    let half = (15.0_f64).to_radians().tan() * CAMERA_HEIGHT;
+    // Luminance of a place on the floor, which is white: the illuminance over π.
+    let luminance = |x: f64, z: f64| {
+        let towards = DVec3::new(x, -LAMP_HEIGHT, z);
+        let direction = towards.normalize();
+        let along = [-frame.outwards, frame.across, frame.up].map(|axis| axis.dot(direction));
+        candela(along) * LAMP_HEIGHT / towards.length().powi(3) / PI
+    };
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let film = render(engine, &document);
+        // Blocks of 4 × 4 pixels, each of 4 × 4 places.
+        for block in 0..16 {
+            let (mut found, mut expected) = (0.0, 0.0);
+            for pixel in 0..16 {
+                let [column, row] = [4 * (block % 4) + pixel % 4, 4 * (block / 4) + pixel / 4];
+                found += film.luminance_of(row * SIDE + column);
+                for place in 0..16 {
+                    let at = |index: usize, part: usize| ((4 * index + part) as f64 + 0.5) / (2 * SIDE) as f64 - 1.0;
+                    expected += luminance(half * at(column, place % 4), half * at(row, place / 4)) / 16.0;
+                }
+            }
+            println!("{engine:?}, block {block}: {found:.2} for {expected:.2}");
+            // Half of the samples are of the lamp's far side: 1.6 % of noise in a block.
+            assert!(
+                (found / expected - 1.0).abs() < 0.06,
+                "{engine:?}, block {block}: {found} for {expected}"
+            );
+        }
+    }
+}
+
+/// Light that is found by the lobe has the profile, too, and both engines agree about it.
+#[test]
+fn strategies_and_engines_agree_on_a_profile() {
+    let place = Workplace::new();
+    place.write("lamp.ies", LAMP.as_bytes());
+    let (mut document, lamp, radius) = floor(&place.path("lamp.ies"));
+    let mut large = AreaLight {
+        width: 0.5,
+        is_hidden: false,
+        ..lamp
+    };
+    large.set_power(1000.0, radius);
+    document.lighting.area_lights = vec![large];
+    document.render.samples = 512;
+    let mis = render(EngineChoice::Cpu, &document);
+    for strategy in [Strategy::Light, Strategy::Lobe] {
+        let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 7));
+        assert_same_picture(&mis, &other, strategy.name());
+    }
+    let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
+    assert_same_picture(&mis, &gpu, "GPU");
+    // Without the file the light is even, which is another image of the same power.
+    document.lighting.area_lights[0].profile = None;
+    let even = render(EngineChoice::Cpu, &document);
+    assert!(mis.difference_in_sigma(&even).abs() > 10.0);
+}
+
+#[test]
+fn the_command_line_and_projects_name_profiles() {
+    let place = Workplace::new();
+    place.write("lamp.ies", LAMP.as_bytes());
+    place.write("broken.ies", b"TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1");
+    let light = "--area-light 0,60,2,0.1,0.1,50,sphere";
+    let scene = "--model sphere --engine cpu --size 12x12 --samples 4 --environment-strength 0";
+    place.done(&format!("render {scene} {light} --output even.exr"));
+    place.done(&format!(
+        "render {scene} {light},profile=lamp.ies --output lamp.exr --output lamp.png"
+    ));
+    assert!(read_exr(&place.path("even.exr")) != read_exr(&place.path("lamp.exr")));
+    place.refused(
+        1,
+        &format!("render {scene} {light},profile=broken.ies"),
+        &["broken.ies: not a light profile: it ends too early", ".ies"],
+    );
+    place.refused(
+        1,
+        &format!("render {scene} {light},profile=gone.ies"),
+        &["gone.ies: cannot be read"],
+    );
+    place.refused(2, "render --spot profile=lamp.ies", &["only a sphere has one"]);
+    // A project names the file relative to itself; where it is missing that is reported, and the light is even.
+    let mut document = Document::default();
+    document.lighting.area_lights = vec![AreaLight {
+        shape: AreaLightShape::Sphere,
+        profile: Some(ProfileFile::new(&place.path("lamp.ies"))),
+        ..AreaLight::default()
+    }];
+    save_document(&place.path("p.json"), &document).unwrap();
+    assert!(
+        place.read("p.json").contains("\"profile\": \"lamp.ies\""),
+        "{}",
+        place.read("p.json")
+    );
+    assert_eq!(load_document(&place.path("p.json")).unwrap().value, document);
+    assert!(
+        document.pictures().any(|file| file.ends_with("lamp.ies")),
+        "batches look after it"
+    );
+    std::fs::remove_file(place.path("lamp.ies")).unwrap();
+    let run = place.done("render lamp.png --engine cpu --output without.exr");
+    assert!(run.stderr.contains("lamp.ies: cannot be read"), "{}", run.stderr);
+    assert!(read_exr(&place.path("without.exr")) == read_exr(&place.path("even.exr")));
+}
+
+fn light(harness: &Editor) -> AreaLight {
+    harness.state().document().lighting.area_lights[0]
+}
+
+#[test]
+fn a_profile_is_chosen_dropped_and_removed_in_the_window() {
+    let place = Workplace::new();
+    place.write("lamp.ies", LAMP.as_bytes());
+    place.write("broken.ies", b"TILT=NONE\n");
+    let mut document = small_document();
+    document.lighting.area_lights = vec![AreaLight {
+        shape: AreaLightShape::Sphere,
+        ..AreaLight::default()
+    }];
+    let mut harness = editor_of(Options {
+        document: Some(document),
+        typed_paths: Some(place.path("")),
+        ..options()
+    });
+    settle(&mut harness);
+    let before = light(&harness);
+    for (name, profile) in [
+        ("broken.ies", None),
+        ("lamp.ies", Some(ProfileFile::new(&place.path("lamp.ies")))),
+    ] {
+        harness.get_by_label("Area light 1 profile").click_accesskit();
+        harness.run_steps(3);
+        type_path(&mut harness, &place.path(name), "Open");
+        settle(&mut harness);
+        assert_eq!(light(&harness).profile, profile, "{name}");
+    }
+    assert!(says(&harness, "broken.ies: not a light profile: it ends too early"));
+    harness.get_by_label("Remove area light 1 profile").click_accesskit();
+    settle(&mut harness);
+    assert_eq!(light(&harness), before);
+    // Dropped on the window it is for the only light, of any shape.
+    request(&mut harness, Action::Drop(vec![place.path("lamp.ies")]));
+    settle(&mut harness);
+    assert!(light(&harness).has_profile());
+    (0..3).for_each(|_| undo(&mut harness));
+    assert_eq!(light(&harness), before);
+}
