@@ -13,8 +13,8 @@ use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
 use glossmith::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION,
-    VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, HAS_PROFILE, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE,
+    VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};

@@ -422,10 +422,12 @@ impl<'a> Materials<'a> {
         }
         let place = |info: &Option<TextureInfo>| info.as_ref().map(TextureInfo::reference);
         *read.texture_mut(TextureTarget::Coat) = self.texture(place(&coat.coat_texture), sets, &read.name);
-        *read.texture_mut(TextureTarget::CoatRoughness) = self.texture(place(&coat.coat_roughness_texture), sets, &read.name);
+        *read.texture_mut(TextureTarget::CoatRoughness) =
+            self.texture(place(&coat.coat_roughness_texture), sets, &read.name);
         *read.texture_mut(TextureTarget::CoatColor) = self.texture(place(&coat.coat_color_texture), sets, &read.name);
         if let Some(normal) = &coat.coat_normal_texture {
-            *read.texture_mut(TextureTarget::CoatNormal) = self.texture(Some(normal.info.reference()), sets, &read.name);
+            *read.texture_mut(TextureTarget::CoatNormal) =
+                self.texture(Some(normal.info.reference()), sets, &read.name);
             read.coat_normal_scale = normal.scale;
         }
     }
