@@ -1,6 +1,5 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::coat;
 use super::report::{Entry, Residual};
 use crate::document::import::ggx_under_texture;
 use crate::document::material::specular_color;
@@ -367,7 +366,7 @@ impl Surface {
         if !takes.ior {
             taken.ior = 1.5;
         }
-        coat::take(&mut taken, takes);
+        taken.take_coat(takes);
         if !takes.fuzz {
             taken.fuzz_weight = 0.0;
         }
@@ -543,7 +542,7 @@ impl Surface {
             "textures of your own",
             "convert to a glTF model to take them along",
         );
-        entries.extend(coat::losses(self, material, takes));
+        entries.extend(self.coat_losses(material, takes));
         entries
     }
 
