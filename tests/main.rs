@@ -317,5 +317,7 @@ mod hard;
 mod layouts;
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[path = "suite/thin_film.rs"]
+mod thin_film;
 #[path = "suite/twins/mod.rs"]
 mod twins;

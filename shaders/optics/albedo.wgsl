@@ -1,6 +1,7 @@
 // The share of light that a lobe reflects of each view. Twin of src/optics/albedo.rs.
 #import "optics/fresnel"
 #import "optics/refraction"
+#import "optics/thin_film"
 #import "scene/layout"
 
 const ALBEDO_NODES: u32 = 64u;
@@ -72,5 +73,13 @@ fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
     if PLAN_EDGE_TINT == 1u {
         metal = max(metal - edge_darkening(terms.metal_f0, terms.edge_tint) * integrals.w, vec3f(0.0));
     }
-    return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
+    dielectric *= terms.weight;
+    metal *= terms.metal_tint;
+    if shows_film(terms) {
+        // No table has every thickness: the lobe counts as its mean facet.
+        let facet = mean_facet(integrals.y, integrals.z);
+        dielectric = max(dielectric + film_change_of_dielectric(terms, facet.x) * facet.y, vec3f(0.0));
+        metal = max(metal + film_change_of_metal(terms, facet.x) * facet.y, vec3f(0.0));
+    }
+    return mix(dielectric, metal, terms.metalness);
 }

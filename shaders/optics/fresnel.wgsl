@@ -2,6 +2,7 @@
 #import "optics/choices"
 #import "optics/numeric"
 #import "optics/refraction"
+#import "optics/thin_film"
 #import "scene/plan"
 
 struct FresnelTerms {
@@ -15,6 +16,8 @@ struct FresnelTerms {
     ior: f32,
     eta: vec3f,
     k: vec3f,
+    has_film: bool,
+    film: FilmTerms,
 }
 
 fn of_dielectric(terms: FresnelTerms) -> FresnelTerms {
@@ -23,7 +26,15 @@ fn of_dielectric(terms: FresnelTerms) -> FresnelTerms {
     return without;
 }
 
+fn shows_film(terms: FresnelTerms) -> bool {
+    return PLAN_THIN_FILM == 1u && terms.has_film;
+}
+
 fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
+    if shows_film(terms) && (terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC) {
+        let parts = fresnel_parts(terms, cosine);
+        return mix(parts.dielectric, parts.metal, terms.metalness);
+    }
     switch terms.model {
         case FRESNEL_NONE: { return terms.weight * terms.tint; }
         case FRESNEL_SCHLICK: {
@@ -37,11 +48,15 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
             return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
         }
         default: {
-            return terms.weight * terms.tint * vec3f(
+            var channels = vec3f(
                 fresnel_conductor(cosine, terms.eta.x, terms.k.x),
                 fresnel_conductor(cosine, terms.eta.y, terms.k.y),
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
+            if shows_film(terms) {
+                channels = film_on_conductor(terms, cosine, channels);
+            }
+            return terms.weight * terms.tint * channels;
         }
     }
 }
@@ -59,7 +74,13 @@ fn fresnel_parts(terms: FresnelTerms, cosine: f32) -> FresnelParts {
         dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
     }
     let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-    return FresnelParts(terms.weight * dielectric, metal);
+    var parts = FresnelParts(terms.weight * dielectric, metal);
+    if shows_film(terms) {
+        let of_dielectric = film_change_of_dielectric(terms, cosine);
+        parts.dielectric = clamp(parts.dielectric + of_dielectric, vec3f(0.0), vec3f(1.0));
+        parts.metal = clamp(parts.metal + film_change_of_metal(terms, cosine), vec3f(0.0), vec3f(1.0));
+    }
+    return parts;
 }
 
 fn half_vector_cosine(wo: vec3f, wi: vec3f) -> f32 {
@@ -121,6 +142,9 @@ fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
         var full = terms;
         full.weight = 1.0;
         left = white - fresnel(full, cosine);
+    }
+    if shows_film(terms) && (terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC) {
+        left += min(terms.tint, white) * film_passed(terms, cosine, terms.ior * behind);
     }
     return max(white * (1.0 - terms.weight) + left * terms.weight, vec3f(0.0));
 }

@@ -67,7 +67,16 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     return FresnelTerms(
         planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
         select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), of_dielectric, reflecting_ior_ahead(material, is_inside), material.eta, material.k,
+        material.has_film == 1u, material_film_terms(material, is_bare),
     );
+}
+
+fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
+    if PLAN_THIN_FILM == 0u {
+        return FilmTerms();
+    }
+    let before = select(material.ior / reflecting_ior_ahead(material, false), material.ior, is_within);
+    return FilmTerms(material.film_weight, material.film_ior / before, material.film_path * before);
 }
 
 fn material_has_holes(material: Material) -> bool {

@@ -35,7 +35,11 @@ fn compensated(
         return fresnel(terms, cosine) * (vec3f(1.0) + head_on * (again * terms.metalness));
     }
     let parts = fresnel_parts(terms, cosine);
-    let metal = parts.metal * (vec3f(1.0) + terms.metal_f0 * terms.metal_tint * again);
+    var head_on = terms.metal_f0 * terms.metal_tint;
+    if shows_film(terms) {
+        head_on = fresnel_parts(terms, 1.0).metal;
+    }
+    let metal = parts.metal * (vec3f(1.0) + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = select(0.0, material.transmission_weight, material_transmits(material));
     let gain = 1.0 + (interface_gain(material, surface, shape) - 1.0) * share;

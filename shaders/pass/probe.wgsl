@@ -7,7 +7,7 @@
 
 // Words of a question of each kind.
 const LOBE_WORDS: u32 = 22u;
-const FRESNEL_WORDS: u32 = 4u;
+const FRESNEL_WORDS: u32 = 7u;
 const RANDOM_WORDS: u32 = 6u;
 const MATERIAL_WORDS: u32 = 19u;
 const DRAW_WORDS: u32 = 21u;
@@ -59,7 +59,7 @@ fn probe_lobe(@builtin(global_invocation_id) id: vec3u) {
     answer(a + 7u, given.y);
 }
 
-// The share reflected by a dielectric (model 0) or a conductor (model 1).
+// The share reflected by a dielectric (model 0) or a conductor (model 1), or by one under a thin film (2, 3).
 @compute @workgroup_size(64)
 fn probe_fresnel(@builtin(global_invocation_id) id: vec3u) {
     let q = id.x * FRESNEL_WORDS;
@@ -69,6 +69,15 @@ fn probe_fresnel(@builtin(global_invocation_id) id: vec3u) {
     var share = fresnel_dielectric(asked(q + 1u), asked(q + 2u));
     if questions[q] == 1u {
         share = fresnel_conductor(asked(q + 1u), asked(q + 2u), asked(q + 3u));
+    }
+    if questions[q] > 1u {
+        let white = vec3f(1.0);
+        let film = FilmTerms(asked(q + 4u), asked(q + 5u), vec3f(asked(q + 6u)));
+        let terms = FresnelTerms(
+            select(FRESNEL_CONDUCTOR, FRESNEL_DIELECTRIC, questions[q] == 2u), white, 0.0, white, white, white, 1.0,
+            asked(q + 2u), vec3f(asked(q + 2u)), vec3f(asked(q + 3u)), true, film,
+        );
+        share = fresnel(terms, asked(q + 1u)).x;
     }
     answer(id.x, share);
 }

@@ -147,7 +147,7 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
     let pictures = PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES;
-    if pictures + PLAN_VERTEX_COLORS == 0u {
+    if pictures + PLAN_FILM_TEXTURES + PLAN_VERTEX_COLORS == 0u {
         return material;
     }
     // A map with both roughness and metalness is looked up once.
@@ -217,6 +217,14 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     }
     if has_vertex_flag(material, VERTEX_EMISSION) {
         at_point.emission *= vertex_color;
+    }
+    if PLAN_FILM_TEXTURES == 1u {
+        if material.film_texture != NO_TEXTURE {
+            at_point.film_weight = material.film_weight * texture_lookup(material.film_texture, uvs).x;
+        }
+        if material.film_path_texture != NO_TEXTURE {
+            at_point.film_path = material.film_path * texture_lookup(material.film_path_texture, uvs).x;
+        }
     }
     return at_point;
 }

@@ -9,12 +9,13 @@ use crate::job::probe::{
 };
 use crate::optics::curve::Curve;
 use crate::optics::frame::{Frame, frame_from_normal};
-use crate::optics::fresnel::{fresnel_conductor, fresnel_dielectric};
+use crate::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric};
 use crate::optics::layer::{MaterialNumbers, material_density, material_evaluate, material_layers, material_sample};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
 use crate::optics::material::{Material, Surface};
 use crate::optics::random::{Sequence, random_pair_bits, random_state};
 use crate::optics::real::{Real, Scalar};
+use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
 
 fn by_number<E: Copy>(all: &[E], number: u32) -> E {
@@ -49,9 +50,36 @@ pub fn probe_lobe(scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Vec<Lob
 pub fn probe_fresnel(questions: &[FresnelQuestion]) -> Vec<f32> {
     let answer = |q: &FresnelQuestion| match q.model {
         1 => fresnel_conductor(q.cosine, q.eta, q.k),
+        2 => filmed_share(q, Fresnel::Dielectric),
+        3 => filmed_share(q, Fresnel::Conductor),
         _ => fresnel_dielectric(q.cosine, q.eta),
     };
     questions.iter().map(answer).collect()
+}
+
+/// The share reflected under a thin film.
+fn filmed_share(q: &FresnelQuestion, model: Fresnel) -> f32 {
+    let white = Vec3::splat(1.0);
+    let [weight, ior, path] = q.film;
+    let terms = FresnelTerms {
+        model,
+        metal_f0: white,
+        metalness: 0.0,
+        edge_tint: white,
+        tint: white,
+        metal_tint: white,
+        weight: 1.0,
+        ior: q.eta,
+        eta: Vec3::splat(q.eta),
+        k: Vec3::splat(q.k),
+        has_film: true,
+        film: FilmTerms {
+            weight,
+            ior,
+            path: Vec3::splat(path),
+        },
+    };
+    fresnel(&terms, q.cosine).x
 }
 
 /// The bits of pairs of random numbers.

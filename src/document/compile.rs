@@ -15,6 +15,7 @@ use crate::optics::material::{
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
+use crate::optics::thin_film::film_path;
 use crate::optics::vector::Vec3;
 use crate::panics::lock;
 use crate::scene::texture::{SlotTextures, TextureTarget};
@@ -136,6 +137,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         fuzz_middle: bell[0],
         fuzz_width: bell[1],
         fuzz_floor: bell[2],
+        film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
+        film_weight: settings.film_weight * factor(On::Film),
+        film_ior: settings.film_ior,
+        has_film: 0,
+        film_texture: NO_TEXTURE,
+        film_path_texture: NO_TEXTURE,
         reflecting_ior: settings.ior,
         bare_ior: settings.ior,
         coated_ior: settings.ior,
@@ -149,12 +156,18 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         coat_normal_texture: NO_TEXTURE,
         coat_normal_strength: 0.0,
     };
+    if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
+        material.has_film = 1;
+        material.film_texture = looked_up(On::Film);
+        material.film_path_texture = looked_up(On::FilmThickness);
+    }
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
         material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
     }
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
-    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2];
+    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2]
+        || (material.has_film_texture() && material.least_metallic().metalness < 1.0);
     material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
@@ -347,6 +360,7 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         fresnel: Fresnel::Dielectric as u32,
         transmission_weight: 0.0,
         has_rough_tables: u32::from(material.coat_roughness_texture != NO_TEXTURE),
+        has_film: 0,
         ..*material
     }
 }
@@ -421,6 +435,10 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
             // With a table over the roughness their difference counts.
             roughness: material.roughness,
             transmission_roughness: of_interface(material.transmission_roughness),
+            has_film: if transmits { key.material.has_film } else { 0 },
+            film_weight: of_interface(key.material.film_weight),
+            film_path: key.material.film_path * of_interface(1.0),
+            film_ior: of_interface(key.material.film_ior),
             ..key.material
         },
         holds: Holds::Energies,
@@ -433,6 +451,8 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
     let is_rough = material.has_rough_tables == 1;
     let white = Vec3::splat(1.0);
     let transmits = material.least_metallic().transmits();
+    let is_measured = material.fresnel == Fresnel::Conductor as u32;
+    let has_filmed = material.has_film == 1 && (!is_rough || is_measured);
     let material = Material {
         metalness: 0.0,
         roughness: if is_rough { 0.0 } else { material.roughness },
@@ -454,6 +474,13 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         fuzz_middle: 0.0,
         fuzz_width: 0.0,
         fuzz_floor: 0.0,
+        // One over the roughness has no film in it, but for that on a measured metal.
+        has_film: if has_filmed { 1 } else { 0 },
+        film_weight: if has_filmed { material.film_weight } else { 0.0 },
+        film_path: if has_filmed { material.film_path } else { Vec3::zero() },
+        film_ior: if has_filmed { material.film_ior } else { 1.0 },
+        film_texture: NO_TEXTURE,
+        film_path_texture: NO_TEXTURE,
         bare_ior: 1.0,
         coated_ior: 1.0,
         coat_blur: 0.0,

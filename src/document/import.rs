@@ -3,6 +3,7 @@
 
 use std::sync::LazyLock;
 
+use super::material::FILM_THICKNESS_MAX;
 use super::material::specular_color;
 use super::{CoatLobe, MaterialSettings, TextureUse};
 use crate::named::named;
@@ -107,6 +108,8 @@ impl MaterialSettings {
             coat_roughness: slot.texture(TextureTarget::CoatRoughness).is_some(),
             coat_color: slot.texture(TextureTarget::CoatColor).is_some(),
             coat_normal: slot.texture(TextureTarget::CoatNormal).is_some(),
+            film: slot.texture(TextureTarget::Film).is_some(),
+            film_thickness: slot.texture(TextureTarget::FilmThickness).is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
@@ -120,6 +123,9 @@ impl MaterialSettings {
             (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
             (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
         }
+        material.film_weight = unit(slot.film);
+        material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);
+        material.film_ior = slot.film_ior.clamp(1.0, 3.0);
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {
             material.transmission_color = slot.attenuation_color.map(unit);

@@ -9,9 +9,12 @@ use crate::named::named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::thin_film::has_film;
 
 /// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
 pub const SPECULAR_COLOR_MAX: f32 = 1000.0;
+/// The largest thickness of a thin film in µm: beyond it colours of neighbouring orders mix to grey.
+pub const FILM_THICKNESS_MAX: f32 = 10.0;
 
 /// A material as it is edited. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,6 +90,12 @@ pub struct MaterialSettings {
     pub fuzz_color: [f32; 3],
     /// In [0, 1].
     pub fuzz_roughness: f32,
+    /// Share of the surface that has a thin film, in [0, 1].
+    pub film_weight: f32,
+    /// Thickness of the thin film in µm, in [0, [`FILM_THICKNESS_MAX`]].
+    pub film_thickness: f32,
+    /// The thin film's index of refraction, in [1, 3].
+    pub film_ior: f32,
     /// Share of the base that refracts, in [0, 1].
     pub transmission_weight: f32,
     /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
@@ -152,6 +161,9 @@ impl Default for MaterialSettings {
             fuzz_weight: 0.0,
             fuzz_color: [1.0; 3],
             fuzz_roughness: 0.5,
+            film_weight: 0.0,
+            film_thickness: 0.5,
+            film_ior: 1.4,
             transmission_weight: 0.0,
             transmission_color: [1.0; 3],
             transmission_depth: 0.0,
@@ -202,6 +214,20 @@ impl MaterialSettings {
     pub fn has_weight_in_index(&self) -> bool {
         let has_index = matches!(self.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
         self.specular_in_index && has_index && !self.transmits()
+    }
+
+    /// True where a thin film changes the reflection.
+    pub fn has_film(&self) -> bool {
+        self.reflects() && has_film(self.fresnel_model(), self.film_weight, self.film_thickness)
+    }
+
+    /// The Fresnel model that counts: only the exact equations know total reflection.
+    pub fn fresnel_model(&self) -> Fresnel {
+        if self.transmits() {
+            Fresnel::Dielectric
+        } else {
+            self.fresnel
+        }
     }
 
     /// True where light goes through the surface.
@@ -264,6 +290,10 @@ pub struct TextureUse {
     pub coat_color: bool,
     /// The normal of the coat is bent by its texture.
     pub coat_normal: bool,
+    /// The weight of the thin film is multiplied by its texture.
+    pub film: bool,
+    /// The thickness of the thin film is multiplied by its texture.
+    pub film_thickness: bool,
 }
 
 /// Where the conductor's η and k come from.

@@ -85,6 +85,16 @@ const PLACES: &[Place; TextureTarget::ALL.len()] = &[
         },
     ),
     Place::new("coat.normal_map", |uses| &mut uses.coat_normal, show_coat),
+    Place::new(
+        "thin_film.weight_map",
+        |uses| &mut uses.film,
+        |material| {
+            if material.film_weight == 0.0 {
+                material.film_weight = 1.0;
+            }
+        },
+    ),
+    Place::new("thin_film.thickness_map", |uses| &mut uses.film_thickness, |_| {}),
 ];
 
 /// The key of a target's image in a material's file, and on the command line before that of a parameter:

@@ -84,6 +84,7 @@ effects! {
     CoatGgx "coat-ggx" flag "PLAN_COAT_GGX";
     CoatDarkening "coat-darkening" flag "PLAN_COAT_DARKENING";
     CoatAbsorption "coat-absorption" flag "PLAN_COAT_ABSORPTION";
+    ThinFilm "thin-film" flag "PLAN_THIN_FILM";
     Transmission "transmission" flag "PLAN_TRANSMISSION";
     Absorption "absorption" flag "PLAN_ABSORPTION";
     ColorTexture "color-texture" flag "PLAN_COLOR_TEXTURES";
@@ -94,6 +95,7 @@ effects! {
     VertexColors "vertex-colors" flag "PLAN_VERTEX_COLORS";
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
     CoatNormalMap "coat-normal-map" flag "PLAN_COAT_NORMALS";
+    FilmTexture "film-texture" flag "PLAN_FILM_TEXTURES";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";
     DepthOfField "depth-of-field" flag "PLAN_LENS";

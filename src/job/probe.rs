@@ -94,7 +94,7 @@ pub struct LobeAnswer {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct FresnelQuestion {
-    /// 0: a dielectric. 1: a conductor.
+    /// 0: a dielectric. 1: a conductor. 2 and 3: the same under a thin film.
     pub model: u32,
     /// On the incident side, in [0, 1].
     pub cosine: f32,
@@ -102,6 +102,8 @@ pub struct FresnelQuestion {
     pub eta: f32,
     /// Imaginary part of the index of refraction.
     pub k: f32,
+    /// Weight of the thin film, its index of refraction, and the phase of a crossing at normal incidence over that.
+    pub film: [f32; 3],
 }
 
 /// A pair of random numbers.

@@ -15,6 +15,7 @@ use super::random::even_point;
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
+use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
@@ -196,6 +197,13 @@ pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3
     };
     let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
     let metal = terms.metal_f0 * constant + Vec3::splat(grazing);
-    let metal = (metal - darkening).at_least_zero() * terms.metal_tint;
-    (dielectric * terms.weight).mix(metal, terms.metalness)
+    let mut metal = (metal - darkening).at_least_zero() * terms.metal_tint;
+    let mut dielectric = dielectric * terms.weight;
+    if terms.has_film {
+        // No table has every thickness: the lobe counts as its mean facet.
+        let [cosine, energy] = mean_facet([constant, grazing]);
+        dielectric = (dielectric + film_change_of_dielectric(terms, cosine) * energy).at_least_zero();
+        metal = (metal + film_change_of_metal(terms, cosine) * energy).at_least_zero();
+    }
+    dielectric.mix(metal, terms.metalness)
 }

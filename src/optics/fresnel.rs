@@ -1,54 +1,10 @@
 //! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
 
-use super::real::{Mask, Real};
+pub use super::fresnel_terms::{Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel_metal, fresnel_schlick};
+use super::real::Real;
 use super::refraction::refracted_square;
+use super::thin_film::{film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
 use super::vector::{Vec3, vec3};
-use crate::named::named;
-
-named! {
-    /// The Fresnel model.
-    Fresnel {
-        None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
-        Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
-        Dielectric = 2, "dielectric", "Dielectric", "The exact equations for glass, water, plastic, lacquer, from the index of refraction.";
-        Conductor = 3, "conductor", "Conductor", "The exact equations for metals, from η and k of each colour channel.";
-    }
-}
-
-/// Parameters of the Fresnel factor, besides the angle.
-#[derive(Clone, Copy, Debug)]
-pub struct FresnelTerms<T> {
-    /// Equation of the Fresnel factor.
-    pub model: Fresnel,
-    /// Reflectance at normal incidence of the metal, linear RGB.
-    pub metal_f0: Vec3<T>,
-    /// 0 for a dielectric, 1 for a metal.
-    pub metalness: T,
-    /// Tint, linear RGB: of the reflectance at normal incidence in Schlick's model for a dielectric, else of the whole
-    /// factor.
-    pub tint: Vec3<T>,
-    /// Factor of a metal's reflection: tint times weight, or 1 if those spare metals.
-    pub metal_tint: Vec3<T>,
-    /// Factor of a metal's reflection near 82 degrees; 1 for none.
-    pub edge_tint: Vec3<T>,
-    /// Share of the reflection that is kept at any angle, in [0, 1]; a metal's is in `metal_tint`.
-    pub weight: T,
-    /// Relative index of refraction of the dielectric.
-    pub ior: T,
-    /// Conductor: real part of the index of refraction a channel.
-    pub eta: Vec3<T>,
-    /// Conductor: imaginary part a channel, not negative.
-    pub k: Vec3<T>,
-}
-
-impl<T: Real> FresnelTerms<T> {
-    /// The same without metal.
-    #[inline(always)]
-    pub fn of_dielectric(&self) -> Self {
-        let metalness = T::zero();
-        Self { metalness, ..*self }
-    }
-}
 
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
@@ -60,11 +16,14 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
             dielectric.mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
-            let channels = vec3(
+            let mut channels = vec3(
                 fresnel_conductor(cosine, terms.eta.x, terms.k.x),
                 fresnel_conductor(cosine, terms.eta.y, terms.k.y),
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
+            if terms.has_film {
+                channels = film_on_conductor(terms, cosine, channels);
+            }
             channels * terms.tint * terms.weight
         }
     }
@@ -79,7 +38,20 @@ pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2
         terms.tint * fresnel_dielectric(cosine, terms.ior)
     };
     let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-    [dielectric * terms.weight, metal]
+    let parts = [dielectric * terms.weight, metal];
+    if !terms.has_film {
+        return parts;
+    }
+    [
+        in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
+        in_unit(parts[1] + film_change_of_metal(terms, cosine)),
+    ]
+}
+
+/// Each channel brought into [0, 1].
+#[inline(always)]
+fn in_unit<T: Real>(share: Vec3<T>) -> Vec3<T> {
+    share.map(|x| x.clamp(T::zero(), T::one()))
 }
 
 /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
@@ -100,45 +72,6 @@ pub fn fresnel_f0<T: Real>(ior: T) -> T {
 pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
     let root = (fresnel_f0(ior) * weight).clamp(0.0, 0.99).sqrt();
     (1.0 + root) / (1.0 - root)
-}
-
-/// Schlick's approximation (1994).
-#[inline(always)]
-pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
-    let x = (T::one() - cosine).clamp(T::zero(), T::one());
-    let x2 = x * x;
-    let grazing = x2 * x2 * x;
-    f0 + (Vec3::splat(T::one()) - f0) * grazing
-}
-
-/// The reflectance of a metal that is `f0` at normal incidence: Schlick's, darkened near 82 degrees by `edge_tint` (the
-/// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
-#[inline(always)]
-pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
-    let plain = fresnel_schlick(f0, cosine);
-    let is_tinted = (edge_tint.x + edge_tint.y + edge_tint.z).less(T::from_f64(3.0));
-    if !is_tinted.any() {
-        return plain;
-    }
-    let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
-    Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
-}
-
-/// Factor of [`edge_shape`] that leaves exactly the tint at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
-    let seventh = T::from_f64(1.0 / 7.0);
-    let white = Vec3::splat(T::one());
-    fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::one() / edge_shape(seventh))
-}
-
-/// Angular shape of the darkening towards the edge: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_shape<T: Real>(cosine: T) -> T {
-    let c = cosine.clamp(T::zero(), T::one());
-    let x = T::one() - c;
-    let x2 = x * x;
-    c * x2 * x2 * x2
 }
 
 /// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,
@@ -197,7 +130,7 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
 #[inline(always)]
 pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
     let white = Vec3::splat(T::one());
-    let left = match terms.model {
+    let mut left = match terms.model {
         Fresnel::None | Fresnel::Conductor => {
             let weight = T::one();
             white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
@@ -215,6 +148,9 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
             white - terms.tint + terms.tint * through
         }
     };
+    if terms.has_film && matches!(terms.model, Fresnel::Schlick | Fresnel::Dielectric) {
+        left += terms.tint.map(|x| x.min(T::one())) * film_passed(terms, cosine, terms.ior * behind);
+    }
     (white * (T::one() - terms.weight) + left * terms.weight).at_least_zero()
 }
 

@@ -11,6 +11,7 @@ use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{Fresnel, FresnelTerms, fresnel_f0};
 use super::lobe::{Horizon, Lobe, LobeShape};
 use super::real::{Mask, Real, Scalar};
+use super::thin_film::FilmTerms;
 use super::vector::{Vec3, vec3};
 
 /// The number of a texture that is not there.
@@ -248,6 +249,19 @@ material! {
         coat_normal_texture: u32,
         /// Scales the slopes of the coat's normal texture.
         coat_normal_strength: T,
+        /// Phase of a crossing of the thin film at normal incidence over its index, by channel
+        /// ([`film_path`](super::thin_film::film_path)).
+        film_path: Vec3<T>,
+        /// Share of the surface that has a thin film, in [0, 1].
+        film_weight: T,
+        /// Index of refraction of the thin film.
+        film_ior: T,
+        /// 1 if there is a thin film ([`has_film`](super::thin_film::has_film)).
+        has_film: u32,
+        /// The texture that multiplies the weight of the thin film, or [`NO_TEXTURE`].
+        film_texture: u32,
+        /// The texture that multiplies the thickness of the thin film, or [`NO_TEXTURE`].
+        film_path_texture: u32,
     }
 }
 
@@ -366,6 +380,22 @@ impl<T: Real> Material<T> {
             ior: self.reflecting_ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,
+            has_film: self.has_film == 1,
+            film: self.film_terms(is_bare),
+        }
+    }
+
+    /// The thin film, before it the interior where that is `within`, else air, or the coat as far as it counts.
+    #[inline(always)]
+    fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
+        if self.has_film == 0 {
+            return FilmTerms::none();
+        }
+        let before = T::select(within, self.ior, self.ior / self.reflecting_ior);
+        FilmTerms {
+            weight: self.film_weight,
+            ior: self.film_ior / before,
+            path: self.film_path * before,
         }
     }
 
@@ -380,13 +410,20 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
         let others = [self.opacity_texture, self.metalness_texture, self.coat_normal_texture];
-        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4] || self.has_textured_coat()
+        let is_plain = others == [NO_TEXTURE; 3] && self.textures == [NO_TEXTURE; 4];
+        !is_plain || self.has_textured_coat() || self.has_film_texture()
     }
 
     /// True if textures vary weight, roughness or colour of the coat.
     #[inline(always)]
     pub fn has_textured_coat(&self) -> bool {
         [self.coat_texture, self.coat_roughness_texture, self.coat_color_texture] != [NO_TEXTURE; 3]
+    }
+
+    /// True if a texture varies the thin film.
+    #[inline(always)]
+    pub fn has_film_texture(&self) -> bool {
+        [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
     }
 
     /// True if some light may pass straight through the surface.

@@ -17,7 +17,8 @@ use super::lobe::{LobeShape, lobe_sample};
 use super::material::{COMPENSATES, Material, Surface};
 use super::random::even_point;
 use super::real::Real;
-use super::refraction::refracting_cosines;
+use super::refraction::{refracted_square, refracting_cosines};
+use super::thin_film::film_passed;
 use super::vector::{Vec3, vec3};
 
 /// Factor that keeps a clear interface's light: one over the energy of reflection and refraction together.
@@ -68,7 +69,11 @@ fn compensated<T: Real>(
         return fresnel(terms, cosine) * (white + head_on * (again * terms.metalness));
     }
     let [dielectric, metal] = fresnel_parts(terms, cosine);
-    let metal = metal * (white + terms.metal_f0 * terms.metal_tint * again);
+    let mut head_on = terms.metal_f0 * terms.metal_tint;
+    if terms.has_film {
+        head_on = fresnel_parts(terms, one)[1];
+    }
+    let metal = metal * (white + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = T::select(material.transmits(), material.transmission_weight, T::zero());
     let gain = one + (interface_gain(material, surface, shape) - one) * share;
@@ -125,14 +130,24 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
 fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
     let eta = material.ior_ahead(is_inside);
     // Under a coat the reflection has another index than the refraction.
-    let of_reflection = material.fresnel_terms(is_inside).ior;
-    let reflects = |cosine: f64| fresnel_dielectric(cosine, of_reflection);
+    let terms = FresnelTerms {
+        tint: Vec3::splat(1.0),
+        ..material.fresnel_terms(is_inside)
+    };
+    // A film shares the light otherwise, by its mean over the channels.
+    let film = |cosine: f64| match terms.has_film {
+        true => {
+            film_passed(&terms, cosine, refracted_square(cosine, terms.ior).safe_sqrt()).dot(Vec3::splat(1.0 / 3.0))
+        }
+        false => 0.0,
+    };
+    let reflects = |cosine: f64| fresnel_dielectric(cosine, terms.ior) - film(cosine);
     let reflected = reflected_energy(material, cosine, samples, reflects);
     let shape = material.transmission_shape(&[], is_inside);
     let refracted = mean_weight(&shape, cosine, samples, |wo, wi| {
         let [before, behind] = refracting_cosines(wo, wi, eta);
-        if of_reflection == eta {
-            fresnel_transmitted(before, behind, eta)
+        if terms.ior == eta {
+            fresnel_transmitted(before, behind, eta) + film(before)
         } else {
             1.0 - reflects(before)
         }

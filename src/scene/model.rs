@@ -275,6 +275,14 @@ pub struct Slot {
     pub coat_on_base: bool,
     /// Share of its darkening that shows, in [0, 1].
     pub coat_darkening: f32,
+    /// Share of the surface that has a thin film, in [0, 1] (KHR_materials_iridescence).
+    pub film: f32,
+    /// Index of refraction of the thin film, at least 1.
+    pub film_ior: f32,
+    /// Thickness of the thin film in µm, where its texture is 1.
+    pub film_thickness: f32,
+    /// Thickness of the thin film in µm, where its texture is 0.
+    pub film_thickness_min: f32,
     /// Transmittance over `attenuation_distance` inside, linear RGB (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
     /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
@@ -329,6 +337,10 @@ impl Default for Slot {
             coat_anisotropy: 0.0,
             coat_on_base: false,
             coat_darkening: 0.0,
+            film: 0.0,
+            film_ior: 1.3,
+            film_thickness: 0.4,
+            film_thickness_min: 0.1,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
             textures: [None; TextureTarget::ALL.len()],

@@ -42,6 +42,8 @@ targets! {
     CoatRoughness, "coat-roughness", "Coat roughness", Number(1), CoatRoughness, "Multiplies the coat's roughness, that of GGX, which is then its lobe.";
     CoatColor, "coat-color", "Coat colour", Color, CoatColor, "Multiplies the colour of the coat.";
     CoatNormal, "coat-normal", "Coat normal", Vector, CoatNormal, "Bends the normal of the coat.";
+    Film, "film", "Thin film", Number(0), Film, "Multiplies the weight of the thin film.";
+    FilmThickness, "film-thickness", "Film thickness", Number(1), FilmThickness, "Multiplies the thickness of the thin film.";
 }
 
 impl TextureTarget {

@@ -12,6 +12,7 @@ use serde_json::{Map, Value as Json, json};
 use super::own;
 use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
+use crate::document::material::FILM_THICKNESS_MAX;
 use crate::document::parameter::nearest_key;
 use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
@@ -46,10 +47,10 @@ pub const SHIPPED: &[(&str, &[&str])] = shipped! {
         "lacquered-walnut" "lacquered-oak" "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red";
     "Metals":
         "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
-        "copper" "platinum" "titanium" "cast-iron" "mercury";
+        "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel";
     "Glass and liquids":
         "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass"
-        "diamond";
+        "diamond" "soap-film";
 };
 
 /// The shipped materials, in the order of the menus.
@@ -209,7 +210,7 @@ fn migrate_0(object: &mut Map<String, Json>) {
 
 /// True of parameters that came after version 0.
 fn is_newer(key: &str) -> bool {
-    let groups = ["transmission.", "coat.", "fuzz.", "geometry."];
+    let groups = ["transmission.", "coat.", "fuzz.", "thin_film.", "geometry."];
     groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
 }
 
@@ -260,6 +261,25 @@ pub enum MaterialError {
     Material,
 }
 
+/// Turns what older files kept of glTF's iridescence into the thin film that it is.
+fn show_iridescence(values: &mut Map<String, Json>) {
+    values.shift_remove("iridescence.thickness_min_nm");
+    let mut take = |key: &str| values.shift_remove(key).and_then(|value| value.as_f64());
+    let [weight, ior, thickness_nm] = ["weight", "ior", "thickness_nm"].map(|key| take(&format!("iridescence.{key}")));
+    let Some(weight) = weight else { return };
+    let film = [
+        ("thin_film.weight", weight.clamp(0.0, 1.0)),
+        ("thin_film.ior", ior.unwrap_or(1.3).clamp(1.0, 3.0)),
+        (
+            "thin_film.thickness",
+            (1e-3 * thickness_nm.unwrap_or(400.0)).clamp(0.0, FILM_THICKNESS_MAX.into()),
+        ),
+    ];
+    for (key, value) in film {
+        values.entry(key).or_insert(json!(value));
+    }
+}
+
 /// From `{"name": …, "material": {…}}`.
 impl TryFrom<Map<String, Json>> for MaterialSettings {
     type Error = MaterialError;
@@ -275,6 +295,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             Some(_) => return Err(MaterialError::Material),
             None => Map::new(),
         };
+        show_iridescence(&mut values);
         let has_coat = values.get("coat.weight").and_then(Json::as_f64) > Some(0.0);
         if has_coat && !values.contains_key("coat.on_base") {
             // From before coats changed what lies below them.

@@ -105,6 +105,7 @@ fn keys_that_the_pages_name_exist() {
         "specular.",
         "coat.",
         "fuzz.",
+        "thin_film.",
         "transmission.",
         "emission.",
         "geometry.",

@@ -10,6 +10,7 @@ use glossmith::optics::fresnel::{
 };
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, MIRROR_WIDTH, is_mirror, lobe_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_pair_bits, random_state};
+use glossmith::optics::thin_film::{FilmTerms, film_path};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
@@ -80,9 +81,15 @@ fn what_is_let_through_keeps_its_digits() {
 /// What a facet leaves over is one minus what it reflects, whatever the model.
 #[test]
 fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
-    for &model in Fresnel::ALL {
+    for (&model, has_film) in Fresnel::ALL.iter().flat_map(|model| [(model, false), (model, true)]) {
         let terms = FresnelTerms {
             model,
+            has_film,
+            film: FilmTerms {
+                weight: 0.6,
+                ior: 1.4,
+                path: Vec3::from_f64(film_path(0.5).to_f64()),
+            },
             metal_f0: vec3(0.9, 0.6, 0.2),
             metalness: 0.0,
             tint: vec3(1.0, 0.8, 0.1),
@@ -97,7 +104,7 @@ fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
             let behind = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
             let sum = fresnel(&terms, cosine) + fresnel_left(&terms, cosine, behind);
             let off = (sum - vec3(1.0, 1.0, 1.0)).map(f64::abs).max_component();
-            assert!(off < 1e-12, "{model:?} at {cosine}: {sum:?}");
+            assert!(off < 1e-12, "{model:?} at {cosine}, film {has_film}: {sum:?}");
         }
     }
 }

@@ -4,6 +4,7 @@ use glossmith::document::MaterialSettings;
 use glossmith::matching::lobe_of_material;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, weighted_ior};
 use glossmith::optics::lobe::model::LobeModel;
+use glossmith::optics::thin_film::FilmTerms;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::exchange::FORMATS;
 use glossmith::store::preset::{command_line_name, load_material, material_text};
@@ -184,6 +185,8 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
         },
         eta: Vec3::from_f32(m.eta),
         k: Vec3::from_f32(m.k),
+        has_film: false,
+        film: FilmTerms::none(),
     };
     let (a, b) = (terms(a), terms(b));
     let apart = (0..=64).map(|i| {

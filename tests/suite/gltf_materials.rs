@@ -1,10 +1,11 @@
 //! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
 
 use glossmith::document::of_model::materials_of;
-use glossmith::document::{ImportLobe, MaterialSettings};
+use glossmith::document::{ImportLobe, MaterialSettings, compile_textured};
 use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
-use glossmith::scene::texture::TextureTarget;
+use glossmith::optics::thin_film::film_path;
+use glossmith::scene::texture::{TextureTarget, Textures};
 use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
@@ -188,12 +189,10 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
 fn what_cannot_be_shown_yet_is_kept_in_the_material() {
     let model = slot_of(&json!({"extensions": {
         "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 1.0], "sheenRoughnessFactor": 0.5},
-        "KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 350},
         "KHR_materials_dispersion": {"dispersion": 0.0},
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
     }}));
     says(&model, Fate::Ignored, "sheen, kept in the material");
-    says(&model, Fate::Ignored, "iridescence, kept in the material");
     assert!(
         !model
             .report
@@ -212,8 +211,47 @@ fn what_cannot_be_shown_yet_is_kept_in_the_material() {
         (material.extra, Vec::<String>::new())
     );
     assert_eq!(read.value.extra["sheen.color"], json!([0.5, 0.25, 1.0]));
-    assert_eq!(read.value.extra["iridescence.thickness_nm"], json!(350));
     assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
+}
+
+#[test]
+fn iridescence_is_a_thin_film() {
+    let texture = json!({"index": 0});
+    let model = slot_of(&json!({"extensions": {"KHR_materials_iridescence": {
+        "iridescenceFactor": 0.5, "iridescenceIor": 1.75, "iridescenceThicknessMaximum": 350,
+        "iridescenceTexture": texture, "iridescenceThicknessTexture": texture,
+    }}}));
+    assert!(
+        model
+            .report
+            .entries
+            .iter()
+            .all(|entry| !entry.what.contains("iridescence"))
+    );
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    let film = |m: &MaterialSettings| [m.film_weight, m.film_ior, m.film_thickness];
+    assert_eq!(film(&material), [0.5, 1.75, 0.35]);
+    // Both texels of the picture are (10, 20, 30); the least thickness is 100 nm.
+    let (compiled, _) = compile_textured(&[material], &Textures::new(&model).slots);
+    let share = 20.0 / 255.0;
+    let expected = [0.5 * 10.0 / 255.0, film_path(0.1 + 0.25 * share).x];
+    for (found, expected) in [compiled[0].film_weight, compiled[0].film_path.x].iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-5, "{found} for {expected}");
+    }
+    // Files of versions that only kept it.
+    let folder = Folder::new();
+    let path = folder.path("old.json");
+    let old = json!({"glossmith": 1, "name": "Old", "material": {
+        "iridescence.weight": 0.5, "iridescence.ior": 1.75, "iridescence.thickness_nm": 350,
+        "iridescence.thickness_min_nm": 100,
+    }});
+    std::fs::write(&path, old.to_string()).unwrap();
+    let read = glossmith::store::load_material(&path).unwrap();
+    assert_eq!(
+        (film(&read.value), read.warnings),
+        ([0.5, 1.75, 0.35], Vec::<String>::new())
+    );
+    assert!(read.value.extra.is_empty());
 }
 
 #[test]

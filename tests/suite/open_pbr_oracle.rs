@@ -118,6 +118,12 @@ fn gloss_has_the_oracle_s_values() {
     assert_values("gloss", 3e-3, true);
 }
 
+/// By the same three wavelengths.
+#[test]
+fn films_over_gloss_have_the_oracle_s_values() {
+    assert_values("film", 3e-3, true);
+}
+
 #[test]
 fn peaks_of_metals_have_the_oracle_s_values() {
     assert_values("peak", 3e-3, true);
@@ -178,7 +184,7 @@ fn albedos_are_the_oracle_s() {
             );
             continue;
         }
-        let is_glass = name.starts_with("trans");
+        let is_glass = name.starts_with("trans") || name == "film_transmission";
         if is_glass {
             let sum = found.reflected[0] + found.transmitted[0];
             assert!((sum - 1.0).abs() < 5e-3, "{name} at {cells:?}: {sum} in all");

@@ -42,6 +42,17 @@ pub fn coated_on_a_box(folder: &Folder) -> Document {
     document
 }
 
+/// The same with a thin film whose thickness the picture gives.
+pub fn filmed_on_a_box(folder: &Folder) -> Document {
+    let mut document = coated_on_a_box(folder);
+    let material = &mut document.materials[0];
+    let picture = material.user_textures.get(TextureTarget::Coat).cloned();
+    material.user_textures.set(TextureTarget::Coat, None);
+    material.put_texture(TextureTarget::FilmThickness, picture.unwrap());
+    (material.coat_weight, material.film_weight, material.film_ior) = (0.0, 1.0, 2.5);
+    document
+}
+
 fn linear(code: u8) -> f64 {
     linear_from_srgb(Vec3::<f64>::splat(f64::from(code) / 255.0)).x
 }
@@ -167,6 +178,10 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
     assert_near(found(TextureTarget::Coat, &both, lower_left), [1.0 - 0.5 * share; 4]);
     // By itself: red, but the alpha of an opacity; what is named for several has roughness in green, metalness in blue.
     assert_near(found(TextureTarget::Coat, &plain, upper_right), [100.0 / 255.0; 4]);
+    assert_near(
+        found(TextureTarget::FilmThickness, &plain, upper_right),
+        [100.0 / 255.0; 4],
+    );
     assert_near(found(TextureTarget::Opacity, &plain, upper_right), [128.0 / 255.0; 4]);
     let packed = UserTexture::of("rock_arm_1k.png".into());
     assert_near(found(TextureTarget::Roughness, &packed, lower_left), [share; 4]);

@@ -19,7 +19,7 @@ use glossmith::store::PRESETS;
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
+use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
 use crate::terminator::coarse;
@@ -147,6 +147,7 @@ fn needing(effect: &str) -> Document {
         "coat-darkening" => &["base.metalness=0", "coat.weight=1", "coat.ior=2"],
         "coat-absorption" => &["base.metalness=0", "coat.weight=1", "coat.color=0.2,0.5,0.9"],
         "fuzz" => &["fuzz.weight=1", "fuzz.roughness=1"],
+        "thin-film" => &["thin_film.weight=1", "thin_film.ior=2"],
         "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
         "diffuse-roughness" => &["base.metalness=0", "base.diffuse_roughness=1"],
         "multiple-scattering" => &["specular.lobe=ggx", "specular.roughness=0.9"],
@@ -219,6 +220,8 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             coated_on_a_box(&folder)
         } else if effect.id == EffectId::CoatNormalMap {
             small(coated_all_over(&folder))
+        } else if effect.id == EffectId::FilmTexture {
+            filmed_on_a_box(&folder)
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {

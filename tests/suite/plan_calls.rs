@@ -97,7 +97,13 @@ fn textured(folder: &Folder) -> Document {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    for target in [TextureTarget::Coat, TextureTarget::CoatColor, TextureTarget::CoatNormal] {
+    for target in [
+        TextureTarget::Coat,
+        TextureTarget::CoatColor,
+        TextureTarget::CoatNormal,
+        TextureTarget::Film,
+        TextureTarget::FilmThickness,
+    ] {
         material.user_textures.set(target, Some(coat.clone()));
     }
     document
@@ -262,6 +268,7 @@ fn calls_for(effect: &str) -> Calls {
             ],
         ),
         "fuzz" => (metal, &[|d, _| d.materials[0].fuzz_weight = LEAST]),
+        "thin-film" => (metal, &[|d, _| d.materials[0].film_weight = LEAST]),
         "coat" => (metal, &[|d, _| d.materials[0].coat_weight = LEAST]),
         "coat-ggx" => (
             metal,
@@ -319,6 +326,13 @@ fn calls_for(effect: &str) -> Calls {
         "coat-normal-map" => (
             metal,
             &[|d, _| (d.materials[0].textures.coat_normal, d.materials[0].coat_weight) = (true, LEAST)],
+        ),
+        "film-texture" => (
+            metal,
+            &[
+                |d, _| (d.materials[0].textures.film, d.materials[0].film_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.film_thickness, d.materials[0].film_weight) = (true, LEAST),
+            ],
         ),
         "box-projection" => (
             metal,

@@ -23,7 +23,7 @@ use glossmith::store::PRESETS;
 
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
+use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
@@ -65,6 +65,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
         "fuzz" => |material, _| material.fuzz_weight = 0.0,
+        "thin-film" => |material, _| material.has_film = 0,
         "coat" => |material, _| (material.coat_weight, material.reflecting_ior) = (0.0, material.ior),
         "coat-ggx" => |material, _| material.flags &= !COAT_IS_GGX,
         "coat-darkening" => |material, _| material.coat_darkening = 0.0,
@@ -84,6 +85,9 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
             material.coat_color_texture = NO_TEXTURE;
         },
         "coat-normal-map" => |material, _| material.coat_normal_texture = NO_TEXTURE,
+        "film-texture" => |material, _| {
+            (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
+        },
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
@@ -244,6 +248,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         "base.metalness=0.5",
         "base.diffuse_roughness=0.5",
         "fuzz.weight=0.2",
+        "thin_film.weight=0.3",
         "specular.lobe=ggx",
         "specular.roughness=0.5",
     ] {
@@ -270,6 +275,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         glass,
         small(all_at_once(folder)),
         coated_on_a_box(folder),
+        filmed_on_a_box(folder),
         small(coarse(folder)),
         small(shining_by_vertices(folder)),
     ]

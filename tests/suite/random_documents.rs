@@ -93,7 +93,13 @@ pub fn random_document(random: &mut Random) -> Document {
     // parts by rounding.
     for parameter in PARAMETERS
         .iter()
-        .filter(|parameter| !(parameter.key.starts_with("coat.") && parameter.key.ends_with("_texture")))
+        // Switches that do nothing without a texture.
+        .filter(|parameter| {
+            let is_of_layer = ["coat.", "thin_film."]
+                .iter()
+                .any(|group| parameter.key.starts_with(group));
+            !(is_of_layer && parameter.key.ends_with("_texture"))
+        })
     {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));

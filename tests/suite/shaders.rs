@@ -16,6 +16,7 @@ use glossmith::optics::layer::base::BASE_EDGE;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::rough_diffuse;
+use glossmith::optics::thin_film;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{self, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
 use glossmith::scene::inversion::DRAW_BITS;
@@ -261,6 +262,9 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("HEAD_ON", rough_diffuse::HEAD_ON),
         ("MEAN", rough_diffuse::MEAN),
         ("ROUGH_COSINE_MIN", rough_diffuse::ROUGH_COSINE_MIN),
+        ("LARGEST_FILM_F0", thin_film::LARGEST_FILM_F0),
+        ("LEAST_FILM_COSINE", thin_film::LEAST_FILM_COSINE),
+        ("FILM_TINY", thin_film::FILM_TINY),
         ("VERTEX_BASE", f64::from(material::VERTEX_BASE)),
         ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
         ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),

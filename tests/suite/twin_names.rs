@@ -30,6 +30,7 @@ const ALONE: &[(&str, &[&str])] = &[
             "has_vertex_flag",
             "looks_up_textures",
             "planned",
+            "shows_film",
             "transmits_anywhere",
         ],
     ),

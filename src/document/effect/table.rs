@@ -298,6 +298,13 @@ pub static EFFECTS: &[Effect] = &[
         remove: Some(|document| each_material(document, |material| material.coat_weight = 0.0)),
     },
     Effect {
+        id: EffectId::ThinFilm,
+        label: "Thin film",
+        help: "Interference in a film over the surface that reflects: soap, oil, tempered steel.",
+        decide: |facts| facts.needed_by(|m| m.has_film == 1, "has a thin film"),
+        remove: Some(|document| each_material(document, |material| material.film_weight = 0.0)),
+    },
+    Effect {
         id: EffectId::CoatGgx,
         label: "GGX coat",
         help: "A coat that spreads its reflection as GGX does.",
@@ -441,6 +448,17 @@ pub static EFFECTS: &[Effect] = &[
         help: "Normals of coats bent by a texture of their own.",
         decide: |facts| facts.needed_by(|m| m.coat_normal_texture != NO_TEXTURE, "bends the normals of its coat"),
         remove: Some(|document| each_material(document, |material| material.textures.coat_normal = false)),
+    },
+    Effect {
+        id: EffectId::FilmTexture,
+        label: "Thin film textures",
+        help: "Weights and thicknesses of thin films from textures.",
+        decide: |facts| facts.needed_by(Material::has_film_texture, "takes its thin film from a texture"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                (material.textures.film, material.textures.film_thickness) = (false, false);
+            });
+        }),
     },
     Effect {
         id: EffectId::BoxProjection,

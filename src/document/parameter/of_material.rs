@@ -7,6 +7,7 @@ use std::sync::LazyLock;
 use super::accessors::{choice, field};
 use super::{Choice, Kind, Parameter, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
+use crate::document::material::FILM_THICKNESS_MAX;
 use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -22,6 +23,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     all.extend(specular_fresnel());
     all.extend(coat::parameters());
     all.extend(fuzz());
+    all.extend(thin_film());
     all.extend(transmission());
     all.extend(emission());
     all.extend(geometry());
@@ -88,31 +90,28 @@ fn specular_fresnel() -> Vec<Parameter> {
     ]
 }
 
+#[rustfmt::skip]
 fn fuzz() -> Vec<Parameter> {
     vec![
-        of(
-            "fuzz.weight",
-            "Weight",
-            "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.",
-            unit_number(),
-            field!(Number fuzz_weight),
-        )
-        .applies(|_| true),
-        of(
-            "fuzz.color",
-            "Colour",
-            "Colours what the fibres reflect; what lies below loses as much light of every colour.",
-            Kind::Color,
-            field!(Color fuzz_color),
-        ),
-        of(
-            "fuzz.roughness",
-            "Roughness",
-            "How far the fibres spread the light: low only at the edge, high as dust all over.",
-            unit_number(),
-            field!(Number fuzz_roughness),
-        )
-        .symbol("R"),
+        of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
+            .applies(|_| true),
+        of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
+        of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
+            .symbol("R"),
+    ]
+}
+
+#[rustfmt::skip]
+fn thin_film() -> Vec<Parameter> {
+    vec![
+        of("thin_film.weight", "Weight", "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours.", unit_number(), field!(Number film_weight))
+            .applies(|material| has_specular(material) && material.fresnel_model() != Fresnel::None),
+        of("thin_film.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.film)),
+        of("thin_film.thickness", "Thickness", "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.", number([0.0, FILM_THICKNESS_MAX], "µm"), field!(Number film_thickness))
+            .symbol("d").bar(0.0, 1.0),
+        of("thin_film.thickness_texture", "Thickness texture", "Multiplies the thickness by a texture.", Kind::Toggle, field!(Toggle textures.film_thickness)),
+        of("thin_film.ior", "Index of refraction", "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see.", number([1.0, 3.0], ""), field!(Number film_ior))
+            .symbol("n").bar(1.0, 3.0),
     ]
 }
 
@@ -154,11 +153,12 @@ fn geometry() -> Vec<Parameter> {
 type Applies = fn(&MaterialSettings) -> bool;
 
 /// The groups of the panel by the first part of their parameters' keys, and when the rows of a group apply.
-const GROUPS: [(&str, &str, Applies); 7] = [
+const GROUPS: [(&str, &str, Applies); 8] = [
     ("base", "Base", |_| true),
     ("specular", "Specular", has_specular),
     ("coat", "Coat", |material| material.coat_weight > 0.0),
     ("fuzz", "Fuzz", |material| material.fuzz_weight > 0.0),
+    ("thin_film", "Thin film", |material| material.film_weight > 0.0),
     ("transmission", "Transmission", transmits),
     ("emission", "Emission", |_| true),
     ("geometry", "Geometry", |_| true),

@@ -112,6 +112,31 @@ pub(super) fn coat(material: &Json) -> Option<Coat> {
     draft.or_else(|| extension::<Clearcoat>(material, "KHR_materials_clearcoat").map(Coat::from))
 }
 
+/// KHR_materials_iridescence; thicknesses in nm.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Iridescence {
+    pub iridescence_factor: f32,
+    pub iridescence_texture: Option<TextureInfo>,
+    pub iridescence_ior: f32,
+    pub iridescence_thickness_minimum: f32,
+    pub iridescence_thickness_maximum: f32,
+    pub iridescence_thickness_texture: Option<TextureInfo>,
+}
+
+impl Default for Iridescence {
+    fn default() -> Self {
+        Self {
+            iridescence_factor: 0.0,
+            iridescence_texture: None,
+            iridescence_ior: 1.3,
+            iridescence_thickness_minimum: 100.0,
+            iridescence_thickness_maximum: 400.0,
+            iridescence_thickness_texture: None,
+        }
+    }
+}
+
 /// KHR_materials_specular.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -198,9 +223,10 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
         is_there && extension::<T>(material, name).is_none()
     }
     type Check = fn(&Json, &str) -> bool;
-    let checks: [(&'static str, Check); 8] = [
+    let checks: [(&'static str, Check); 9] = [
         ("KHR_materials_coat", is_unreadable::<Coat>),
         ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
+        ("KHR_materials_iridescence", is_unreadable::<Iridescence>),
         ("KHR_materials_specular", is_unreadable::<Specular>),
         ("KHR_materials_anisotropy", is_unreadable::<Anisotropy>),
         ("KHR_materials_diffuse_roughness", is_unreadable::<DiffuseRoughness>),
@@ -226,7 +252,7 @@ struct Kept {
 }
 
 /// Extensions that are not supported yet.
-const KEPT: [Kept; 4] = [
+const KEPT: [Kept; 3] = [
     Kept {
         extension: "KHR_materials_sheen",
         weight: "sheenColorFactor",
@@ -235,17 +261,6 @@ const KEPT: [Kept; 4] = [
             ("sheenRoughnessFactor", "sheen.roughness"),
         ],
         what: "sheen",
-    },
-    Kept {
-        extension: "KHR_materials_iridescence",
-        weight: "iridescenceFactor",
-        values: &[
-            ("iridescenceFactor", "iridescence.weight"),
-            ("iridescenceIor", "iridescence.ior"),
-            ("iridescenceThicknessMinimum", "iridescence.thickness_min_nm"),
-            ("iridescenceThicknessMaximum", "iridescence.thickness_nm"),
-        ],
-        what: "iridescence",
     },
     Kept {
         extension: "KHR_materials_dispersion",

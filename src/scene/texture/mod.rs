@@ -286,6 +286,12 @@ pub fn textured_material<T: Scalar>(
     if emission != NO_TEXTURE {
         at_point.emission = at_point.emission * texture_lookup(textures, emission, uvs).0;
     }
+    if material.film_texture != NO_TEXTURE {
+        at_point.film_weight = material.film_weight * texture_lookup(textures, material.film_texture, uvs).0.x;
+    }
+    if material.film_path_texture != NO_TEXTURE {
+        at_point.film_path = material.film_path * texture_lookup(textures, material.film_path_texture, uvs).0.x;
+    }
     at_point
 }
 
@@ -302,7 +308,13 @@ pub fn textured_materials<T: Real>(
     let at = T::each(|lane| {
         let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
         TexturedNumbers {
-            colors: [at.base_color, at.transmission_tint, at.emission, at.coat_color],
+            colors: [
+                at.base_color,
+                at.transmission_tint,
+                at.emission,
+                at.coat_color,
+                at.film_path,
+            ],
             numbers: [
                 at.metalness,
                 at.roughness,
@@ -311,6 +323,7 @@ pub fn textured_materials<T: Real>(
                 at.reflecting_ior,
                 at.ggx_roughness,
                 at.coat_roughness,
+                at.film_weight,
             ],
         }
     });
@@ -327,6 +340,8 @@ pub fn textured_materials<T: Real>(
         reflecting_ior: T::from_lanes(|lane| at[lane].numbers[4]),
         ggx_roughness: T::from_lanes(|lane| at[lane].numbers[5]),
         coat_roughness: T::from_lanes(|lane| at[lane].numbers[6]),
+        film_path: Vec3::from_lanes(|lane| at[lane].colors[4]),
+        film_weight: T::from_lanes(|lane| at[lane].numbers[7]),
         ..*material
     }
 }
@@ -334,11 +349,11 @@ pub fn textured_materials<T: Real>(
 /// Parameters that [`textured_material`] changes.
 #[derive(Clone, Copy, Default)]
 struct TexturedNumbers<T> {
-    /// Base colour, tint of the transmission, emission, colour of the coat.
-    colors: [Vec3<T>; 4],
+    /// Base colour, tint of the transmission, emission, colour of the coat, phase of the thin film.
+    colors: [Vec3<T>; 5],
     /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
-    /// the coat, roughness of the coat.
-    numbers: [T; 7],
+    /// the coat, roughness of the coat, weight of the thin film.
+    numbers: [T; 8],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.

@@ -59,7 +59,13 @@ pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> Sl
         let target = TextureTarget::ALL[index];
         let reference = slot.texture(target)?;
         let is_seen = target != TextureTarget::Opacity || is_translucent(reference.texture);
-        is_seen.then(|| of_reference(target, &reference))
+        let mut used = of_reference(target, &reference);
+        if target == TextureTarget::FilmThickness && slot.film_thickness > 0.0 {
+            // From the least thickness to the largest.
+            used.offset = slot.film_thickness_min / slot.film_thickness;
+            used.scale = 1.0 - used.offset;
+        }
+        is_seen.then_some(used)
     })
 }
 

@@ -16,6 +16,7 @@ const TAKES: Takes = Takes {
     coat_stretch: false,
     coat_on_base: false,
     fuzz: false,
+    film_weight: false,
     scattering: true,
     weighs_metal: false,
     ..Takes::OPEN_PBR
@@ -99,9 +100,17 @@ fn call(surface: &Surface, exact: &str) -> String {
     // Blender has it since 4.3.
     let of_base =
         (surface.diffuse_roughness > 0.0).then(|| ("Diffuse Roughness", surface.diffuse_roughness.to_string()));
+    // And this since 4.2, in nm.
+    let film = (surface.film_weight > 0.0).then(|| {
+        [
+            ("Thin Film Thickness", (1e3 * surface.film_thickness).to_string()),
+            ("Thin Film IOR", surface.film_ior.to_string()),
+        ]
+    });
     let lines: Vec<String> = inputs
         .into_iter()
         .chain(of_base)
+        .chain(film.into_iter().flatten())
         .map(|(key, value)| format!("        \"{key}\": {value},\n"))
         .collect();
     let turn = if surface.anisotropy == 0.0 { 0.0 } else { rotation_deg };

@@ -50,6 +50,8 @@ impl Kind {
             eta_and_k: self == Self::Conductor,
             diffuse_roughness: false,
             fuzz: false,
+            film: false,
+            film_weight: false,
             scattering: false,
             weighs_index: false,
             edge_tint: false,

@@ -2,13 +2,14 @@
 
 use super::report::{Entry, Residual};
 use crate::document::import::ggx_under_texture;
-use crate::document::material::specular_color;
+use crate::document::material::{FILM_THICKNESS_MAX, specular_color};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
+use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
 
 /// A material as other programs know it. Colours are linear Rec. 709 in [0, 1].
@@ -66,6 +67,12 @@ pub struct Surface {
     pub fuzz_color: [f32; 3],
     /// In [0, 1].
     pub fuzz_roughness: f32,
+    /// Share of the surface that has a thin film, in [0, 1].
+    pub film_weight: f32,
+    /// In µm.
+    pub film_thickness: f32,
+    /// Of the thin film.
+    pub film_ior: f32,
     /// Emitted radiance.
     pub emission: [f32; 3],
     /// Share of light that is stopped, in [0, 1].
@@ -112,6 +119,10 @@ pub struct Takes {
     pub coat_on_base: bool,
     /// Fuzz.
     pub fuzz: bool,
+    /// A thin film.
+    pub film: bool,
+    /// The weight of a thin film: without one, the film is everywhere.
+    pub film_weight: bool,
     /// What facets scatter more than once.
     pub scattering: bool,
     /// Refraction.
@@ -158,6 +169,9 @@ impl Default for Surface {
             fuzz_weight: 0.0,
             fuzz_color: [1.0; 3],
             fuzz_roughness: 0.5,
+            film_weight: 0.0,
+            film_thickness: 0.5,
+            film_ior: 1.4,
             emission: [0.0; 3],
             opacity: 1.0,
         }
@@ -182,7 +196,7 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
     let tint = Vec3::from_f32(shown_tint(material));
     let weight = f64::from(material.specular_weight);
     FresnelTerms {
-        model: law_of(material),
+        model: material.fresnel_model(),
         metal_f0: Vec3::from_f32(material.base_color) * f64::from(material.base_weight),
         metalness: f64::from(material.metalness),
         tint,
@@ -199,21 +213,15 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
         },
         eta: Vec3::from_f32(material.eta),
         k: Vec3::from_f32(material.k),
-    }
-}
-
-/// The Fresnel model that counts: only the exact equations know total reflection.
-fn law_of(material: &MaterialSettings) -> Fresnel {
-    if material.transmits() {
-        Fresnel::Dielectric
-    } else {
-        material.fresnel
+        // A thin film is told of as a part of its own.
+        has_film: false,
+        film: FilmTerms::none(),
     }
 }
 
 /// The tint that shows: only Schlick's reflectance head-on can be raised, up to 1.
 fn shown_tint(material: &MaterialSettings) -> [f32; 3] {
-    let most = match law_of(material) {
+    let most = match material.fresnel_model() {
         Fresnel::Schlick => fresnel_f0(material.ior).recip(),
         _ => 1.0,
     };
@@ -255,6 +263,9 @@ impl Surface {
             fuzz_weight: material.fuzz_weight,
             fuzz_color: material.fuzz_color,
             fuzz_roughness: material.fuzz_roughness,
+            film_weight: material.film_weight,
+            film_thickness: material.film_thickness,
+            film_ior: material.film_ior,
             emission: material.emission_color.map(|x| x * material.emission_strength),
             opacity: material.opacity,
         };
@@ -270,7 +281,7 @@ impl Surface {
     fn take_fresnel(&mut self, material: &MaterialSettings) {
         let white = [1.0; 3];
         let weight = [material.specular_weight; 3];
-        match law_of(material) {
+        match material.fresnel_model() {
             Fresnel::None | Fresnel::Conductor if material.specular_weight == 0.0 => {}
             Fresnel::None => {
                 self.metalness = 1.0;
@@ -324,6 +335,9 @@ impl Surface {
             fuzz_weight: unit(self.fuzz_weight),
             fuzz_color: self.fuzz_color.map(unit),
             fuzz_roughness: unit(self.fuzz_roughness),
+            film_weight: unit(self.film_weight),
+            film_thickness: self.film_thickness.clamp(0.0, FILM_THICKNESS_MAX),
+            film_ior: self.film_ior.clamp(1.0, 3.0),
             opacity: unit(self.opacity),
             ..MaterialSettings::default()
         };
@@ -369,6 +383,11 @@ impl Surface {
         taken.take_coat(takes);
         if !takes.fuzz {
             taken.fuzz_weight = 0.0;
+        }
+        if !takes.film {
+            taken.film_weight = 0.0;
+        } else if !takes.film_weight && taken.film_weight > 0.0 {
+            taken.film_weight = 1.0;
         }
         if !takes.transmission {
             taken.transmission_weight = 0.0;
@@ -520,6 +539,14 @@ impl Surface {
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
+        layer(material.has_film(), takes.film, "thin film", none);
+        let is_partial = material.has_film() && material.film_weight < 1.0 && takes.film;
+        layer(
+            is_partial,
+            takes.film_weight,
+            "the thin film's weight",
+            "the format's film is everywhere",
+        );
         let loses_light = material.lobe.traits().loses_light && material.metalness > 0.0;
         let dims = loses_light && material.multiple_scattering && !takes.scattering;
         layer(dims, false, "multiple scattering between facets", none);

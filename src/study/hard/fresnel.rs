@@ -4,7 +4,7 @@ use super::{HardCase, HardError, Stage};
 use crate::job::probe::FresnelQuestion;
 
 /// Cosines from grazing to head-on.
-const COSINES: [f32; 14] = [
+pub(super) const COSINES: [f32; 14] = [
     0.0,
     1e-30,
     1e-7,
@@ -65,6 +65,7 @@ pub(super) const CASES: &[HardCase] = &[
                 cosine,
                 eta: 1.0 / 1.5,
                 k: 0.0,
+                film: [0.0; 3],
             };
             worst(stage, &around_critical(1.0 / 1.5).map(question).collect::<Vec<_>>())
         },
@@ -158,12 +159,22 @@ fn asked(conductors: &[(f32, f32, f32)]) -> Vec<FresnelQuestion> {
         cosine,
         eta,
         k,
+        film: [0.0; 3],
     };
     conductors.iter().map(question).collect()
 }
 
 fn with_cosines(terms: &[(u32, f32, f32)]) -> Vec<FresnelQuestion> {
-    let question = |&(model, eta, k): &(u32, f32, f32)| COSINES.map(|cosine| FresnelQuestion { model, cosine, eta, k });
+    let question = |&(model, eta, k): &(u32, f32, f32)| {
+        let film = [0.0; 3];
+        COSINES.map(|cosine| FresnelQuestion {
+            model,
+            cosine,
+            eta,
+            k,
+            film,
+        })
+    };
     terms.iter().flat_map(question).collect()
 }
 

@@ -1,6 +1,7 @@
 //! Hard cases: situations where naive code fails, as data. Each states the failure, the set-up and the requirement.
 //! `glossmith check --hard`, the editor and the tests run them.
 
+mod film;
 mod fresnel;
 mod geometry;
 mod glb;
@@ -50,6 +51,7 @@ pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
         lobe::CASES,
         layer::CASES,
         precision::CASES,
+        film::CASES,
         fresnel::CASES,
         geometry::CASES,
         light::CASES,

@@ -20,6 +20,7 @@ use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::scattering::scattering_table;
 use glossmith::optics::table::append_table;
+use glossmith::optics::thin_film::film_path;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
@@ -113,6 +114,8 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 material.metalness_texture = others[of_others.below(2)];
                 material.coat_texture = of_others.below(textures.records.len()) as u32;
                 material.coat_color_texture = of_others.below(textures.records.len()) as u32;
+                material.film_texture = of_others.below(textures.records.len()) as u32;
+                material.film_path_texture = of_others.below(textures.records.len()) as u32;
                 materials.push(material);
             }
         }
@@ -245,6 +248,17 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let tint = color(0.2, 1.0);
     let fuzz_roughness = rng.range(0.1, 1.0);
     let bell = fuzz_bell(f64::from(fuzz_roughness)).map(|x| x as f32);
+    // From a sequence of their own, so that the other numbers stay what they are.
+    let mut of_film = Rng::new(u64::from(tint.x.to_bits()));
+    let film = [
+        of_film.range(0.0, 1.0),
+        if of_film.chance(0.3) {
+            of_film.range(0.1, 1.0)
+        } else {
+            0.0
+        },
+        of_film.range(1.0, 3.0),
+    ];
     let ior = rng.range(1.01, 2.5);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
@@ -291,6 +305,12 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         fuzz_middle: bell[0],
         fuzz_width: bell[1],
         fuzz_floor: bell[2],
+        film_path: film_path(film[0]),
+        film_weight: film[1],
+        film_ior: film[2],
+        has_film: u32::from(film[1] > 0.0 && fresnel != Fresnel::None),
+        film_texture: NO_TEXTURE,
+        film_path_texture: NO_TEXTURE,
         reflecting_ior: if rng.chance(0.5) { rng.range(1.01, 2.5) } else { ior },
         bare_ior: ior,
         coated_ior: rng.range(1.01, 2.5),

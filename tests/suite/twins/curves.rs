@@ -5,6 +5,7 @@ use glossmith::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left, fresnel_schlick,
     half_vector_cosine,
 };
+use glossmith::optics::thin_film::FilmTerms;
 
 use super::bench::{CUSTOM_CURVES, SCENE};
 use super::harness::{Case, Output, Rng, Value, check, inputs, twin};
@@ -74,8 +75,10 @@ fn fresnel_factors_agree() {
     let (share, shares) = (Output::Number(0.01), Output::Vector(0.01));
     let mut all = Case::new(
         "fresnel",
-        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k cosine behind",
-        "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, metal_tint, weight, ior, eta, k);",
+        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k has_film film_weight film_ior film_path cosine \
+         behind",
+        "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, metal_tint, weight, ior, eta, k, \
+         has_film == 1u, FilmTerms(film_weight, film_ior, film_path));",
         twin!(|row| {
             let terms = FresnelTerms {
                 model: Fresnel::ALL[row.bits() as usize],
@@ -88,6 +91,12 @@ fn fresnel_factors_agree() {
                 ior: row.number(),
                 eta: row.vector(),
                 k: row.vector(),
+                has_film: row.bits() == 1,
+                film: FilmTerms {
+                    weight: row.number(),
+                    ior: row.number(),
+                    path: row.vector(),
+                },
             };
             let (cosine, behind) = (row.number(), row.number());
             row.put_vector(fresnel(&terms, cosine));
@@ -96,8 +105,10 @@ fn fresnel_factors_agree() {
     )
     .output("fresnel(terms, cosine)", shares)
     .output("fresnel_left(terms, cosine, behind)", shares);
-    for &model in Fresnel::ALL {
-        all = all.group(model.name(), move |rng, _| {
+    let films = Fresnel::ALL.iter().flat_map(|&model| [(model, 0), (model, 1)]);
+    for (model, has_film) in films {
+        let name = format!("{}{}", model.name(), if has_film == 1 { ", filmed" } else { "" });
+        all = all.group(&name, move |rng, _| {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
             let (f0, tint, eta, k) = (color(1.0), color(1.0), color(4.0), color(8.0));
             let [edge_tint, metal_tint] = [color(1.0), color(1.0)];
@@ -113,6 +124,10 @@ fn fresnel_factors_agree() {
                 ior(rng),
                 eta,
                 k,
+                has_film,
+                rng.unit(),
+                rng.range(0.8, 3.0),
+                Value::Vector([(); 3].map(|()| 14.0 * rng.unit())),
                 Value::Unit(rng.unit()),
                 Value::Unit(rng.unit())
             ]

@@ -85,6 +85,8 @@ fn textured_materials_agree() {
                     row.put_vector(m.emission);
                     row.put_numbers([m.metalness, m.roughness, m.transmission_roughness, m.coat_weight]);
                     row.put_numbers([m.reflecting_ior, m.ggx_roughness]);
+                    row.put(m.film_weight);
+                    row.put_vector(m.film_path);
                 }),
             )
             .output("m.base_color", COLOUR)
@@ -96,6 +98,8 @@ fn textured_materials_agree() {
             .output("m.coat_weight", SHARE)
             .output("m.reflecting_ior", SHARE)
             .output("m.ggx_roughness", SHARE)
+            .output("m.film_weight", SHARE)
+            .output("m.film_path", COLOUR)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)

@@ -18,8 +18,8 @@ pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::{convert_widths, widths_from_gltf};
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Coat, DiffuseRoughness, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, coat,
-    extension, kept, unreadable,
+    Anisotropy, Coat, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume,
+    coat, extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
@@ -390,6 +390,9 @@ impl<'a> Materials<'a> {
         if let Some(coat) = coat(raw) {
             self.read_coat(&coat, read, sets);
         }
+        if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
+            self.read_film(&film, read, sets);
+        }
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
             read.anisotropy = unit(anisotropy.anisotropy_strength);
             read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;
@@ -429,6 +432,20 @@ impl<'a> Materials<'a> {
             *read.texture_mut(TextureTarget::CoatNormal) =
                 self.texture(Some(normal.info.reference()), sets, &read.name);
             read.coat_normal_scale = normal.scale;
+        }
+    }
+
+    /// A thin film. Without a texture it has the largest thickness.
+    fn read_film(&mut self, film: &Iridescence, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        read.film = unit(film.iridescence_factor);
+        read.film_ior = film.iridescence_ior.max(1.0);
+        let thicknesses = [film.iridescence_thickness_minimum, film.iridescence_thickness_maximum];
+        [read.film_thickness_min, read.film_thickness] = thicknesses.map(|nm| 1e-3 * not_negative(nm));
+        if read.film > 0.0 {
+            let [weight, thickness] = [&film.iridescence_texture, &film.iridescence_thickness_texture]
+                .map(|texture| texture.as_ref().map(TextureInfo::reference));
+            *read.texture_mut(TextureTarget::Film) = self.texture(weight, sets, &read.name);
+            *read.texture_mut(TextureTarget::FilmThickness) = self.texture(thickness, sets, &read.name);
         }
     }
 

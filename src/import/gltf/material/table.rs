@@ -102,12 +102,12 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "sheenRoughnessTexture" TEXTURE => Kept "" "ignored";
     }
     "/extensions/KHR_materials_iridescence/" {
-        "iridescenceFactor" "0.25" => Kept "iridescence.weight" "";
-        "iridescenceTexture" TEXTURE => Kept "" "ignored";
-        "iridescenceIor" "1.5" => Kept "iridescence.ior" "";
-        "iridescenceThicknessMinimum" "50" => Kept "iridescence.thickness_min_nm" "";
-        "iridescenceThicknessMaximum" "500" => Kept "iridescence.thickness_nm" "";
-        "iridescenceThicknessTexture" TEXTURE => Kept "" "ignored";
+        "iridescenceFactor" "0.25" => To "thin_film.weight" "";
+        "iridescenceTexture" TEXTURE => To "thin_film.weight_texture" "";
+        "iridescenceIor" "1.5" => To "thin_film.ior" "from 1 to 3";
+        "iridescenceThicknessMinimum" "50" => To "thin_film.thickness_texture" "where its texture is black";
+        "iridescenceThicknessMaximum" "500" => To "thin_film.thickness" "at most 10 µm";
+        "iridescenceThicknessTexture" TEXTURE => To "thin_film.thickness_texture" "";
     }
     "/extensions/KHR_materials_dispersion/" {
         "dispersion" "0.25" => Kept "transmission.dispersion" "";

@@ -13,6 +13,9 @@ pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
 /// The draft of OpenPBR's coat.
 const COAT: &str = "KHR_materials_coat";
 
+/// The extension of thin films.
+const IRIDESCENCE: &str = "KHR_materials_iridescence";
+
 /// What a slot's material looks up, as references to textures.
 #[derive(Clone, Debug, Default)]
 pub struct SlotTextures {
@@ -24,6 +27,10 @@ pub struct SlotTextures {
     pub coat_roughness: Option<Json>,
     pub coat_normal: Option<Json>,
     pub coat_color: Option<Json>,
+    pub film: Option<Json>,
+    pub film_thickness: Option<Json>,
+    /// The film's least thickness over its largest, where a texture varies it.
+    pub thinnest: f32,
     /// The mean of the roughness that a texture varies.
     pub roughness_mean: Option<f32>,
     /// What the texture's opacity means, where it is looked up.
@@ -112,6 +119,14 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
             coat["coatNormalTexture"]["scale"] = material.coat_normal_strength.into();
         }
     }
+    if let Some(film) = extensions.get_mut(IRIDESCENCE) {
+        put(film, "iridescenceTexture", &textures.film);
+        put(film, "iridescenceThicknessTexture", &textures.film_thickness);
+        if textures.film_thickness.is_some() {
+            let thinnest = 1e3 * surface.film_thickness * textures.thinnest;
+            film["iridescenceThicknessMinimum"] = thinnest.into();
+        }
+    }
     if surface.anisotropy != 0.0 {
         let (_, rotation_deg) = surface.ratio_and_rotation();
         let anisotropy = json!({
@@ -174,6 +189,14 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
             });
             all.insert(COAT.to_owned(), draft);
         }
+    }
+    if surface.film_weight > 0.0 {
+        let film = json!({
+            "iridescenceFactor": surface.film_weight,
+            "iridescenceIor": surface.film_ior,
+            "iridescenceThicknessMaximum": 1e3 * surface.film_thickness,
+        });
+        all.insert(IRIDESCENCE.to_owned(), film);
     }
     if transmission > 0.0 {
         all.insert(

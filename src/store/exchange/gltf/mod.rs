@@ -26,6 +26,8 @@ const TAKES: Takes = Takes {
     eta_and_k: false,
     diffuse_roughness: true,
     fuzz: false,
+    film: true,
+    film_weight: true,
     scattering: true,
     edge_tint: false,
     specular: true,
@@ -314,6 +316,9 @@ impl Builder {
             coat_roughness: texture(uses.coat_roughness, TextureTarget::CoatRoughness),
             coat_normal: texture(uses.coat_normal, TextureTarget::CoatNormal),
             coat_color: texture(uses.coat_color, TextureTarget::CoatColor),
+            film: texture(uses.film, TextureTarget::Film),
+            film_thickness: texture(uses.film_thickness, TextureTarget::FilmThickness),
+            thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

@@ -71,6 +71,9 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             wrap: [Wrap::Repeat; 2],
             filter: Filter::Linear,
         };
+        if target == TextureTarget::FilmThickness {
+            model.slots[slot].film_thickness_min = 0.0;
+        }
         // What shares another's image is joined to it.
         if target.home() == target || !in_file.contains(&target.home()) {
             *model.slots[slot].texture_mut(target) = Some(place);

@@ -34,6 +34,7 @@ pub struct MaterialX {
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     fuzz: false,
+    film_weight: false,
     coat_on_base: false,
     scattering: true,
     weighs_index: false,
@@ -161,6 +162,11 @@ fn turned_tangent(surface: &Surface, name: &str) -> Option<Element> {
 fn standard_surface(surface: &Surface, name: &str) -> Element {
     let (ratio, rotation_deg) = surface.ratio_and_rotation();
     let (strength, emission) = surface.strength_and_color();
+    // The format has a film wherever that has a thickness.
+    let film_thickness_nm = match surface.film_weight > 0.0 {
+        true => 1e3 * surface.film_thickness,
+        false => 0.0,
+    };
     node("standard_surface", name)
         .child(number("base", 1.0))
         .child(color("base_color", surface.base_color))
@@ -187,6 +193,8 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
         .child(number("coat_roughness", surface.coat_roughness))
         .child(number("coat_IOR", surface.coat_ior))
         .child(number("coat_anisotropy", 1.0 - surface.coat_ratio()))
+        .child(number("thin_film_thickness", film_thickness_nm))
+        .child(number("thin_film_IOR", surface.film_ior))
         .child(number("emission", strength))
         .child(color("emission_color", emission))
         .child(color("opacity", [surface.opacity; 3]))

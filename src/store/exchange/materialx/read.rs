@@ -132,6 +132,9 @@ fn is_near(a: &Surface, b: &Surface) -> bool {
             f32::from(u8::from(s.coat_on_base)),
             s.fuzz_weight,
             s.fuzz_roughness,
+            s.film_weight,
+            s.film_thickness,
+            s.film_ior,
             s.opacity,
         ];
         let colors = [

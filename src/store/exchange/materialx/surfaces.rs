@@ -97,6 +97,9 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         fuzz_weight: inputs.number("fuzz_weight"),
         fuzz_color: inputs.color("fuzz_color"),
         fuzz_roughness: inputs.number("fuzz_roughness"),
+        film_weight: inputs.number("thin_film_weight"),
+        film_thickness: inputs.number("thin_film_thickness"),
+        film_ior: inputs.number("thin_film_ior"),
         emission: weighted(
             inputs.color("emission_color"),
             inputs.number("emission_luminance") / NITS,
@@ -136,6 +139,10 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         coat_ior: inputs.number("coat_IOR"),
         coat_color: inputs.color("coat_color"),
         coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
+        // Every thickness but 0 is a film.
+        film_weight: f32::from(inputs.number("thin_film_thickness") > 0.0),
+        film_thickness: 1e-3 * inputs.number("thin_film_thickness"),
+        film_ior: inputs.number("thin_film_IOR"),
         emission: weighted(inputs.color("emission_color"), inputs.number("emission")),
         opacity: luminance(inputs.color("opacity")),
         ..Surface::default()
@@ -168,6 +175,9 @@ fn gltf_pbr(inputs: &mut Inputs) -> Surface {
         transmission_depth: distance,
         coat_weight: inputs.number("clearcoat"),
         coat_roughness: inputs.number("clearcoat_roughness"),
+        film_weight: inputs.number("iridescence"),
+        film_thickness: 1e-3 * inputs.number("iridescence_thickness"),
+        film_ior: inputs.number("iridescence_ior"),
         emission: weighted(inputs.color("emissive"), inputs.number("emissive_strength")),
         opacity: gltf_opacity(inputs),
         ..Surface::default()

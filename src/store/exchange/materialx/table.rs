@@ -5,7 +5,6 @@ use crate::import::FileParameter;
 use crate::import::Goes::{self, Nowhere, To};
 
 const DISPERSION: Goes = Nowhere("dispersion is not shown yet");
-const FILM: Goes = Nowhere("thin films are not shown yet");
 const NORMALS: Goes = Nowhere("textures travel with models; here each parameter has one value");
 const OCCLUSION: Goes = Nowhere("path tracing needs no occlusion");
 const COAT_ALONG: Goes = Nowhere("the coat's highlight lies along the tangent");
@@ -29,6 +28,10 @@ const fn unit(place: &'static str, default: &'static str, example: &'static str,
 
 const fn ior(place: &'static str, default: &'static str, goes: Goes) -> FileParameter {
     row(place, default, "1.25", goes).within(1.0, 4.0)
+}
+
+const fn film_ior(place: &'static str, default: &'static str) -> FileParameter {
+    row(place, default, "1.25", To("thin_film.ior")).within(1.0, 3.0)
 }
 
 /// A direction that a graph gives, and which is else the surface's own.
@@ -78,9 +81,11 @@ pub(super) const OPEN_PBR: &[FileParameter] = &[
     unit("coat_roughness_anisotropy", "0", "0.5", To("coat.anisotropy")).of("coat_weight"),
     ior("coat_ior", "1.6", To("coat.ior")).of("coat_weight"),
     unit("coat_darkening", "1", "0.5", To("coat.darkening")).of("coat_weight"),
-    row("thin_film_weight", "0", "0.5", FILM),
-    row("thin_film_thickness", "0.5", "0.25", FILM).of("thin_film_weight"),
-    row("thin_film_ior", "1.4", "1.25", FILM).of("thin_film_weight"),
+    unit("thin_film_weight", "0", "0.5", To("thin_film.weight")),
+    row("thin_film_thickness", "0.5", "0.25", To("thin_film.thickness"))
+        .within(0.0, 10.0)
+        .of("thin_film_weight"),
+    film_ior("thin_film_ior", "1.4").of("thin_film_weight"),
     row("emission_luminance", "0", "500", To("emission.strength"))
         .within(0.0, 1000.0 * RADIANCE_MAX)
         .with_note("1000 nits are radiance 1"),
@@ -162,8 +167,15 @@ pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
         Nowhere("the base keeps its roughness under a coat"),
     )
     .of("coat"),
-    row("thin_film_thickness", "0", "500", FILM),
-    row("thin_film_IOR", "1.5", "1.25", FILM).of("thin_film_thickness"),
+    row(
+        "thin_film_thickness",
+        "0",
+        "500",
+        To("thin_film.thickness, thin_film.weight"),
+    )
+    .within(0.0, 10_000.0)
+    .with_note("above 0 the weight is 1"),
+    film_ior("thin_film_IOR", "1.5").of("thin_film_thickness"),
     row("emission", "0", "0.5", To("emission.strength")).within(0.0, RADIANCE_MAX),
     row("emission_color", WHITE, COLOR, To("emission.color"))
         .within(0.0, RADIANCE_MAX)
@@ -192,9 +204,11 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
         .within(0.0, 2.0)
         .of("alpha"),
     unit("alpha_cutoff", "0.5", "0.125", To("geometry.opacity")).of("alpha"),
-    row("iridescence", "0", "0.5", FILM),
-    row("iridescence_ior", "1.3", "1.5", FILM).of("iridescence"),
-    row("iridescence_thickness", "100", "500", FILM).of("iridescence"),
+    unit("iridescence", "0", "0.5", To("thin_film.weight")),
+    film_ior("iridescence_ior", "1.3").of("iridescence"),
+    row("iridescence_thickness", "100", "500", To("thin_film.thickness"))
+        .within(0.0, 10_000.0)
+        .of("iridescence"),
     row("sheen_color", BLACK, COLOR, SHEEN),
     row("sheen_roughness", "0", "0.5", SHEEN).of("sheen_color"),
     unit("clearcoat", "0", "0.5", To("coat.weight")),
