@@ -27,7 +27,7 @@ pub(super) fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
         },
         eta: Vec3::from_f32(material.eta),
         k: Vec3::from_f32(material.k),
-        // A thin film is told of as a part of its own.
+        // A thin film is reported as a part of its own.
         has_film: false,
         film: FilmTerms::none(),
     }
