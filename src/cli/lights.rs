@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::parse::{number_in, numbers_in};
-use crate::document::light_groups::NAME_MAX;
+use crate::document::group_name::NAME_MAX;
 use crate::document::parameter::parse_color;
 use crate::document::{
     AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, range,

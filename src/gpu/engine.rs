@@ -14,9 +14,8 @@ use super::scene_group::SceneForm;
 use super::sums::{Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
-use crate::job::film::{Film, HalfSums, luminance};
+use crate::job::film::{Film, HalfSums, LightSums, luminance};
 use crate::job::guides::GuideSums;
-use crate::job::light_sums::LightSums;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
 /// Samples per pixel that the GPU's f32 sums take before the host adds them to its f64 film.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::effect::EffectId;
 use super::guides::{GUIDE_SAMPLES, GuideSums};
-use super::light_sums::LightSums;
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
@@ -31,6 +30,9 @@ pub struct Film {
     /// Costs and removed energy per tile.
     pub costs: Vec<TileCosts>,
 }
+
+/// Sums of a light group's light in one pixel, of the even and the odd samples: linear RGB.
+pub type LightSums = [[f64; 3]; 2];
 
 /// Optional data of a film, besides colour and spread.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

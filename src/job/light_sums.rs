@@ -6,15 +6,12 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::film::{ADDED_AT_ONCE, Film, HalfSums, Image, KeptHalves, copy_kept, luminance};
+use super::film::{ADDED_AT_ONCE, Film, HalfSums, Image, KeptHalves, LightSums, copy_kept, luminance};
 
 /// Light groups at most.
 pub const LIGHT_GROUPS_MAX: usize = 16;
 /// The group of the environment and of the background.
 pub const ENVIRONMENT_GROUP: u32 = 0;
-
-/// Sums of a group's light in one pixel, of the even and the odd samples: linear RGB.
-pub type LightSums = [[f64; 3]; 2];
 
 impl Film {
     /// Number of light groups that are summed apart.

@@ -1,59 +1,10 @@
 //! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
 
-use super::real::{Mask, Real};
+pub use super::fresnel_terms::{Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel_metal, fresnel_schlick};
+use super::real::Real;
 use super::refraction::refracted_square;
-use super::thin_film::{FilmTerms, film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
+use super::thin_film::{film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
 use super::vector::{Vec3, vec3};
-use crate::named::named;
-
-named! {
-    /// The Fresnel model.
-    Fresnel {
-        None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
-        Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
-        Dielectric = 2, "dielectric", "Dielectric", "The exact equations for glass, water, plastic, lacquer, from the index of refraction.";
-        Conductor = 3, "conductor", "Conductor", "The exact equations for metals, from η and k of each colour channel.";
-    }
-}
-
-/// Parameters of the Fresnel factor, besides the angle.
-#[derive(Clone, Copy, Debug)]
-pub struct FresnelTerms<T> {
-    /// Equation of the Fresnel factor.
-    pub model: Fresnel,
-    /// Reflectance at normal incidence of the metal, linear RGB.
-    pub metal_f0: Vec3<T>,
-    /// 0 for a dielectric, 1 for a metal.
-    pub metalness: T,
-    /// Tint, linear RGB: of the reflectance at normal incidence in Schlick's model for a dielectric, else of the whole
-    /// factor.
-    pub tint: Vec3<T>,
-    /// Factor of a metal's reflection: tint times weight, or 1 if those spare metals.
-    pub metal_tint: Vec3<T>,
-    /// Factor of a metal's reflection near 82 degrees; 1 for none.
-    pub edge_tint: Vec3<T>,
-    /// Share of the reflection that is kept at any angle, in [0, 1]; a metal's is in `metal_tint`.
-    pub weight: T,
-    /// Relative index of refraction of the dielectric.
-    pub ior: T,
-    /// Conductor: real part of the index of refraction a channel.
-    pub eta: Vec3<T>,
-    /// Conductor: imaginary part a channel, not negative.
-    pub k: Vec3<T>,
-    /// True where the surface has a thin film.
-    pub has_film: bool,
-    /// The thin film.
-    pub film: FilmTerms<T>,
-}
-
-impl<T: Real> FresnelTerms<T> {
-    /// The same without metal.
-    #[inline(always)]
-    pub fn of_dielectric(&self) -> Self {
-        let metalness = T::zero();
-        Self { metalness, ..*self }
-    }
-}
 
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
@@ -121,45 +72,6 @@ pub fn fresnel_f0<T: Real>(ior: T) -> T {
 pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
     let root = (fresnel_f0(ior) * weight).clamp(0.0, 0.99).sqrt();
     (1.0 + root) / (1.0 - root)
-}
-
-/// Schlick's approximation (1994).
-#[inline(always)]
-pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
-    let x = (T::one() - cosine).clamp(T::zero(), T::one());
-    let x2 = x * x;
-    let grazing = x2 * x2 * x;
-    f0 + (Vec3::splat(T::one()) - f0) * grazing
-}
-
-/// The reflectance of a metal that is `f0` at normal incidence: Schlick's, darkened near 82 degrees by `edge_tint` (the
-/// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
-#[inline(always)]
-pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
-    let plain = fresnel_schlick(f0, cosine);
-    let is_tinted = (edge_tint.x + edge_tint.y + edge_tint.z).less(T::from_f64(3.0));
-    if !is_tinted.any() {
-        return plain;
-    }
-    let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
-    Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
-}
-
-/// Factor of [`edge_shape`] that leaves exactly the tint at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
-    let seventh = T::from_f64(1.0 / 7.0);
-    let white = Vec3::splat(T::one());
-    fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::one() / edge_shape(seventh))
-}
-
-/// Angular shape of the darkening towards the edge: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_shape<T: Real>(cosine: T) -> T {
-    let c = cosine.clamp(T::zero(), T::one());
-    let x = T::one() - c;
-    let x2 = x * x;
-    c * x2 * x2 * x2
 }
 
 /// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,

@@ -13,6 +13,7 @@ pub mod curve;
 pub mod elementary;
 pub mod frame;
 pub mod fresnel;
+mod fresnel_terms;
 pub mod lanes;
 pub mod layer;
 pub mod lobe;

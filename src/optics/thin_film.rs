@@ -9,7 +9,8 @@
 //! known by colours from the complex index that has them (Gulbrandsen, "Artist friendly metallic Fresnel", 2014). A film of
 //! no thickness so changes nothing.
 
-use super::fresnel::{Fresnel, FresnelTerms, fresnel_metal};
+pub use super::fresnel_terms::FilmTerms;
+use super::fresnel_terms::{Fresnel, FresnelTerms, fresnel_metal};
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::vector::{Vec3, vec3};
@@ -22,29 +23,6 @@ pub const LARGEST_FILM_F0: f64 = 0.999;
 pub const LEAST_FILM_COSINE: f64 = 1e-15;
 /// Below it a denominator counts as this.
 pub const FILM_TINY: f64 = 1e-36;
-
-/// A film as the Fresnel factor sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct FilmTerms<T> {
-    /// Share of the surface that has the film.
-    pub weight: T,
-    /// Index of refraction over that of the medium before it.
-    pub ior: T,
-    /// Phase of a crossing at normal incidence over the relative index, by channel.
-    pub path: Vec3<T>,
-}
-
-impl<T: Real> FilmTerms<T> {
-    /// No film.
-    #[inline(always)]
-    pub fn none() -> Self {
-        Self {
-            weight: T::zero(),
-            ior: T::one(),
-            path: Vec3::zero(),
-        }
-    }
-}
 
 /// Admittances of a medium behind a film for both polarisations, each as real and imaginary part.
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! What a texture can be put on: one line each, which slots, packed textures, files and the window loop over.
+//! What a texture can vary: one line each, which slots, packed textures, files and the window loop over.
 
 use crate::named::named;
 

@@ -14,13 +14,15 @@ mod density;
 mod evaluate;
 mod facet;
 mod sample;
+mod seen;
 mod shares;
 
 pub use density::material_density;
 pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
 pub use facet::{decides_by_facet, passes_on};
 pub use sample::{MaterialNumbers, MaterialSample, material_sample};
-pub use shares::{LayerShare, Layers, material_albedo, material_layers, material_normal};
+pub use seen::{material_albedo, material_normal};
+pub use shares::{LayerShare, Layers, material_layers};
 
 use super::frame::Frame;
 use super::lobe::{LobeSample, LobeShape};

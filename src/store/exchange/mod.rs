@@ -12,6 +12,7 @@ mod measured;
 mod mitsuba;
 mod native;
 mod open_pbr;
+mod reflection;
 pub mod report;
 mod snippet;
 pub mod surface;

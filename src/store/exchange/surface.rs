@@ -1,16 +1,15 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::coat;
+use super::reflection::{fresnel_terms, shown_tint};
 use super::report::{Entry, Residual};
 use crate::document::import::ggx_under_texture;
 use crate::document::material::{FILM_THICKNESS_MAX, specular_color};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
+    Fresnel, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
-use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
 
 /// A material as other programs know it. Colours are linear Rec. 709 in [0, 1].
@@ -192,43 +191,6 @@ fn rounded(x: f32) -> f32 {
     ((f64::from(x) * 1e5).round() / 1e5) as f32
 }
 
-/// The Fresnel factor's terms of a material as it is edited.
-fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
-    let tint = Vec3::from_f32(shown_tint(material));
-    let weight = f64::from(material.specular_weight);
-    FresnelTerms {
-        model: material.fresnel_model(),
-        metal_f0: Vec3::from_f32(material.base_color) * f64::from(material.base_weight),
-        metalness: f64::from(material.metalness),
-        tint,
-        metal_tint: if material.specular_on_metal {
-            tint * weight
-        } else {
-            Vec3::splat(1.0)
-        },
-        edge_tint: Vec3::from_f32(material.edge_tint),
-        weight: if material.has_weight_in_index() { 1.0 } else { weight },
-        ior: match material.has_weight_in_index() {
-            true => weighted_ior(material.ior.into(), weight),
-            false => f64::from(material.ior),
-        },
-        eta: Vec3::from_f32(material.eta),
-        k: Vec3::from_f32(material.k),
-        // A thin film is told of as a part of its own.
-        has_film: false,
-        film: FilmTerms::none(),
-    }
-}
-
-/// The tint that shows: only Schlick's reflectance head-on can be raised, up to 1.
-fn shown_tint(material: &MaterialSettings) -> [f32; 3] {
-    let most = match material.fresnel_model() {
-        Fresnel::Schlick => fresnel_f0(material.ior).recip(),
-        _ => 1.0,
-    };
-    material.specular_color.map(|x| x.min(most))
-}
-
 impl Surface {
     /// The material that looks nearest, and what its highlight became.
     pub fn of(material: &MaterialSettings) -> (Self, Entry) {
@@ -381,7 +343,7 @@ impl Surface {
         if !takes.ior {
             taken.ior = 1.5;
         }
-        coat::take(&mut taken, takes);
+        taken.take_coat(takes);
         if !takes.fuzz {
             taken.fuzz_weight = 0.0;
         }
@@ -570,7 +532,7 @@ impl Surface {
             "textures of your own",
             "convert to a glTF model to take them along",
         );
-        entries.extend(coat::losses(self, material, takes));
+        entries.extend(self.coat_losses(material, takes));
         entries
     }
 

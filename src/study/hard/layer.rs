@@ -14,8 +14,8 @@ pub(super) const CASES: &[HardCase] = &[HardCase {
     name: "coat-at-its-ends",
     group: "lobe",
     danger: "a coat that reflects all over a white base is 0/0, and its way at index 1 has no end at the horizon",
-    made: "coats of weight 0, 1e-6 and 1, roughness 0 and 1, index 1 and 3, white, coloured and black, over white and grey \
-           metal, gloss and glass, at cosines from 1 to 1e-6",
+    made: "coats of weight 0, 1e-6 and 1, roughness 0 and 1, index 1 and 3, white to black. Metal, gloss and glass below; \
+           cosines from 1 to 1e-6",
     must: "every value is finite and not negative, and that of f64",
     naive: || {
         let (inner, base) = (1.0_f32, 1.0_f32);
