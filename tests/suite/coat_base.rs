@@ -128,12 +128,8 @@ fn a_rough_coat_blurs_what_is_below() {
         if lobe == "geometric" {
             settings.roughness = glossmith::document::import::geometric_from_ggx(0.3);
         }
-        let (materials, _) = compile(&[settings.clone()]);
-        let shown = MaterialSettings {
-            roughness: materials[0].roughness,
-            ..settings
-        };
-        let found = shown.ggx_roughness();
+        let (materials, _) = compile(std::slice::from_ref(&settings));
+        let found = settings.ggx_roughness(materials[0].roughness);
         assert!(
             (found - expected).abs() < 2e-3,
             "{lobe} {weight}: {found} for {expected}"
@@ -164,8 +160,8 @@ fn the_colour_of_a_coat_deepens_along_the_way() {
                 let way = 1.0 / behind(out) + 1.0 / behind(back);
                 let albedo = weight * fresnel_dielectric(out, IOR);
                 let share = (weight - albedo) / (1.0 - albedo);
-                for channel in 0..3 {
-                    let expected = 1.0 - share + share * f64::powf(color[channel], 0.5 * way);
+                for (channel, color) in color.into_iter().enumerate() {
+                    let expected = 1.0 - share + share * f64::powf(color, 0.5 * way);
                     let ratio = found.value[channel] / white.value[channel];
                     assert!(
                         (ratio - expected).abs() < 2e-3,

@@ -4,9 +4,12 @@
 //! that facets scatter more than once is a lobe of its own there and a factor here, so peaks are compared without it, and
 //! albedos with it.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
+use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
+use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::store::exchange::{ReadOptions, find};
@@ -28,7 +31,9 @@ fn rows(kind: &str) -> impl Iterator<Item = (&'static str, &'static str, Vec<&'s
 /// The material of a MaterialX file with these inputs, `name=value;…`.
 fn material(place: &Workplace, inputs: &str, is_single: bool) -> MaterialSettings {
     let mut text = String::new();
-    for (name, value) in inputs.split(';').filter_map(|input| input.split_once('=')) {
+    // Of an input that is said twice the last counts.
+    let said: BTreeMap<&str, &str> = inputs.split(';').filter_map(|input| input.split_once('=')).collect();
+    for (name, value) in said {
         let of_type = if value.contains(' ') { "color3" } else { "float" };
         let value = value.replace(' ', ", ");
         let _ = writeln!(text, "<input name=\"{name}\" type=\"{of_type}\" value=\"{value}\"/>");
@@ -139,21 +144,97 @@ fn coats_have_the_oracle_s_lobe() {
     assert_values("coat", 3e-3, true);
 }
 
+/// What a coat is held to where the oracle leaves the specification (its notes list nine such places).
+enum Coated {
+    /// The oracle's own albedos within this.
+    Oracle(f64),
+    /// The darkening by the specification's closed form: the oracle takes averages of the Fresnel factor, for a smooth base
+    /// too, and blends the index around a coat in part before the ratio.
+    Darkening,
+    /// The oracle's way of light through the coat once: here refracted light finds no coat on its way out, and pays it on the
+    /// way in.
+    Refracted,
+}
+
+fn held_to(name: &str) -> Coated {
+    match name {
+        _ if name.contains("w0.5") => Coated::Darkening,
+        "coat_ior2.0" | "coat_metal" | "coat_metal_rough_coat" | "coat_r1" => Coated::Darkening,
+        "trans_coat_color" => Coated::Refracted,
+        // Its table of fuzz is a fit here.
+        _ if name.starts_with("fuzz") => Coated::Oracle(0.02),
+        // Albedos of stretched lobes are those of one azimuth.
+        "coat_aniso" | "furnace_coat_trans" => Coated::Oracle(0.015),
+        _ => Coated::Oracle(0.01),
+    }
+}
+
 #[test]
 fn coats_over_bases_have_the_oracle_s_albedo() {
     let place = Workplace::new();
+    let mut worst = (0.0_f64, "");
     for (name, inputs, cells) in rows("coated") {
-        let material = material(&place, inputs, false);
-        let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
         let numbers: Vec<f64> = cells[1..].iter().map(|cell| cell.parse().unwrap()).collect();
-        let found = evaluator.albedo(numbers[0], 1 << 14, 1).unwrap();
-        let all = found.reflected.into_iter().chain(found.transmitted);
-        let off: Vec<f64> = all
-            .zip(&numbers[1..])
-            .map(|(value, expected)| value - expected)
-            .collect();
-        println!("{name} {} {off:.4?}", numbers[0]);
+        let cosine = numbers[0];
+        let albedo = |more: &str| {
+            let material = material(&place, &format!("{inputs}{more}"), false);
+            let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
+            (evaluator.albedo(cosine, 1 << 14, 1).unwrap(), material)
+        };
+        let (found, material) = albedo("");
+        let near = |found: f64, expected: f64, tolerance: f64| {
+            let off = (found - expected).abs();
+            assert!(off < tolerance, "{name} at {cosine}: {found} for {expected}");
+            off
+        };
+        match held_to(name) {
+            Coated::Oracle(tolerance) => {
+                let all = found.reflected.into_iter().chain(found.transmitted);
+                for (value, expected) in all.zip(&numbers[1..]) {
+                    let off = near(value, *expected, tolerance);
+                    worst = if off > worst.0 { (off, name) } else { worst };
+                }
+            }
+            Coated::Darkening => {
+                let bright = albedo(";coat_darkening=0").0.reflected;
+                let black = albedo(";base_color=0 0 0;specular_weight=0;base_metalness=0")
+                    .0
+                    .reflected[0];
+                let kept = darkened(&material, cosine);
+                for channel in 0..3 {
+                    let below = bright[channel] - black;
+                    near(found.reflected[channel], black + kept[channel] * below, 3e-3);
+                }
+            }
+            Coated::Refracted => {
+                let behind = (1.0 - (1.0 - cosine * cosine) / f64::from(material.coat_ior).powi(2)).sqrt();
+                for channel in 0..3 {
+                    near(found.reflected[channel], numbers[1 + channel], 0.01);
+                    let once = f64::from(material.coat_color[channel]).powf(0.5 / behind);
+                    near(found.transmitted[channel], once * numbers[4 + channel], 0.01);
+                }
+            }
+        }
     }
+    println!("coats: {} off at most, {}", worst.0, worst.1);
+}
+
+/// The specification's darkening of a base under a coat (OpenPBR 1.1, "Darkening").
+fn darkened(material: &MaterialSettings, cosine: f64) -> [f64; 3] {
+    let [of_coat, of_base] = [material.coat_ior, material.ior].map(f64::from);
+    let weight = f64::from(material.coat_weight);
+    let ratio = of_coat.max(of_base) / of_coat.min(of_base);
+    let head_on = fresnel_f0(of_base + (ratio - of_base) * weight);
+    let (roughness, metalness) = (f64::from(material.roughness), f64::from(material.metalness));
+    let of_gloss = 1.0 + (roughness - 1.0) * head_on;
+    let spread = of_gloss + (roughness - of_gloss) * metalness;
+    let smooth = fresnel_dielectric(cosine, of_coat);
+    let inner = smooth + (inner_reflection(of_coat) - smooth) * spread;
+    material.base_color.map(|color| {
+        let color = f64::from(color * material.base_weight);
+        let base = (head_on + (1.0 - head_on) * color) * (1.0 - metalness) + color * metalness;
+        1.0 + ((1.0 - inner) / (1.0 - base * inner) - 1.0) * weight
+    })
 }
 
 #[test]
