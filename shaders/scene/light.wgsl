@@ -61,9 +61,9 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     }
     if PLAN_COAT_ABSORPTION == 1u {
         var coated = material;
-        if PLAN_COAT_TEXTURES == 1u && material.coat_texture != NO_TEXTURE {
+        if PLAN_COAT_TEXTURES == 1u {
             let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
-            coated.coat_weight *= texture_lookup(material.coat_texture, uvs).x;
+            coated = textured_material(material, uvs, vec3f(1.0));
         }
         let facing = -dot(normal, direction);
         radiance *= coat_over_emission(coated, facing, facing < 0.0);

@@ -87,7 +87,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     let interpolated = a.normal * w + b.normal * hit.u + c.normal * hit.v;
     let smoothed = normalize_or(interpolated, normal);
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
-    let coat_normal = bent_normal(side * smoothed, wo);
+    let smooth_normal = bent_normal(side * smoothed, wo);
     var uvs = Uvs(vec4f(0.0), vec2f(0.0));
     if looks_up_textures() {
         uvs = hit_uvs(hit, material);
@@ -96,11 +96,19 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
         a.tangent * w + b.tangent * hit.u + c.tangent * hit.v,
         vertex_side(a) * w + vertex_side(b) * hit.u + vertex_side(c) * hit.v,
     );
-    var shading = coat_normal;
+    var shading = smooth_normal;
+    var coat_normal = smooth_normal;
     if PLAN_NORMAL_MAPS == 1u && material.textures.z != NO_TEXTURE {
         let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
-        shading = bent_normal(side * mapped_normal(material, uvs, smoothed, tangent, outward), wo);
-        shading = lifted_normal(shading, normal, wo);
+        let mapped = mapped_normal(material.textures.z, material.normal_strength, uvs, smoothed, tangent, outward);
+        shading = lifted_normal(bent_normal(side * mapped, wo), normal, wo);
+    }
+    if PLAN_COAT_NORMALS == 1u && material.coat_normal_texture != NO_TEXTURE {
+        let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
+        let mapped = mapped_normal(
+            material.coat_normal_texture, material.coat_normal_strength, uvs, smoothed, tangent, outward,
+        );
+        coat_normal = lifted_normal(bent_normal(side * mapped, wo), normal, wo);
     }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && (material.anisotropy != 0.0 || material.coat_anisotropy != 0.0) {
@@ -116,7 +124,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
             rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[1].xyz), b.normal, hit.u, turned) +
             rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[2].xyz), c.normal, hit.v, turned);
         let is_round = dot(rise, normal) > place.error;
-        horizon = select(normal, coat_normal, is_round);
+        horizon = select(normal, smooth_normal, is_round);
         rise = select(vec3f(0.0), rise, is_round);
     }
     let surface = Surface(frame, horizon, wo, coat_normal, place.is_back);
@@ -148,7 +156,7 @@ fn vertex_side(vertex: Vertex) -> f32 {
 
 fn looks_up_textures() -> bool {
     return PLAN_COLOR_TEXTURES == 1u || PLAN_ROUGHNESS_TEXTURES == 1u || PLAN_EMISSION_TEXTURES == 1u ||
-        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u;
+        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u || PLAN_COAT_NORMALS == 1u;
 }
 
 fn hit_uvs(hit: Hit, material: Material) -> Uvs {

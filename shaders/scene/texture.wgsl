@@ -153,14 +153,18 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     // A map with both roughness and metalness is looked up once.
     let has_both = material.metalness_texture == material.textures.y;
     // A loop, so that the look-up's code is there once.
-    var found = array<vec4f, 5>(vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0));
-    let indices = array<u32, 5>(
+    var found = array<vec4f, 7>(
+        vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0),
+    );
+    let indices = array<u32, 7>(
         material.textures.x, material.textures.y, material.textures.w,
-        select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture,
+        select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture, material.coat_roughness_texture,
+        material.coat_color_texture,
     );
     // Over the set bits, because drivers unroll a loop of known length.
     var wanted = 0u;
-    for (var kind = 0u; kind < 5u; kind++) {
+    // Those of the coat come last.
+    for (var kind = 0u; kind < select(4u, 7u, PLAN_COAT_TEXTURES == 1u); kind++) {
         wanted |= select(0u, 1u << kind, indices[kind] != NO_TEXTURE);
     }
     if PLAN_ROUGHNESS_TEXTURES + PLAN_COAT_TEXTURES == 0u {
@@ -185,15 +189,22 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         if has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE {
             at_point.reflecting_ior = ior_under_coat(material, at_point.coat_weight);
         }
+        at_point.coat_roughness = material.coat_roughness * found[5].y;
+        if material.coat_roughness_texture != NO_TEXTURE && material.coat_blur > 0.0 {
+            let square = at_point.coat_roughness * at_point.coat_roughness;
+            at_point.coat_blur = 2.0 * square * square;
+        }
+        at_point.coat_color = material.coat_color * found[6].xyz;
     }
     let has_roughness = PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE;
-    let has_coat = PLAN_COAT_TEXTURES == 1u && material.coat_texture != NO_TEXTURE;
+    let coat_varies = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
+    let has_coat = PLAN_COAT_TEXTURES == 1u && coat_varies;
     let blurs = PLAN_COAT == 1u && material.coat_blur > 0.0 && (has_roughness || has_coat);
     if has_roughness || blurs {
         at_point.ggx_roughness = material.texture_roughness * select(1.0, found[1].y, has_roughness);
         at_point.roughness = at_point.ggx_roughness;
         if blurs {
-            at_point.roughness = roughness_under_coat(material, at_point.roughness, at_point.coat_weight);
+            at_point.roughness = roughness_under_coat(at_point, at_point.roughness, at_point.coat_weight);
         }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
@@ -281,10 +292,10 @@ fn stopped_share(material: Material, opacity: f32) -> f32 {
 
 // The normal that a normal texture gives, in world space; `tangent` with the sign of the bitangent in w, `outward` the normal
 // on the front of the surface.
-fn mapped_normal(material: Material, uvs: Uvs, normal: vec3f, tangent: vec4f, outward: vec3f) -> vec3f {
-    let record = texture_record(material.textures.z);
+fn mapped_normal(texture: u32, strength: f32, uvs: Uvs, normal: vec3f, tangent: vec4f, outward: vec3f) -> vec3f {
+    let record = texture_record(texture);
     let decoded = 2.0 * filtered(record, uvs).xyz - 1.0;
-    var slope = decoded.xy * material.normal_strength;
+    var slope = decoded.xy * strength;
     if (record.flags & TURNS_NORMALS) != 0u {
         let turn = vec2f(record.u_from_uv.x, -record.u_from_uv.y) / length(record.u_from_uv.xy);
         slope = vec2f(turn.x * slope.x - turn.y * slope.y, turn.y * slope.x + turn.x * slope.y);

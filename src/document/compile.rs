@@ -11,7 +11,7 @@ use crate::optics::layer::fuzz::{FUZZ_ROUGHNESS_MIN, fuzz_bell};
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
     COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL,
-    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
+    VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX, coat_blur,
 };
 use crate::optics::scattering::scattering_table;
 use crate::optics::table::{append_table, table_lookup};
@@ -151,6 +151,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         coat_darkening: 0.0,
         coat_inner: 0.0,
         coat_anisotropy: 0.0,
+        coat_roughness_texture: NO_TEXTURE,
+        coat_color_texture: NO_TEXTURE,
+        coat_normal_texture: NO_TEXTURE,
+        coat_normal_strength: 0.0,
     };
     if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
         material.has_film = 1;
@@ -164,8 +168,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
     let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2]
         || (material.has_film_texture() && material.least_metallic().metalness < 1.0);
-    let is_under_varied_coat = settings.coat_on_base && material.coat_texture != NO_TEXTURE;
-    material.has_rough_tables = u32::from(changes || is_metal_in_part || is_under_varied_coat);
+    material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
         material.fresnel = Fresnel::Dielectric as u32;
@@ -182,7 +185,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     }
     material.reflecting_ior = material.ior;
     if material.coat_weight > 0.0 {
-        put_coat(settings, &mut material);
+        put_coat(settings, slot, &mut material);
+    }
+    if material.has_coated_table() || material.has_varied_blur() {
+        material.has_rough_tables = 1;
     }
     // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
     let is_schlick = material.fresnel == Fresnel::Schlick as u32;
@@ -199,9 +205,32 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 }
 
 /// What a coat has of its own, and what it does to what lies below it.
-fn put_coat(settings: &MaterialSettings, material: &mut Material<f32>) {
+fn put_coat(settings: &MaterialSettings, slot: SlotTextures, material: &mut Material<f32>) {
+    use TextureTarget as On;
+    let uses = settings.textures;
+    let looked_up = |is_on: bool, target| if is_on { slot.record(target) } else { NO_TEXTURE };
+    material.coat_roughness_texture = looked_up(uses.coat_roughness, On::CoatRoughness);
+    material.coat_color_texture = looked_up(uses.coat_color, On::CoatColor);
+    material.coat_normal_texture = looked_up(uses.coat_normal, On::CoatNormal);
+    material.coat_normal_strength = settings.coat_normal_strength;
+    if let Some(color) = slot.constant(On::CoatColor).filter(|_| uses.coat_color) {
+        material.coat_color = material.coat_color * Vec3::from_f32(color);
+    }
+    // A texture's values are meant for GGX.
+    let mut roughness = settings.coat_ggx_roughness();
+    if let Some([share, ..]) = slot.constant(On::CoatRoughness).filter(|_| uses.coat_roughness) {
+        roughness *= share;
+        material.coat_roughness = match settings.coat_lobe {
+            CoatLobe::Geometric => geometric_from_ggx(roughness),
+            CoatLobe::Ggx => roughness,
+        };
+    }
+    let has_roughness_texture = material.coat_roughness_texture != NO_TEXTURE;
+    if has_roughness_texture {
+        material.coat_roughness = roughness;
+    }
     material.coat_anisotropy = settings.coat_anisotropy;
-    if settings.coat_lobe == CoatLobe::Ggx {
+    if settings.coat_lobe == CoatLobe::Ggx || has_roughness_texture {
         material.flags |= COAT_IS_GGX;
     }
     material.coat_darkening = settings.coat_darkening;
@@ -210,7 +239,7 @@ fn put_coat(settings: &MaterialSettings, material: &mut Material<f32>) {
         return;
     }
     material.flags |= COATS_BASE;
-    if material.coat_color != Vec3::splat(1.0) {
+    if material.coat_color != Vec3::splat(1.0) || material.coat_color_texture != NO_TEXTURE {
         material.flags |= COAT_ABSORBS;
     }
     // Total reflection by a coat of greater index would not be there: light is refracted into the coat first.
@@ -220,7 +249,7 @@ fn put_coat(settings: &MaterialSettings, material: &mut Material<f32>) {
     if settings.lobe.traits().width == Width::Fixed {
         return;
     }
-    material.coat_blur = 2.0 * settings.coat_ggx_roughness().powi(4);
+    material.coat_blur = coat_blur(roughness);
     if material.has_varied_blur() {
         // Where a texture has been looked up.
         return;
@@ -228,13 +257,13 @@ fn put_coat(settings: &MaterialSettings, material: &mut Material<f32>) {
     if material.coat_blur > 0.0 {
         let blurred = material.roughness_under_coat(material.ggx_roughness, material.coat_weight);
         let is_geometric = settings.lobe.traits().width == Width::Roughness;
-        let roughness = if is_geometric {
+        let blurred = if is_geometric {
             geometric_from_ggx(blurred)
         } else {
             blurred
         };
         let extra = material.transmission_roughness - material.roughness;
-        material.roughness = roughness.max(material.roughness);
+        material.roughness = blurred.max(material.roughness);
         material.transmission_roughness = (material.roughness + extra).clamp(0.0, 1.0);
     }
 }
@@ -330,7 +359,7 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         horizon: shape.horizon as u32,
         fresnel: Fresnel::Dielectric as u32,
         transmission_weight: 0.0,
-        has_rough_tables: 0,
+        has_rough_tables: u32::from(material.coat_roughness_texture != NO_TEXTURE),
         has_film: 0,
         ..*material
     }
@@ -459,6 +488,10 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         coat_darkening: 0.0,
         coat_inner: 0.0,
         coat_anisotropy: 0.0,
+        coat_roughness_texture: NO_TEXTURE,
+        coat_color_texture: NO_TEXTURE,
+        coat_normal_texture: NO_TEXTURE,
+        coat_normal_strength: 0.0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

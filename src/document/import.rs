@@ -105,6 +105,9 @@ impl MaterialSettings {
             emission: slot.texture(TextureTarget::Emission).is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
             coat: slot.texture(TextureTarget::Coat).is_some(),
+            coat_roughness: slot.texture(TextureTarget::CoatRoughness).is_some(),
+            coat_color: slot.texture(TextureTarget::CoatColor).is_some(),
+            coat_normal: slot.texture(TextureTarget::CoatNormal).is_some(),
             film: slot.texture(TextureTarget::Film).is_some(),
             film_thickness: slot.texture(TextureTarget::FilmThickness).is_some(),
         };
@@ -114,9 +117,11 @@ impl MaterialSettings {
         }
         material.coat_weight = unit(slot.coat);
         material.coat_ior = slot.coat_ior;
+        material.coat_normal_strength = slot.coat_normal_scale.clamp(-10.0, 10.0);
         if slot.coat > 0.0 {
             material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
-            material.keep_below_coat();
+            (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
+            (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
         }
         material.film_weight = unit(slot.film);
         material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);

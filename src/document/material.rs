@@ -82,6 +82,8 @@ pub struct MaterialSettings {
     pub coat_on_base: bool,
     /// How much of the darkening by the coat shows, in [0, 1].
     pub coat_darkening: f32,
+    /// Scales the slopes of the coat's normal texture, in [−10, 10].
+    pub coat_normal_strength: f32,
     /// Share of the surface that has fuzz, in [0, 1].
     pub fuzz_weight: f32,
     /// Tint of the fuzz, linear RGB in [0, 1].
@@ -155,6 +157,7 @@ impl Default for MaterialSettings {
             coat_anisotropy: 0.0,
             coat_on_base: true,
             coat_darkening: 1.0,
+            coat_normal_strength: 1.0,
             fuzz_weight: 0.0,
             fuzz_color: [1.0; 3],
             fuzz_roughness: 0.5,
@@ -281,6 +284,12 @@ pub struct TextureUse {
     pub opacity: bool,
     /// The weight of the coat is multiplied by its texture.
     pub coat: bool,
+    /// The roughness of the coat is multiplied by its texture.
+    pub coat_roughness: bool,
+    /// The colour of the coat is multiplied by its texture.
+    pub coat_color: bool,
+    /// The normal of the coat is bent by its texture.
+    pub coat_normal: bool,
     /// The weight of the thin film is multiplied by its texture.
     pub film: bool,
     /// The thickness of the thin film is multiplied by its texture.

@@ -1,6 +1,6 @@
 //! The images of a material in use: the user's, and the model's.
 
-use super::{MaterialSettings, TextureUse};
+use super::{CoatLobe, MaterialSettings, TextureUse};
 use crate::scene::texture::{TextureAssignment, TextureProjection, TextureTarget, UserTexture};
 
 /// A target's place in a material.
@@ -25,6 +25,13 @@ impl Place {
     /// The place of a target.
     const fn of(target: TextureTarget) -> &'static Self {
         &PLACES[target as usize]
+    }
+}
+
+/// Gives a material a coat if it has none.
+fn show_coat(material: &mut MaterialSettings) {
+    if material.coat_weight == 0.0 {
+        material.coat_weight = 1.0;
     }
 }
 
@@ -60,15 +67,24 @@ const PLACES: &[Place; TextureTarget::ALL.len()] = &[
             }
         },
     ),
+    Place::new("coat.weight_map", |uses| &mut uses.coat, show_coat),
     Place::new(
-        "coat.weight_map",
-        |uses| &mut uses.coat,
+        "coat.roughness_map",
+        |uses| &mut uses.coat_roughness,
         |material| {
-            if material.coat_weight == 0.0 {
-                material.coat_weight = 1.0;
-            }
+            show_coat(material);
+            (material.coat_lobe, material.coat_roughness) = (CoatLobe::Ggx, 1.0);
         },
     ),
+    Place::new(
+        "coat.color_map",
+        |uses| &mut uses.coat_color,
+        |material| {
+            show_coat(material);
+            material.coat_color = [1.0; 3];
+        },
+    ),
+    Place::new("coat.normal_map", |uses| &mut uses.coat_normal, show_coat),
     Place::new(
         "thin_film.weight_map",
         |uses| &mut uses.film,

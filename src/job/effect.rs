@@ -94,6 +94,7 @@ effects! {
     EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
     VertexColors "vertex-colors" flag "PLAN_VERTEX_COLORS";
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
+    CoatNormalMap "coat-normal-map" flag "PLAN_COAT_NORMALS";
     FilmTexture "film-texture" flag "PLAN_FILM_TEXTURES";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";

@@ -241,6 +241,14 @@ material! {
         coat_inner: T,
         /// Stretch of the coat's lobe in [−1, 1].
         coat_anisotropy: T,
+        /// The texture that multiplies the roughness of the coat, or [`NO_TEXTURE`].
+        coat_roughness_texture: u32,
+        /// The texture that multiplies the colour of the coat, or [`NO_TEXTURE`].
+        coat_color_texture: u32,
+        /// The texture of the coat's normals, or [`NO_TEXTURE`].
+        coat_normal_texture: u32,
+        /// Scales the slopes of the coat's normal texture.
+        coat_normal_strength: T,
         /// Phase of a crossing of the thin film at normal incidence over its index, by channel
         /// ([`film_path`](super::thin_film::film_path)).
         film_path: Vec3<T>,
@@ -346,7 +354,8 @@ impl<T: Real> Material<T> {
     /// True where textures change how the coat changes the roughness below it.
     #[inline(always)]
     pub fn has_varied_blur(&self) -> bool {
-        let is_varied = self.textures[1] != NO_TEXTURE || self.coat_texture != NO_TEXTURE;
+        let varying = [self.textures[1], self.coat_texture, self.coat_roughness_texture];
+        let is_varied = varying != [NO_TEXTURE; 3];
         is_varied && T::zero().less(self.coat_blur).any()
     }
 
@@ -400,15 +409,21 @@ impl<T: Real> Material<T> {
     /// True if textured.
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
-        let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
+        let others = [self.opacity_texture, self.metalness_texture, self.coat_normal_texture];
         let is_plain = others == [NO_TEXTURE; 3] && self.textures == [NO_TEXTURE; 4];
-        !is_plain || self.has_film_texture()
+        !is_plain || self.has_textured_coat() || self.has_film_texture()
     }
 
     /// True if a texture varies the thin film.
     #[inline(always)]
     pub fn has_film_texture(&self) -> bool {
         [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
+    }
+
+    /// True if textures vary weight, roughness or colour of the coat.
+    #[inline(always)]
+    pub fn has_textured_coat(&self) -> bool {
+        [self.coat_texture, self.coat_roughness_texture, self.coat_color_texture] != [NO_TEXTURE; 3]
     }
 
     /// True if some light may pass straight through the surface.
@@ -460,6 +475,13 @@ impl<T: Real> Material<T> {
     }
 }
 
+/// What a coat of this roughness, that of GGX, adds to the fourth power of the roughness below it: light crosses it twice.
+#[inline(always)]
+pub fn coat_blur<T: Real>(roughness: T) -> T {
+    let square = roughness * roughness;
+    T::from_f64(2.0) * square * square
+}
+
 /// The registry's entry with this index, or the first one.
 #[inline(always)]
 pub(super) fn by_index<E: Copy>(all: &[E], index: u32) -> E {
@@ -475,7 +497,7 @@ pub struct Surface<T: Real> {
     pub normal: Vec3<T>,
     /// Unit direction to the viewer.
     pub wo: Vec3<T>,
-    /// The shading normal without the normal texture, on the side of the viewer: a coat is smooth over it.
+    /// The coat's shading normal, on the side of the viewer: it does not follow the normal texture of what lies below.
     pub coat_normal: Vec3<T>,
     /// True if the viewer is on the triangle's back: inside the solid, for a closed mesh.
     pub is_inside: T::Mask,

@@ -17,7 +17,7 @@ use super::geometry::Geometry;
 use super::intersect::triangle_normal;
 use super::light_profile::profile_share;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, coat_weight_at, emission_at, uvs_at, vertex_factors};
+use super::texture::{Textures, emission_at, put_coat, uvs_at, vertex_factors};
 use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material};
 use crate::optics::numeric::normalize_or;
@@ -224,7 +224,9 @@ pub fn light_sample<T: Scalar>(
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
-        coated.coat_weight = coat_weight_at(emitters.textures, material, uvs);
+        if material.has_textured_coat() {
+            put_coat(&mut coated, emitters.textures, uvs);
+        }
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));

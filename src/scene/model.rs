@@ -267,6 +267,14 @@ pub struct Slot {
     pub coat_roughness: f32,
     /// Index of refraction of the coat, at least 1.
     pub coat_ior: f32,
+    /// What the coat leaves of light that crosses it twice, linear RGB in [0, 1] (the draft KHR_materials_coat).
+    pub coat_color: [f32; 3],
+    /// Stretch of the coat's reflection along the tangent, as `anisotropy`.
+    pub coat_anisotropy: f32,
+    /// Whether the coat changes what lies below it.
+    pub coat_on_base: bool,
+    /// Share of its darkening that shows, in [0, 1].
+    pub coat_darkening: f32,
     /// Share of the surface that has a thin film, in [0, 1] (KHR_materials_iridescence).
     pub film: f32,
     /// Index of refraction of the thin film, at least 1.
@@ -285,6 +293,8 @@ pub struct Slot {
     pub roughest_texel: f32,
     /// Scales x and y of the normal texture's vectors.
     pub normal_scale: f32,
+    /// Scales x and y of the coat's normals.
+    pub coat_normal_scale: f32,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
     /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
@@ -323,6 +333,10 @@ impl Default for Slot {
             coat: 0.0,
             coat_roughness: 0.0,
             coat_ior: 1.5,
+            coat_color: [1.0; 3],
+            coat_anisotropy: 0.0,
+            coat_on_base: false,
+            coat_darkening: 0.0,
             film: 0.0,
             film_ior: 1.3,
             film_thickness: 0.4,
@@ -332,6 +346,7 @@ impl Default for Slot {
             textures: [None; TextureTarget::ALL.len()],
             roughest_texel: 1.0,
             normal_scale: 1.0,
+            coat_normal_scale: 1.0,
             specular: 1.0,
             specular_color: [1.0; 3],
             anisotropy: 0.0,

@@ -32,6 +32,8 @@ pub struct SurfacePoint<T: Real> {
     pub uvs: T::Each<Uvs<T::Scalar>>,
     /// Interpolated vertex colour, linear RGB; white if unused.
     pub vertex_color: Vec3<T>,
+    /// The shading normal without normal textures, on the side of the viewer.
+    pub smooth: Vec3<T>,
     /// The rounded surface, if used; see [`SurfacePoint::round`].
     pub rounded: Option<Rounded<T>>,
 }
@@ -78,7 +80,7 @@ impl<T: Real> SurfacePoint<T> {
         let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
         let rise = part(0) + part(1) + part(2);
         let is_round = self.error.less(rise.dot(flat));
-        self.surface.normal = Vec3::select(is_round, self.surface.coat_normal, flat);
+        self.surface.normal = Vec3::select(is_round, self.smooth, flat);
         let rise = Vec3::select(is_round, rise, Vec3::zero());
         self.rounded = Some(Rounded { flat, rise });
     }
@@ -244,7 +246,7 @@ pub fn surfaces_at<T: Real>(
         let colors = at_corners(hits, |triangle| geometry.vertices(triangle).map(Vertex::rgb));
         vertex_color = between(&colors, &weights);
     }
-    let has_map = of_lane.textures[2] != NO_TEXTURE;
+    let has_map = [of_lane.textures[2], of_lane.coat_normal_texture] != [NO_TEXTURE; 2];
     let stretches = [material.anisotropy, material.coat_anisotropy];
     let is_stretched = stretches.iter().any(|stretch| stretch.differs(T::zero()).any());
     let mut tangent = Vec3::zero();
@@ -262,18 +264,26 @@ pub fn surfaces_at<T: Real>(
             part(0) + part(1) + part(2)
         });
     }
-    let coat_normal = bent_normal(Vec3::select(is_turned, -smoothed, smoothed), wo);
-    let mut shading = coat_normal;
+    let smooth = bent_normal(Vec3::select(is_turned, -smoothed, smoothed), wo);
+    let (mut shading, mut coat_normal) = (smooth, smooth);
     if has_map {
         let outward = normalize_or(interpolated, Vec3::select(is_back, -normal, normal));
         let normals = [smoothed.to_each(), tangent.to_each(), outward.to_each()];
         let sides = side.to_each();
-        let mapped = Vec3::from_lanes(|lane| {
-            let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
-            mapped_normal(textures, of_lane, uvs.as_ref()[lane], normals, sides.as_ref()[lane])
-        });
-        shading = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
-        shading = lifted_normal(shading, normal, wo);
+        let bent = |texture: u32, strength: T::Scalar| {
+            if texture == NO_TEXTURE {
+                return smooth;
+            }
+            let mapped = Vec3::from_lanes(|lane| {
+                let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
+                let (uvs, side) = (uvs.as_ref()[lane], sides.as_ref()[lane]);
+                mapped_normal(textures, (texture, strength), uvs, normals, side)
+            });
+            let bent = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
+            lifted_normal(bent, normal, wo)
+        };
+        shading = bent(of_lane.textures[2], of_lane.normal_strength);
+        coat_normal = bent(of_lane.coat_normal_texture, of_lane.coat_normal_strength);
     }
     let frame = if is_stretched {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
@@ -296,6 +306,7 @@ pub fn surfaces_at<T: Real>(
         slot,
         uvs,
         vertex_color,
+        smooth,
         rounded: None,
     }
 }

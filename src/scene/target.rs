@@ -39,6 +39,9 @@ targets! {
     Opacity, "opacity", "Opacity", Number(3), BaseColor, "Multiplies the opacity.";
     Emission, "emission", "Emission", Color, Emission, "Multiplies the emission.";
     Coat, "coat", "Coat", Number(0), Coat, "Multiplies the weight of the coat.";
+    CoatRoughness, "coat-roughness", "Coat roughness", Number(1), CoatRoughness, "Multiplies the coat's roughness, that of GGX, which is then its lobe.";
+    CoatColor, "coat-color", "Coat colour", Color, CoatColor, "Multiplies the colour of the coat.";
+    CoatNormal, "coat-normal", "Coat normal", Vector, CoatNormal, "Bends the normal of the coat.";
     Film, "film", "Thin film", Number(0), Film, "Multiplies the weight of the thin film.";
     FilmThickness, "film-thickness", "Film thickness", Number(1), FilmThickness, "Multiplies the thickness of the thin film.";
 }
@@ -62,5 +65,10 @@ impl TextureTarget {
     /// True for a scalar.
     pub fn is_number(self) -> bool {
         matches!(self.values(), Number(_))
+    }
+
+    /// True for a normal.
+    pub fn is_normal(self) -> bool {
+        self.values() == Vector
     }
 }

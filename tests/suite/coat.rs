@@ -217,6 +217,33 @@ fn strategies_agree_on_a_coat() {
     }
 }
 
+/// A ball that shines under a coloured coat lights the ground: light sampling and paths that hit it see the same colours.
+#[test]
+fn strategies_and_engines_agree_on_light_from_below_a_coat() {
+    let shining = [
+        "emission.strength=3",
+        "base.metalness=0",
+        "coat.weight=0.8",
+        "coat.ior=1.1",
+        "coat.color=0.9,0.4,0.1",
+    ];
+    let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &shining);
+    document.ground = true;
+    document.lighting.strength = 0.0;
+    document.render.samples = 1024;
+    (document.render.width, document.render.height) = (32, 32);
+    let cpu = render(EngineChoice::Cpu, &document);
+    assert_eq!(cpu.dropped(), 0);
+    let by_lobe = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Lobe, 9));
+    assert_same_picture(&cpu, &by_lobe, "by the lobe");
+    let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
+    assert_same_picture(&cpu, &gpu, "on the GPU");
+    // Sees the test fail where the coat does not dim the emission.
+    document.materials[0].coat_on_base = false;
+    let bright = render(EngineChoice::Cpu, &document);
+    assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &bright, "not dimmed")).is_err());
+}
+
 /// At a cosine of 1/7 the tint is what is left of Schlick's reflectance; head-on and at grazing angles nothing changes.
 #[test]
 fn the_edge_tint_is_what_is_left_at_82_degrees() {

@@ -32,7 +32,8 @@ fn material_extensions_reach_the_slots() {
             "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2.0, 1.0]},
             "KHR_materials_clearcoat": {
                 "clearcoatFactor": 0.5, "clearcoatTexture": texture, "clearcoatRoughnessFactor": 1.0,
-                "clearcoatRoughnessTexture": texture, "clearcoatNormalTexture": texture,
+                "clearcoatRoughnessTexture": texture,
+                "clearcoatNormalTexture": {"index": 0, "scale": 0.5},
             },
             "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
             "KHR_materials_ior": {"ior": 6.0},
@@ -46,20 +47,18 @@ fn material_extensions_reach_the_slots() {
         slot.coat == 0.5 && slot.texture(TextureTarget::Coat).is_some(),
         "its texture is looked up"
     );
-    // Both texels of the picture are (10, 20, 30).
-    assert!(
-        (slot.coat_roughness - 20.0 / 255.0).abs() < 1e-6,
-        "{}",
-        slot.coat_roughness
-    );
+    assert!(slot.coat_roughness == 1.0 && slot.texture(TextureTarget::CoatRoughness).is_some());
+    assert!(slot.coat_normal_scale == 0.5 && slot.texture(TextureTarget::CoatNormal).is_some());
     says(&model, Fate::Approximated, "an index of refraction of 6, taken as 4");
-    says(&model, Fate::Approximated, "a coat roughness texture, by its mean");
-    says(&model, Fate::Ignored, "a coat normal texture");
     let material = &materials_of(&model, ImportLobe::Ggx)[0];
     assert_eq!(
         (material.specular_weight, material.specular_color),
         (0.5, [0.25, 2.0, 1.0])
     );
+    // glTF's clearcoat leaves the base as it is.
+    let uses = material.textures;
+    assert!(uses.coat && uses.coat_roughness && uses.coat_normal && !material.coat_on_base);
+    assert_eq!(material.coat_darkening, 0.0);
     assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 4.0));
 }
 

@@ -229,7 +229,14 @@ fn normals_turn_with_their_picture() {
         settings.textures.normal = true;
         let (materials, _) = compile_textured(&[settings], &textures.slots);
         let (x, z) = (Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 0.0, 1.0]));
-        mapped_normal::<f64>(&textures, &materials[0].cast(), [[0.5; 2]; 3], [z, x, z], 1.0).to_f64()
+        mapped_normal::<f64>(
+            &textures,
+            (materials[0].textures[2], materials[0].normal_strength.into()),
+            [[0.5; 2]; 3],
+            [z, x, z],
+            1.0,
+        )
+        .to_f64()
     };
     let plain = UserTexture::default();
     let [x, y, z] = bent(&plain);

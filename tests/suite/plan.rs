@@ -23,7 +23,7 @@ use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
 use crate::terminator::coarse;
-use crate::textures::all_at_once;
+use crate::textures::{all_at_once, coated_all_over};
 
 type Edit = fn(&mut Document);
 
@@ -220,6 +220,8 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             coated_on_a_box(&folder)
         } else if effect.id == EffectId::FilmTexture {
             filmed_on_a_box(&folder)
+        } else if effect.id == EffectId::CoatNormalMap {
+            small(coated_all_over(&folder))
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {

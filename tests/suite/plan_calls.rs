@@ -97,7 +97,14 @@ fn textured(folder: &Folder) -> Document {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    for target in [TextureTarget::Coat, TextureTarget::Film, TextureTarget::FilmThickness] {
+    let targets = [
+        TextureTarget::Coat,
+        TextureTarget::CoatColor,
+        TextureTarget::CoatNormal,
+        TextureTarget::Film,
+        TextureTarget::FilmThickness,
+    ];
+    for target in targets {
         material.user_textures.set(target, Some(coat.clone()));
     }
     document
@@ -312,7 +319,14 @@ fn calls_for(effect: &str) -> Calls {
         "vertex-colors" => (metal, &[]),
         "coat-texture" => (
             metal,
-            &[|d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST)],
+            &[
+                |d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.coat_color, d.materials[0].coat_weight) = (true, LEAST),
+            ],
+        ),
+        "coat-normal-map" => (
+            metal,
+            &[|d, _| (d.materials[0].textures.coat_normal, d.materials[0].coat_weight) = (true, LEAST)],
         ),
         "film-texture" => (
             metal,

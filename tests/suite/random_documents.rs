@@ -75,13 +75,6 @@ fn value(random: &mut Random, parameter: &Parameter, present: &Value) -> Value {
     }
 }
 
-/// Switches that do nothing without a texture.
-const WITHOUT_TEXTURES: [&str; 3] = [
-    "coat.weight_texture",
-    "thin_film.weight_texture",
-    "thin_film.thickness_texture",
-];
-
 /// A document of any values.
 pub fn random_document(random: &mut Random) -> Document {
     let models = [
@@ -98,10 +91,12 @@ pub fn random_document(random: &mut Random) -> Document {
     let mut material = PRESETS[random.below(PRESETS.len())].clone();
     // No built-in model has textures; with one switch more these would be other documents, some of which have a path that
     // parts by rounding.
-    for parameter in PARAMETERS
-        .iter()
-        .filter(|parameter| !WITHOUT_TEXTURES.contains(&parameter.key))
-    {
+    for parameter in PARAMETERS.iter().filter(|parameter| {
+        let is_layered = ["coat.", "thin_film."]
+            .iter()
+            .any(|group| parameter.key.starts_with(group));
+        !(is_layered && parameter.key.ends_with("_texture"))
+    }) {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));
             // Soft ranges lie within what is taken.

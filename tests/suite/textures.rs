@@ -1,7 +1,7 @@
 //! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
 
 use glossmith::document::{
-    Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, compile_textured,
+    Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, TextureUse, compile_textured,
 };
 use glossmith::job::effect::EffectId;
 use glossmith::optics::lobe::Lobe;
@@ -420,6 +420,55 @@ pub(super) fn all_at_once(folder: &Folder) -> Document {
     (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
     (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
     document
+}
+
+/// A coat with textures of its weight, roughness and normal over a flat, coloured base.
+pub(super) fn coated_all_over(folder: &Folder) -> Document {
+    let material = json!({
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5, "baseColorFactor": [0.6, 0.3, 0.1, 1]},
+        "extensions": {"KHR_materials_clearcoat": {
+            "clearcoatFactor": 1, "clearcoatTexture": {"index": 2}, "clearcoatRoughnessFactor": 0.8,
+            "clearcoatRoughnessTexture": {"index": 1}, "clearcoatNormalTexture": {"index": 0, "scale": 0.7},
+        }},
+    });
+    let (buffer, json) = textured_square(&material, &[bumps(), rough(), four_texels()], &json!({}));
+    let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
+    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
+    document
+}
+
+/// Textures of a coat, one that leaves the base as it is and OpenPBR's, whose index, blur and colour they vary.
+#[test]
+fn strategies_and_engines_agree_on_a_textured_coat() {
+    let folder = Folder::new();
+    let mut document = coated_all_over(&folder);
+    for on_base in [false, true] {
+        let material = &mut document.materials[0];
+        assert!(material.textures.coat && material.textures.coat_roughness && material.textures.coat_normal);
+        material.coat_on_base = on_base;
+        material.coat_darkening = if on_base { 1.0 } else { 0.0 };
+        material.coat_color = [0.9, 0.6, 0.3];
+        let cpu = render(EngineChoice::Cpu, &document);
+        assert_eq!(cpu.dropped(), 0);
+        for strategy in [Strategy::Lobe, Strategy::Light] {
+            let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
+            assert_same_picture(&cpu, &other, &format!("{on_base} {strategy:?}"));
+        }
+        let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
+        assert_same_picture(&cpu, &gpu, &format!("{on_base} on the GPU"));
+        // Sees the test fail where a texture is left out.
+        for leave_out in [
+            (|uses| uses.coat = false) as fn(&mut TextureUse),
+            |uses| uses.coat_roughness = false,
+            |uses| uses.coat_normal = false,
+        ] {
+            let mut without = with_strategy(&document, Strategy::Mis, 9);
+            leave_out(&mut without.materials[0].textures);
+            let plain = render(EngineChoice::Cpu, &without);
+            assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without")).is_err());
+        }
+    }
 }
 
 #[test]

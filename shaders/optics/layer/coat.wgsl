@@ -28,7 +28,12 @@ fn coat_shape(material: Material) -> LobeShape {
 
 fn coat_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
     let cosine = dot(surface.coat_normal, surface.wo);
-    let share = material.coat_weight * albedo_lookup(material.coat_table, cosine).x;
+    var share = material.coat_weight;
+    if PLAN_COAT_TEXTURES == 1u && material.coat_roughness_texture != NO_TEXTURE {
+        share *= rough_albedo_lookup(material.coat_table, cosine, material.coat_roughness).x;
+    } else {
+        share *= albedo_lookup(material.coat_table, cosine).x;
+    }
     let color = select(material.coat_color, vec3f(1.0), has_flag(material, COATS_BASE));
     var transmittance = mix(vec3f(1.0), color, material.coat_weight) * max(1.0 - share, 0.0);
     if PLAN_COAT_DARKENING == 1u && material.coat_darkening > 0.0 {

@@ -433,14 +433,21 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::CoatTexture,
         label: "Coat textures",
-        help: "Coat weights from textures.",
-        decide: |facts| {
-            facts.needed_by(
-                |m| m.coat_texture != NO_TEXTURE,
-                "takes the weight of its coat from a texture",
-            )
-        },
-        remove: Some(|document| each_material(document, |material| material.textures.coat = false)),
+        help: "Weight, roughness and colour of coats from textures.",
+        decide: |facts| facts.needed_by(Material::has_textured_coat, "has a texture of its coat"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                let uses = &mut material.textures;
+                (uses.coat, uses.coat_roughness, uses.coat_color) = (false, false, false);
+            });
+        }),
+    },
+    Effect {
+        id: EffectId::CoatNormalMap,
+        label: "Coat normal maps",
+        help: "Normals of coats bent by a texture of their own.",
+        decide: |facts| facts.needed_by(|m| m.coat_normal_texture != NO_TEXTURE, "bends the normals of its coat"),
+        remove: Some(|document| each_material(document, |material| material.textures.coat_normal = false)),
     },
     Effect {
         id: EffectId::FilmTexture,

@@ -1,12 +1,14 @@
 //! The parameters of a material.
 
+mod coat;
+
 use std::sync::LazyLock;
 
 use super::accessors::{choice, field};
 use super::{Choice, Kind, Parameter, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
 use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
+use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
@@ -19,7 +21,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     let mut all = base();
     all.extend(specular_shape());
     all.extend(specular_fresnel());
-    all.extend(coat());
+    all.extend(coat::parameters());
     all.extend(fuzz());
     all.extend(thin_film());
     all.extend(transmission());
@@ -88,32 +90,31 @@ fn specular_fresnel() -> Vec<Parameter> {
     ]
 }
 
-#[rustfmt::skip]
-fn coat() -> Vec<Parameter> {
-    vec![
-        of("coat.weight", "Weight", "A layer of clear lacquer over everything else.", unit_number(), field!(Number coat_weight))
-            .applies(|_| true),
-        of("coat.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.coat)),
-        of("coat.lobe", "Lobe", "The model of how the coat spreads reflected light.", choices::<CoatLobe>(), choice!(coat_lobe)),
-        of("coat.roughness", "Roughness", "How far the coat spreads its reflection.", unit_number(), field!(Number coat_roughness))
-            .symbol("R"),
-        of("coat.anisotropy", "Anisotropy", "Stretches the coat's reflection along the tangent of what lies below, or across it below 0.", number([-1.0, 1.0], ""), field!(Number coat_anisotropy)),
-        of("coat.ior", "Index of refraction", "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.", number([1.0, 4.0], ""), field!(Number coat_ior))
-            .symbol("n").bar(1.0, 2.5),
-        of("coat.color", "Colour", "Colours what is seen through the coat.", Kind::Color, field!(Color coat_color)),
-        of("coat.darkening", "Darkening", "How much darker a base gets by the light that the coat reflects back onto it: varnish on wood. A white base stays white.", unit_number(), field!(Number coat_darkening)),
-        of("coat.on_base", "On the base", "The coat changes what lies below: less reflection by its index, more blur by its roughness, deeper colour along slanting ways, as in OpenPBR; off, nothing, as in glTF.", Kind::Toggle, field!(Toggle coat_on_base)),
-    ]
-}
-
-#[rustfmt::skip]
 fn fuzz() -> Vec<Parameter> {
     vec![
-        of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
-            .applies(|_| true),
-        of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
-        of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
-            .symbol("R"),
+        of(
+            "fuzz.weight",
+            "Weight",
+            "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.",
+            unit_number(),
+            field!(Number fuzz_weight),
+        )
+        .applies(|_| true),
+        of(
+            "fuzz.color",
+            "Colour",
+            "Colours what the fibres reflect; what lies below loses as much light of every colour.",
+            Kind::Color,
+            field!(Color fuzz_color),
+        ),
+        of(
+            "fuzz.roughness",
+            "Roughness",
+            "How far the fibres spread the light: low only at the edge, high as dust all over.",
+            unit_number(),
+            field!(Number fuzz_roughness),
+        )
+        .symbol("R"),
     ]
 }
 

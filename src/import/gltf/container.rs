@@ -20,7 +20,7 @@ use crate::scene::report::{Fate, ImportReport};
 /// The extensions of buffer views and buffers.
 pub(super) const MESHOPT_EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Extensions that are supported or irrelevant.
-const UNDERSTOOD: [&str; 31] = [
+const UNDERSTOOD: [&str; 32] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -29,6 +29,7 @@ const UNDERSTOOD: [&str; 31] = [
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_coat",
     "KHR_materials_diffuse_roughness",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",

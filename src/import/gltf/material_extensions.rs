@@ -29,6 +29,19 @@ impl TextureInfo {
     }
 }
 
+/// A reference to a normal texture.
+#[derive(Debug, Deserialize)]
+pub(super) struct NormalInfo {
+    #[serde(flatten)]
+    pub info: TextureInfo,
+    #[serde(default = "whole")]
+    pub scale: f32,
+}
+
+fn whole() -> f32 {
+    1.0
+}
+
 /// KHR_materials_clearcoat.
 #[derive(Debug, Default, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -37,6 +50,66 @@ pub(super) struct Clearcoat {
     pub clearcoat_texture: Option<TextureInfo>,
     pub clearcoat_roughness_factor: f32,
     pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<NormalInfo>,
+}
+
+/// The draft KHR_materials_coat.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Coat {
+    pub coat_factor: f32,
+    pub coat_texture: Option<TextureInfo>,
+    pub coat_roughness_factor: f32,
+    pub coat_roughness_texture: Option<TextureInfo>,
+    pub coat_normal_texture: Option<NormalInfo>,
+    pub coat_ior: f32,
+    pub coat_color_factor: [f32; 3],
+    pub coat_color_texture: Option<TextureInfo>,
+    pub coat_darkening_factor: f32,
+    pub coat_anisotropy_strength: f32,
+    /// The coat changes what lies below it.
+    #[serde(skip)]
+    pub is_on_base: bool,
+}
+
+impl Default for Coat {
+    fn default() -> Self {
+        Self {
+            coat_factor: 0.0,
+            coat_texture: None,
+            coat_roughness_factor: 0.0,
+            coat_roughness_texture: None,
+            coat_normal_texture: None,
+            coat_ior: 1.5,
+            coat_color_factor: [1.0; 3],
+            coat_color_texture: None,
+            coat_darkening_factor: 1.0,
+            coat_anisotropy_strength: 0.0,
+            is_on_base: true,
+        }
+    }
+}
+
+/// A clearcoat is a coat that leaves what lies below it as it is.
+impl From<Clearcoat> for Coat {
+    fn from(clear: Clearcoat) -> Self {
+        Self {
+            coat_factor: clear.clearcoat_factor,
+            coat_texture: clear.clearcoat_texture,
+            coat_roughness_factor: clear.clearcoat_roughness_factor,
+            coat_roughness_texture: clear.clearcoat_roughness_texture,
+            coat_normal_texture: clear.clearcoat_normal_texture,
+            coat_darkening_factor: 0.0,
+            is_on_base: false,
+            ..Self::default()
+        }
+    }
+}
+
+/// The coat of a material; the draft takes precedence.
+pub(super) fn coat(material: &Json) -> Option<Coat> {
+    let draft = extension::<Coat>(material, "KHR_materials_coat");
+    draft.or_else(|| extension::<Clearcoat>(material, "KHR_materials_clearcoat").map(Coat::from))
 }
 
 /// KHR_materials_iridescence; thicknesses in nm.
@@ -150,7 +223,8 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
         is_there && extension::<T>(material, name).is_none()
     }
     type Check = fn(&Json, &str) -> bool;
-    let checks: [(&'static str, Check); 8] = [
+    let checks: [(&'static str, Check); 9] = [
+        ("KHR_materials_coat", is_unreadable::<Coat>),
         ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
         ("KHR_materials_iridescence", is_unreadable::<Iridescence>),
         ("KHR_materials_specular", is_unreadable::<Specular>),

@@ -1,21 +1,21 @@
 //! A clear dielectric coat over all other layers: OpenPBR's coat, glTF's clearcoat.
 //!
 //! Its lobe is the geometric lobe with the curve `smooth`, or GGX, with the exact Fresnel equations of a dielectric. The rest
-//! reaches the layers below: coat + (1 − albedo of the coat) · below, so that no energy is created. It does not follow a
-//! normal map, and is absent from within a solid.
+//! reaches the layers below: coat + (1 − albedo of the coat) · below, so that no energy is created. It has a normal
+//! map of its own, and is absent from within a solid.
 //!
 //! A coat that changes what lies below ([`COATS_BASE`]) is OpenPBR 1.1's. Its index and roughness are in the material's
 //! own; here are its darkening by light that it reflects back inside, and its absorption along the way of the light. Any
 //! other coat is glTF's: its colour is that of every direction.
 
 use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
-use crate::optics::albedo::albedo_lookup;
+use crate::optics::albedo::{albedo_lookup, rough_albedo_lookup};
 use crate::optics::coat_medium::{color_over, way_length};
 use crate::optics::curve::Curve;
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::fresnel::{fresnel, fresnel_dielectric, half_vector_cosine};
 use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape};
-use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, Material, Surface};
+use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, Material, NO_TEXTURE, Surface};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 
@@ -56,7 +56,7 @@ impl<T: Real> LayerModel<T> for Coat {
     #[inline(always)]
     fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
         let cosine = surface.coat_normal.dot(surface.wo);
-        let share = material.coat_weight * albedo_lookup(tables, material.coat_table, cosine).x;
+        let share = material.coat_weight * coat_albedo(material, tables, cosine);
         let left = (T::one() - share).max(T::zero());
         let white = Vec3::splat(T::one());
         let mut transmittance = if material.has_flag(COATS_BASE) {
@@ -108,6 +108,16 @@ pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
         eta: T::zero(),
         table: &[],
     }
+}
+
+/// Albedo of a coat of weight 1.
+#[inline(always)]
+fn coat_albedo<T: Real>(material: &Material<T>, tables: &[f32], cosine: T) -> T {
+    if material.coat_roughness_texture == NO_TEXTURE {
+        return albedo_lookup(tables, material.coat_table, cosine).x;
+    }
+    let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, material.coat_roughness);
+    albedo
 }
 
 /// The share that the coat reflects into a direction of its lobe.

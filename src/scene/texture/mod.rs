@@ -18,7 +18,7 @@ use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::material::{
-    COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
 };
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
@@ -254,11 +254,8 @@ pub fn textured_material<T: Scalar>(
         at_point.base_color = at_point.base_color * color;
         at_point.transmission_tint = at_point.transmission_tint * color;
     }
-    if material.coat_texture != NO_TEXTURE {
-        at_point.coat_weight = coat_weight_at(textures, material, uvs);
-        if material.has_flag(COATS_BASE) {
-            at_point.reflecting_ior = material.ior_under_coat(at_point.coat_weight);
-        }
+    if material.has_textured_coat() {
+        put_coat(&mut at_point, textures, uvs);
     }
     // A map with both is looked up once.
     let mut of_metalness = Vec3::splat(T::one());
@@ -271,7 +268,7 @@ pub fn textured_material<T: Scalar>(
         }
         at_point.roughness = at_point.ggx_roughness;
         if blurs {
-            at_point.roughness = material.roughness_under_coat(at_point.roughness, at_point.coat_weight);
+            at_point.roughness = at_point.roughness_under_coat(at_point.roughness, at_point.coat_weight);
         }
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
@@ -311,7 +308,13 @@ pub fn textured_materials<T: Real>(
     let at = T::each(|lane| {
         let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
         TexturedNumbers {
-            colors: [at.base_color, at.transmission_tint, at.emission, at.film_path],
+            colors: [
+                at.base_color,
+                at.transmission_tint,
+                at.emission,
+                at.coat_color,
+                at.film_path,
+            ],
             numbers: [
                 at.metalness,
                 at.roughness,
@@ -319,6 +322,7 @@ pub fn textured_materials<T: Real>(
                 at.coat_weight,
                 at.reflecting_ior,
                 at.ggx_roughness,
+                at.coat_roughness,
                 at.film_weight,
             ],
         }
@@ -328,14 +332,16 @@ pub fn textured_materials<T: Real>(
         base_color: Vec3::from_lanes(|lane| at[lane].colors[0]),
         transmission_tint: Vec3::from_lanes(|lane| at[lane].colors[1]),
         emission: Vec3::from_lanes(|lane| at[lane].colors[2]),
+        coat_color: Vec3::from_lanes(|lane| at[lane].colors[3]),
         metalness: T::from_lanes(|lane| at[lane].numbers[0]),
         roughness: T::from_lanes(|lane| at[lane].numbers[1]),
         transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
         coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
         reflecting_ior: T::from_lanes(|lane| at[lane].numbers[4]),
         ggx_roughness: T::from_lanes(|lane| at[lane].numbers[5]),
-        film_path: Vec3::from_lanes(|lane| at[lane].colors[3]),
-        film_weight: T::from_lanes(|lane| at[lane].numbers[6]),
+        coat_roughness: T::from_lanes(|lane| at[lane].numbers[6]),
+        film_path: Vec3::from_lanes(|lane| at[lane].colors[4]),
+        film_weight: T::from_lanes(|lane| at[lane].numbers[7]),
         ..*material
     }
 }
@@ -343,11 +349,11 @@ pub fn textured_materials<T: Real>(
 /// Parameters that [`textured_material`] changes.
 #[derive(Clone, Copy, Default)]
 struct TexturedNumbers<T> {
-    /// Base colour, tint of the transmission, emission, phase of the thin film.
-    colors: [Vec3<T>; 4],
+    /// Base colour, tint of the transmission, emission, colour of the coat, phase of the thin film.
+    colors: [Vec3<T>; 5],
     /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
-    /// the coat, weight of the thin film.
-    numbers: [T; 7],
+    /// the coat, roughness of the coat, weight of the thin film.
+    numbers: [T; 8],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -394,12 +400,25 @@ pub fn emission_at<T: Scalar>(
     radiance * texture_lookup(textures, emission, uvs).0
 }
 
-/// The weight of the coat at a surface point.
-pub fn coat_weight_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
-    if material.coat_texture == NO_TEXTURE {
-        return material.coat_weight;
+/// Varies the coat of a material by its textures.
+pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
+    if material.coat_texture != NO_TEXTURE {
+        material.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
+        if material.has_flag(COATS_BASE) {
+            material.reflecting_ior = material.ior_under_coat(material.coat_weight);
+        }
     }
-    material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x
+    if material.coat_roughness_texture != NO_TEXTURE {
+        let (values, _) = texture_lookup(textures, material.coat_roughness_texture, uvs);
+        material.coat_roughness = material.coat_roughness * values.y;
+        if T::zero().less(material.coat_blur) {
+            material.coat_blur = coat_blur(material.coat_roughness);
+        }
+    }
+    if material.coat_color_texture != NO_TEXTURE {
+        let (color, _) = texture_lookup(textures, material.coat_color_texture, uvs);
+        material.coat_color = material.coat_color * color;
+    }
 }
 
 /// The share of light that a surface point stops, in [0, 1]; `alpha` is that of the vertices.
@@ -419,21 +438,18 @@ fn stopped_share<T: Scalar>(material: &Material<T>, opacity: T) -> T {
 }
 
 /// The normal of a normal map, in world space. `tangent` and the bitangent's sign are the geometry's, `normal` the
-/// interpolated one, `outward` the same on the front. Without a map: `normal`.
+/// interpolated one, `outward` the same on the front. `strength` scales the map's slopes.
 pub fn mapped_normal<T: Scalar>(
     textures: &Textures,
-    material: &Material<T>,
+    (texture, strength): (u32, T),
     uvs: Uvs<T>,
     [normal, tangent, outward]: [Vec3<T>; 3],
     sign: T,
 ) -> Vec3<T> {
-    let record = &textures.records[material.textures[2] as usize];
+    let record = &textures.records[texture as usize];
     let (texel, _) = filtered(textures, record, uvs);
     let signed = |x: T| T::from_f64(2.0) * x - T::one();
-    let (mut x, mut y) = (
-        signed(texel.x) * material.normal_strength,
-        signed(texel.y) * material.normal_strength,
-    );
+    let (mut x, mut y) = (signed(texel.x) * strength, signed(texel.y) * strength);
     if record.flags & TURNS_NORMALS != 0 {
         let [a, b, _] = record.u_from_uv.map(|x| T::from_f64(f64::from(x)));
         let length = (a * a + b * b).sqrt();

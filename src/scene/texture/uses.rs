@@ -27,7 +27,7 @@ impl TextureAssignment {
 
     /// Whether green is read upside down.
     pub fn is_flipped(&self) -> bool {
-        self.target == TextureTarget::Normal && self.texture.inverted
+        self.target.is_normal() && self.texture.inverted
     }
 }
 
@@ -109,7 +109,7 @@ pub(super) fn of_user_texture(
         true => 1 + texture.channel_of(*target, is_translucent),
         false => 0,
     };
-    let is_normal = *target == TextureTarget::Normal;
+    let is_normal = target.is_normal();
     let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
     let [scale, offset] = match texture.inverted {
         _ if is_normal => [1.0, 0.0],

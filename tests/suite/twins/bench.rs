@@ -113,6 +113,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 let others = [material.textures[1], of_others.below(textures.records.len()) as u32];
                 material.metalness_texture = others[of_others.below(2)];
                 material.coat_texture = of_others.below(textures.records.len()) as u32;
+                material.coat_color_texture = of_others.below(textures.records.len()) as u32;
                 material.film_texture = of_others.below(textures.records.len()) as u32;
                 material.film_path_texture = of_others.below(textures.records.len()) as u32;
                 materials.push(material);
@@ -127,6 +128,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     // Linear pictures: the first with a normal texture, the second with one that shines.
     materials[0].textures = [NO_TEXTURE, NO_TEXTURE, 1, NO_TEXTURE];
     materials[1].textures = [NO_TEXTURE, NO_TEXTURE, NO_TEXTURE, 0];
+    materials[0].coat_normal_texture = 2;
     // Never so steep that the tangent is along the normal.
     materials[0].normal_strength = 0.5;
     for material in &mut materials[..2] {
@@ -317,6 +319,10 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_darkening: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
         coat_inner: rng.range(0.0, 0.9),
         coat_anisotropy: if rng.chance(0.3) { rng.range(-1.0, 1.0) } else { 0.0 },
+        coat_roughness_texture: NO_TEXTURE,
+        coat_color_texture: NO_TEXTURE,
+        coat_normal_texture: NO_TEXTURE,
+        coat_normal_strength: 0.5,
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
         opacity_texture: NO_TEXTURE,

@@ -128,11 +128,13 @@ fn textured_materials_agree() {
                     let frame = [row.vector(), row.vector(), row.vector()];
                     let sign = row.number();
                     let uvs = uvs(row);
-                    row.put_vector(mapped_normal(&SCENE.textures, &material, uvs, frame, sign));
+                    let map = (material.textures[2], material.normal_strength);
+                    row.put_vector(mapped_normal(&SCENE.textures, map, uvs, frame, sign));
                 }),
             )
             .output(
-                "mapped_normal(material_at(material), uvs, normal, vec4f(tangent, sign), outward)",
+                "mapped_normal(material_at(material).textures.z, material_at(material).normal_strength, uvs, normal, \
+                 vec4f(tangent, sign), outward)",
                 Output::Vector(1.0),
             )
             .group("", |rng, _| {

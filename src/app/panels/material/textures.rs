@@ -89,7 +89,7 @@ pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
 /// for that of the normal, which has a row.
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
-    if picture.is_some() || target == TextureTarget::Normal {
+    if picture.is_some() || target.is_normal() {
         let top = ui.cursor().min;
         let place = egui::Rect::from_min_size(top, egui::vec2(ui.available_width(), theme::ROW_HEIGHT));
         if ui.rect_contains_pointer(place) {
@@ -194,7 +194,7 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                 let has_effect = match parameter.key {
                     "channel" => target.is_number(),
                     // Bumps have a strength of their own, and are never colours.
-                    "strength" | "color_space" => target != TextureTarget::Normal,
+                    "strength" | "color_space" => !target.is_normal(),
                     _ => true,
                 };
                 if !has_effect {

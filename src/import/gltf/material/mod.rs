@@ -15,11 +15,11 @@ use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
 pub use self::table::GLTF_PARAMETERS;
-use super::anisotropy::convert_widths;
+use super::anisotropy::{convert_widths, widths_from_gltf};
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission,
-    Volume, extension, kept, unreadable,
+    Anisotropy, Coat, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume,
+    coat, extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
@@ -301,6 +301,11 @@ impl<'a> Materials<'a> {
                 .note(Fate::Ignored, format!("{what}, kept in the material"), &read.name);
         }
         read.kept = kept;
+        if let (Some(texture), false) = (read.texture(TextureTarget::CoatNormal), uv_use.has_normal_texture) {
+            // Tangents follow the coat's texture where there is no other.
+            uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
+            uv_use.has_normal_texture = true;
+        }
         uv_use.sets = [sets[0].or(Some(0)), sets[1]];
         (read, uv_use)
     }
@@ -382,19 +387,8 @@ impl<'a> Materials<'a> {
                 },
             ));
         }
-        if let Some(coat) = extension::<Clearcoat>(raw, "KHR_materials_clearcoat") {
-            (read.coat, read.coat_roughness) = (unit(coat.clearcoat_factor), unit(coat.clearcoat_roughness_factor));
-            if read.coat > 0.0 {
-                let reference = coat.clearcoat_texture.as_ref().map(TextureInfo::reference);
-                *read.texture_mut(TextureTarget::Coat) = self.texture(reference, sets, &read.name);
-                means.extend(mean(
-                    &coat.clearcoat_roughness_texture,
-                    "a coat roughness texture, by its mean",
-                    |slot, mean| {
-                        slot.coat_roughness *= mean.codes[1];
-                    },
-                ));
-            }
+        if let Some(coat) = coat(raw) {
+            self.read_coat(&coat, read, sets);
         }
         if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
             self.read_film(&film, read, sets);
@@ -413,6 +407,32 @@ impl<'a> Materials<'a> {
             ));
         }
         self.add_means(slot, means);
+    }
+
+    fn read_coat(&mut self, coat: &Coat, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        read.coat = unit(coat.coat_factor);
+        let widths = widths_from_gltf(unit(coat.coat_roughness_factor), unit(coat.coat_anisotropy_strength));
+        (read.coat_roughness, read.coat_anisotropy) = (widths.roughness, widths.stretch);
+        read.coat_ior = coat.coat_ior.clamp(1.0, IOR_MAX);
+        read.coat_color = coat.coat_color_factor.map(unit);
+        (read.coat_on_base, read.coat_darkening) = (coat.is_on_base, unit(coat.coat_darkening_factor));
+        if read.coat == 0.0 {
+            return;
+        }
+        if coat.is_on_base {
+            let what = "a coat of the draft KHR_materials_coat, as OpenPBR has it";
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
+        let place = |info: &Option<TextureInfo>| info.as_ref().map(TextureInfo::reference);
+        *read.texture_mut(TextureTarget::Coat) = self.texture(place(&coat.coat_texture), sets, &read.name);
+        *read.texture_mut(TextureTarget::CoatRoughness) =
+            self.texture(place(&coat.coat_roughness_texture), sets, &read.name);
+        *read.texture_mut(TextureTarget::CoatColor) = self.texture(place(&coat.coat_color_texture), sets, &read.name);
+        if let Some(normal) = &coat.coat_normal_texture {
+            *read.texture_mut(TextureTarget::CoatNormal) =
+                self.texture(Some(normal.info.reference()), sets, &read.name);
+            read.coat_normal_scale = normal.scale;
+        }
     }
 
     /// A thin film. Without a texture it has the largest thickness.

@@ -202,6 +202,7 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
                 TextureTarget::BaseColor => slot.base_color = slot.base_color.map(|factor| 0.5 * factor),
                 TextureTarget::Roughness => (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness),
                 TextureTarget::Emission => slot.emission = [0.0; 3],
+                TextureTarget::CoatRoughness => slot.coat_roughness *= 0.5,
                 _ => {}
             }
         }

@@ -49,8 +49,22 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "clearcoatFactor" "0.25" => To "coat.weight" "";
         "clearcoatTexture" TEXTURE => To "coat.weight_texture" "";
         "clearcoatRoughnessFactor" "0.25" => To "coat.roughness" "matched to the geometric lobe";
-        "clearcoatRoughnessTexture" TEXTURE => To "coat.roughness" "by its mean";
-        "clearcoatNormalTexture" TEXTURE => Nowhere "a coat normal texture: coats lie smooth" "";
+        "clearcoatRoughnessTexture" TEXTURE => To "coat.roughness_texture" "";
+        "clearcoatNormalTexture" r#"{"index": 0, "scale": 0.5}"# => To "coat.normal_texture, coat.normal_strength" "a scale beyond ±10";
+    }
+    "/extensions/KHR_materials_coat/" {
+        "coatFactor" "0.25" => To "coat.weight" "a draft; in the place of KHR_materials_clearcoat";
+        "coatTexture" TEXTURE => To "coat.weight_texture" "";
+        "coatRoughnessFactor" "0.25" => To "coat.roughness" "matched to the geometric lobe";
+        "coatRoughnessTexture" TEXTURE => To "coat.roughness_texture" "";
+        "coatNormalTexture" TEXTURE => To "coat.normal_texture, coat.normal_strength" "";
+        "coatIor" "1.25" => To "coat.ior" "from 1 to 4";
+        "coatColorFactor" "[0.5, 0.25, 0.125]" => To "coat.color" "";
+        "coatColorTexture" TEXTURE => To "coat.color_texture" "";
+        "coatDarkeningFactor" "0.25" => To "coat.darkening" "";
+        "coatAnisotropyStrength" "0.25" => To "coat.anisotropy, coat.roughness" "";
+        "coatAnisotropyRotation" "0.25" => Nowhere "a turn of the coat's highlight, which lies along the tangent" "";
+        "coatAnisotropyTexture" TEXTURE => Nowhere "a texture of the coat's anisotropy" "";
     }
     "/extensions/KHR_materials_diffuse_roughness/" {
         "diffuseRoughnessFactor" "0.25" => To "base.diffuse_roughness" "a draft";

@@ -10,6 +10,8 @@ use crate::store::exchange::surface::Surface;
 
 /// The extension of stretched highlights.
 pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
+/// The draft of OpenPBR's coat.
+const COAT: &str = "KHR_materials_coat";
 
 /// The extension of thin films.
 const IRIDESCENCE: &str = "KHR_materials_iridescence";
@@ -22,6 +24,9 @@ pub struct SlotTextures {
     pub normal: Option<Json>,
     pub emissive: Option<Json>,
     pub coat: Option<Json>,
+    pub coat_roughness: Option<Json>,
+    pub coat_normal: Option<Json>,
+    pub coat_color: Option<Json>,
     pub film: Option<Json>,
     pub film_thickness: Option<Json>,
     /// The film's least thickness over its largest, where a texture varies it.
@@ -97,8 +102,22 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
         json["doubleSided"] = true.into();
     }
     let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
-    if let (Some(texture), Some(coat)) = (&textures.coat, extensions.get_mut("KHR_materials_clearcoat")) {
-        coat["clearcoatTexture"] = texture.clone();
+    if let Some(coat) = extensions.get_mut("KHR_materials_clearcoat") {
+        put(coat, "clearcoatTexture", &textures.coat);
+        put(coat, "clearcoatRoughnessTexture", &textures.coat_roughness);
+        put(coat, "clearcoatNormalTexture", &textures.coat_normal);
+        if textures.coat_normal.is_some() && material.coat_normal_strength != 1.0 {
+            coat["clearcoatNormalTexture"]["scale"] = material.coat_normal_strength.into();
+        }
+    }
+    if let Some(coat) = extensions.get_mut(COAT) {
+        put(coat, "coatTexture", &textures.coat);
+        put(coat, "coatRoughnessTexture", &textures.coat_roughness);
+        put(coat, "coatColorTexture", &textures.coat_color);
+        put(coat, "coatNormalTexture", &textures.coat_normal);
+        if textures.coat_normal.is_some() && material.coat_normal_strength != 1.0 {
+            coat["coatNormalTexture"]["scale"] = material.coat_normal_strength.into();
+        }
     }
     if let Some(film) = extensions.get_mut(IRIDESCENCE) {
         put(film, "iridescenceTexture", &textures.film);
@@ -157,6 +176,19 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
             "clearcoatRoughnessFactor": surface.coat_roughness,
         });
         all.insert("KHR_materials_clearcoat".to_owned(), coat);
+        if surface.coat_on_base {
+            // Readers without the draft take the other.
+            let widths = gltf_from_widths(surface.coat_roughness, surface.coat_anisotropy);
+            let draft = json!({
+                "coatFactor": surface.coat_weight,
+                "coatRoughnessFactor": widths.roughness,
+                "coatIor": surface.coat_ior,
+                "coatColorFactor": surface.coat_color,
+                "coatDarkeningFactor": surface.coat_darkening,
+                "coatAnisotropyStrength": widths.stretch,
+            });
+            all.insert(COAT.to_owned(), draft);
+        }
     }
     if surface.film_weight > 0.0 {
         let film = json!({

@@ -58,6 +58,17 @@ const UNSIGNED_INT: u32 = 5125;
 const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
+/// What it takes of a material: OpenPBR's coat by a draft.
+fn takes(material: &MaterialSettings) -> Takes {
+    let is_draft = material.coat_on_base;
+    Takes {
+        coat_details: is_draft,
+        coat_stretch: is_draft,
+        coat_on_base: is_draft,
+        ..TAKES
+    }
+}
+
 impl Format for Gltf {
     fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         let mut model = match &subject.document {
@@ -86,7 +97,7 @@ impl Format for Gltf {
                 None => Vec::new(),
             };
             let material = &material;
-            let (surface, mut report) = shown(material, &TAKES);
+            let (surface, mut report) = shown(material, &takes(material));
             report.entries.extend(of_own);
             let textures = file.textures(&model, slot, material);
             if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
@@ -133,7 +144,7 @@ impl Format for Gltf {
             };
             let mut shows = material_json(
                 &exact,
-                &shown(&exact, &TAKES).0,
+                &shown(&exact, &takes(&exact)).0,
                 &SlotTextures::default(),
                 radius_of(&model),
             );
@@ -302,6 +313,9 @@ impl Builder {
             normal: texture(uses.normal, TextureTarget::Normal),
             emissive: texture(uses.emission, TextureTarget::Emission),
             coat: texture(uses.coat, TextureTarget::Coat),
+            coat_roughness: texture(uses.coat_roughness, TextureTarget::CoatRoughness),
+            coat_normal: texture(uses.coat_normal, TextureTarget::CoatNormal),
+            coat_color: texture(uses.coat_color, TextureTarget::CoatColor),
             film: texture(uses.film, TextureTarget::Film),
             film_thickness: texture(uses.film_thickness, TextureTarget::FilmThickness),
             thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),

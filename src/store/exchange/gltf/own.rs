@@ -109,8 +109,11 @@ fn picture(
     if target == TextureTarget::Opacity {
         return Err("the format has opacity in the texture of the base colour alone".to_owned());
     }
-    if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
+    if target.is_normal() && texture.rotation_deg != 0.0 {
         return Err("the format does not turn normals with their texture".to_owned());
+    }
+    if target == TextureTarget::CoatColor {
+        return Err("the format has a coat's colour in a draft alone".to_owned());
     }
     let read = read_texture(&texture.file, target.is_color(), u32::MAX, budget)?;
     let channel = texture.channel_of(target, read.is_translucent()) as usize;
@@ -124,7 +127,7 @@ fn picture(
 
 /// A texel of a file: sRGB codes of a colour, a normal, or a number in all channels.
 fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
-    if target == TextureTarget::Normal {
+    if target.is_normal() {
         return [r, if texture.inverted { 255 - g } else { g }, b, 255];
     }
     let decoded = |code: [u8; 3]| {
