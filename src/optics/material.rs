@@ -414,16 +414,16 @@ impl<T: Real> Material<T> {
         !is_plain || self.has_textured_coat() || self.has_film_texture()
     }
 
-    /// True if a texture varies the thin film.
-    #[inline(always)]
-    pub fn has_film_texture(&self) -> bool {
-        [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
-    }
-
     /// True if textures vary weight, roughness or colour of the coat.
     #[inline(always)]
     pub fn has_textured_coat(&self) -> bool {
         [self.coat_texture, self.coat_roughness_texture, self.coat_color_texture] != [NO_TEXTURE; 3]
+    }
+
+    /// True if a texture varies the thin film.
+    #[inline(always)]
+    pub fn has_film_texture(&self) -> bool {
+        [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
     }
 
     /// True if some light may pass straight through the surface.

@@ -218,10 +218,10 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
         let document = if ["coat-texture", "box-projection"].contains(&effect.name()) {
             coated_on_a_box(&folder)
-        } else if effect.id == EffectId::FilmTexture {
-            filmed_on_a_box(&folder)
         } else if effect.id == EffectId::CoatNormalMap {
             small(coated_all_over(&folder))
+        } else if effect.id == EffectId::FilmTexture {
+            filmed_on_a_box(&folder)
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {

@@ -97,14 +97,13 @@ fn textured(folder: &Folder) -> Document {
         projection: TextureProjection::First,
         ..own_texture(folder)
     };
-    let targets = [
+    for target in [
         TextureTarget::Coat,
         TextureTarget::CoatColor,
         TextureTarget::CoatNormal,
         TextureTarget::Film,
         TextureTarget::FilmThickness,
-    ];
-    for target in targets {
+    ] {
         material.user_textures.set(target, Some(coat.clone()));
     }
     document

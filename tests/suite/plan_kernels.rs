@@ -80,14 +80,14 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
-        "film-texture" => |material, _| {
-            (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
-        },
         "coat-texture" => |material, _| {
             (material.coat_texture, material.coat_roughness_texture) = (NO_TEXTURE, NO_TEXTURE);
             material.coat_color_texture = NO_TEXTURE;
         },
         "coat-normal-map" => |material, _| material.coat_normal_texture = NO_TEXTURE,
+        "film-texture" => |material, _| {
+            (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
+        },
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,

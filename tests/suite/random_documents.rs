@@ -91,12 +91,16 @@ pub fn random_document(random: &mut Random) -> Document {
     let mut material = PRESETS[random.below(PRESETS.len())].clone();
     // No built-in model has textures; with one switch more these would be other documents, some of which have a path that
     // parts by rounding.
-    for parameter in PARAMETERS.iter().filter(|parameter| {
-        let is_layered = ["coat.", "thin_film."]
-            .iter()
-            .any(|group| parameter.key.starts_with(group));
-        !(is_layered && parameter.key.ends_with("_texture"))
-    }) {
+    for parameter in PARAMETERS
+        .iter()
+        // Switches that do nothing without a texture.
+        .filter(|parameter| {
+            let is_of_layer = ["coat.", "thin_film."]
+                .iter()
+                .any(|group| parameter.key.starts_with(group));
+            !(is_of_layer && parameter.key.ends_with("_texture"))
+        })
+    {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));
             // Soft ranges lie within what is taken.
