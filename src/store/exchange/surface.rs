@@ -1,15 +1,14 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::coat;
+use super::highlight::highlight;
 use super::report::{Entry, Residual};
-use crate::document::import::ggx_under_texture;
+use super::{coat, film};
 use crate::document::material::{FILM_THICKNESS_MAX, specular_color};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
-use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
-use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
+use crate::optics::lobe::{anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
 
@@ -188,7 +187,7 @@ fn unit(x: f32) -> f32 {
 }
 
 /// To the digits that a file is read by people with.
-fn rounded(x: f32) -> f32 {
+pub(super) fn rounded(x: f32) -> f32 {
     ((f64::from(x) * 1e5).round() / 1e5) as f32
 }
 
@@ -385,11 +384,7 @@ impl Surface {
         if !takes.fuzz {
             taken.fuzz_weight = 0.0;
         }
-        if !takes.film {
-            taken.film_weight = 0.0;
-        } else if !takes.film_weight && taken.film_weight > 0.0 {
-            taken.film_weight = 1.0;
-        }
+        film::take(&mut taken, takes);
         if !takes.transmission {
             taken.transmission_weight = 0.0;
         }
@@ -540,14 +535,6 @@ impl Surface {
         let is_rough = material.diffuse_roughness > 0.0 && material.metalness < 1.0;
         layer(is_rough, takes.diffuse_roughness, "roughness of the diffuse base", none);
         layer(material.fuzz_weight > 0.0, takes.fuzz, "fuzz", none);
-        layer(material.has_film(), takes.film, "thin film", none);
-        let is_partial = material.has_film() && material.film_weight < 1.0 && takes.film;
-        layer(
-            is_partial,
-            takes.film_weight,
-            "the thin film's weight",
-            "the format's film is everywhere",
-        );
         let loses_light = material.lobe.traits().loses_light && material.metalness > 0.0;
         let dims = loses_light && material.multiple_scattering && !takes.scattering;
         layer(dims, false, "multiple scattering between facets", none);
@@ -571,6 +558,7 @@ impl Surface {
             "convert to a glTF model to take them along",
         );
         entries.extend(coat::losses(self, material, takes));
+        entries.extend(film::losses(material, takes));
         entries
     }
 
@@ -594,34 +582,4 @@ impl Surface {
         };
         Entry::approximated(what, law, Some(Residual::reflectance(worst)))
     }
-}
-
-/// The roughness of GGX that looks like a material's highlight, and how near it comes.
-fn highlight(material: &MaterialSettings) -> (f32, Entry) {
-    let what = "highlight";
-    if !material.reflects() {
-        return (material.roughness, Entry::exact("no highlight"));
-    }
-    if matches!(material.lobe, Lobe::Ggx | Lobe::Ggx2018 | Lobe::GgxNdf) {
-        return (material.roughness, Entry::exact(what));
-    }
-    let model = lobe_of_material(material);
-    if !model.has_density() {
-        return (0.0, Entry::exact("highlight, a mirror's"));
-    }
-    let nearest = nearest_ggx(&model);
-    let is_matched = material.textures.roughness && material.lobe.traits().width == Width::Roughness;
-    let roughness = match is_matched {
-        // What its texture multiplies here.
-        true => ggx_under_texture(material.roughness),
-        false => nearest.roughness as f32,
-    };
-    let roughness = rounded(roughness);
-    let detail = format!(
-        "GGX of roughness {roughness} stands for the {} lobe of {}",
-        material.lobe.name(),
-        material.roughness
-    );
-    let residual = Residual::total_variation(nearest.total_variation);
-    (roughness, Entry::approximated(what, detail, Some(residual)))
 }
