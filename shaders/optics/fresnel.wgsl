@@ -54,7 +54,7 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
             if shows_film(terms) {
-                channels = film_on_conductor(terms, cosine, channels);
+                channels = film_on_conductor(terms.film, cosine, terms.eta, terms.k, channels);
             }
             return terms.weight * terms.tint * channels;
         }
@@ -81,6 +81,22 @@ fn fresnel_parts(terms: FresnelTerms, cosine: f32) -> FresnelParts {
         parts.metal = clamp(parts.metal + film_change_of_metal(terms, cosine), vec3f(0.0), vec3f(1.0));
     }
     return parts;
+}
+
+fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
+    if !(terms.metalness < 1.0) {
+        return vec3f(0.0);
+    }
+    let height = safe_sqrt(refracted_square(max(cosine, LEAST_FILM_COSINE), terms.ior));
+    return -(min(terms.tint, vec3f(1.0)) * film_passed(terms.film, terms.ior, cosine, height)) * terms.weight;
+}
+
+fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
+    if !(terms.metalness > 0.0) {
+        return vec3f(0.0);
+    }
+    let bare = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
+    return film_on_metal(terms.film, cosine, terms.metal_f0, terms.edge_tint, bare) * terms.metal_tint;
 }
 
 fn half_vector_cosine(wo: vec3f, wi: vec3f) -> f32 {
@@ -144,7 +160,7 @@ fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
         left = white - fresnel(full, cosine);
     }
     if shows_film(terms) && (terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC) {
-        left += min(terms.tint, white) * film_passed(terms, cosine, terms.ior * behind);
+        left += min(terms.tint, white) * film_passed(terms.film, terms.ior, cosine, terms.ior * behind);
     }
     return max(white * (1.0 - terms.weight) + left * terms.weight, vec3f(0.0));
 }

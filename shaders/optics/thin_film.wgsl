@@ -1,5 +1,4 @@
 // A thin film within which light interferes. Twin of src/optics/thin_film.rs.
-#import "optics/fresnel"
 #import "optics/numeric"
 #import "optics/refraction"
 
@@ -13,50 +12,35 @@ struct FilmTerms {
     path: vec3f,
 }
 
-fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
-    if !(terms.metalness < 1.0) {
-        return vec3f(0.0);
-    }
-    let height = safe_sqrt(refracted_square(max(cosine, LEAST_FILM_COSINE), terms.ior));
-    return -(min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, height)) * terms.weight;
-}
-
-fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
-    if !(terms.metalness > 0.0) {
-        return vec3f(0.0);
-    }
-    return film_on_metal(terms, max(cosine, LEAST_FILM_COSINE)) * terms.metal_tint;
-}
-
-fn film_passed(terms: FresnelTerms, from_normal: f32, height: f32) -> vec3f {
+fn film_passed(film: FilmTerms, ior: f32, from_normal: f32, height: f32) -> vec3f {
     let cosine = max(from_normal, LEAST_FILM_COSINE);
-    let behind = vec4f(height, 0.0, height / (terms.ior * terms.ior), 0.0);
+    let behind = vec4f(height, 0.0, height / (ior * ior), 0.0);
     let bare = entered_bare(cosine, behind);
-    return (entered(terms.film, cosine, mat3x4f(behind, behind, behind)) - vec3f(bare)) * terms.film.weight;
+    return (entered(film, cosine, mat3x4f(behind, behind, behind)) - vec3f(bare)) * film.weight;
 }
 
-fn film_on_conductor(terms: FresnelTerms, from_normal: f32, bare: vec3f) -> vec3f {
+fn film_on_conductor(film: FilmTerms, from_normal: f32, eta: vec3f, k: vec3f, bare: vec3f) -> vec3f {
     let cosine = max(from_normal, LEAST_FILM_COSINE);
     var behind = mat3x4f();
     for (var channel = 0u; channel < 3u; channel++) {
-        behind[channel] = admittances(cosine, terms.eta[channel], terms.k[channel]);
+        behind[channel] = admittances(cosine, eta[channel], k[channel]);
     }
-    let filmed = vec3f(1.0) - entered(terms.film, cosine, behind);
-    return mix(bare, max(filmed, vec3f(0.0)), terms.film.weight);
+    let filmed = vec3f(1.0) - entered(film, cosine, behind);
+    return mix(bare, max(filmed, vec3f(0.0)), film.weight);
 }
 
-fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
+fn film_on_metal(film: FilmTerms, from_normal: f32, f0: vec3f, edge: vec3f, bare: vec3f) -> vec3f {
+    let cosine = max(from_normal, LEAST_FILM_COSINE);
     var behind = mat3x4f();
-    var bare = vec3f(0.0);
+    var without = vec3f(0.0);
     for (var channel = 0u; channel < 3u; channel++) {
-        let index = index_of_colors(terms.metal_f0[channel], terms.edge_tint[channel]);
+        let index = index_of_colors(f0[channel], edge[channel]);
         behind[channel] = admittances(cosine, index.x, index.y);
-        bare[channel] = max(entered_bare(cosine, behind[channel]), FILM_TINY);
+        without[channel] = max(entered_bare(cosine, behind[channel]), FILM_TINY);
     }
-    let scale = entered(terms.film, cosine, behind) / bare;
-    let reflected = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
-    let lost = vec3f(1.0) - reflected;
-    return max((lost - lost * scale) * terms.film.weight + reflected, vec3f(0.0)) - reflected;
+    let scale = entered(film, cosine, behind) / without;
+    let lost = vec3f(1.0) - bare;
+    return max((lost - lost * scale) * film.weight + bare, vec3f(0.0)) - bare;
 }
 
 fn index_of_colors(f0: f32, edge: f32) -> vec2f {

@@ -9,7 +9,6 @@ use crate::named::named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::thin_film::has_film;
 
 /// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
 pub const SPECULAR_COLOR_MAX: f32 = 1000.0;
@@ -218,7 +217,7 @@ impl MaterialSettings {
 
     /// True where a thin film changes the reflection.
     pub fn has_film(&self) -> bool {
-        self.reflects() && has_film(self.fresnel_model(), self.film_weight, self.film_thickness)
+        self.reflects() && self.fresnel_model() != Fresnel::None && self.film_weight > 0.0 && self.film_thickness > 0.0
     }
 
     /// The Fresnel model that counts: only the exact equations know total reflection.

@@ -6,8 +6,8 @@
 
 use super::frame::frame_from_normal;
 use super::fresnel::{
-    Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
-    half_vector_cosine,
+    Fresnel, FresnelTerms, edge_darkening, edge_shape, film_change_of_dielectric, film_change_of_metal, fresnel,
+    fresnel_dielectric, fresnel_f0, fresnel_schlick, half_vector_cosine,
 };
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::Material;
@@ -15,7 +15,7 @@ use super::random::even_point;
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
-use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
+use super::thin_film::mean_facet;
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.

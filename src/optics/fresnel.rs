@@ -2,7 +2,7 @@
 
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
-use super::thin_film::{FilmTerms, film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
+use super::thin_film::{FilmTerms, LEAST_FILM_COSINE, film_on_conductor, film_on_metal, film_passed};
 use super::vector::{Vec3, vec3};
 use crate::named::named;
 
@@ -71,7 +71,7 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
             if terms.has_film {
-                channels = film_on_conductor(terms, cosine, channels);
+                channels = film_on_conductor(&terms.film, cosine, [terms.eta, terms.k], channels);
             }
             channels * terms.tint * terms.weight
         }
@@ -95,6 +95,35 @@ pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2
         in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
         in_unit(parts[1] + film_change_of_metal(terms, cosine)),
     ]
+}
+
+/// The change by a thin film of what the dielectric of a surface reflects, tint included.
+#[inline(always)]
+pub fn film_change_of_dielectric<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+    if !terms.metalness.less(T::one()).any() {
+        return Vec3::zero();
+    }
+    let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
+    let passed = T::out_of_line(
+        #[inline(always)]
+        || film_passed(&terms.film, terms.ior, cosine, height),
+    );
+    -(terms.tint.map(|x| x.min(T::one())) * passed) * terms.weight
+}
+
+/// The change by a thin film of what the metal of a surface reflects, tint included.
+#[inline(always)]
+pub fn film_change_of_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+    if !T::zero().less(terms.metalness).any() {
+        return Vec3::zero();
+    }
+    let colors = [terms.metal_f0, terms.edge_tint];
+    let bare = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
+    let changed = T::out_of_line(
+        #[inline(always)]
+        || film_on_metal(&terms.film, cosine, colors, bare),
+    );
+    changed * terms.metal_tint
 }
 
 /// Each channel brought into [0, 1].
@@ -237,7 +266,7 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
         }
     };
     if terms.has_film && matches!(terms.model, Fresnel::Schlick | Fresnel::Dielectric) {
-        left += terms.tint.map(|x| x.min(T::one())) * film_passed(terms, cosine, terms.ior * behind);
+        left += terms.tint.map(|x| x.min(T::one())) * film_passed(&terms.film, terms.ior, cosine, terms.ior * behind);
     }
     (white * (T::one() - terms.weight) + left * terms.weight).at_least_zero()
 }

@@ -256,7 +256,7 @@ material! {
         film_weight: T,
         /// Index of refraction of the thin film.
         film_ior: T,
-        /// 1 if there is a thin film ([`has_film`](super::thin_film::has_film)).
+        /// 1 if there is a thin film that changes what is reflected.
         has_film: u32,
         /// The texture that multiplies the weight of the thin film, or [`NO_TEXTURE`].
         film_texture: u32,

@@ -136,9 +136,13 @@ fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samp
     };
     // A film shares the light otherwise, by its mean over the channels.
     let film = |cosine: f64| match terms.has_film {
-        true => {
-            film_passed(&terms, cosine, refracted_square(cosine, terms.ior).safe_sqrt()).dot(Vec3::splat(1.0 / 3.0))
-        }
+        true => film_passed(
+            &terms.film,
+            terms.ior,
+            cosine,
+            refracted_square(cosine, terms.ior).safe_sqrt(),
+        )
+        .dot(Vec3::splat(1.0 / 3.0)),
         false => 0.0,
     };
     let reflects = |cosine: f64| fresnel_dielectric(cosine, terms.ior) - film(cosine);

@@ -9,8 +9,7 @@
 //! known by colours from the complex index that has them (Gulbrandsen, "Artist friendly metallic Fresnel", 2014). A film of
 //! no thickness so changes nothing.
 
-use super::fresnel::{Fresnel, FresnelTerms, fresnel_metal};
-use super::real::{Mask, Real};
+use super::real::Real;
 use super::refraction::refracted_square;
 use super::vector::{Vec3, vec3};
 
@@ -59,74 +58,47 @@ pub fn film_path(thickness_um: f32) -> Vec3<f32> {
     Vec3::from_f64(WAVELENGTHS_NM.map(phase))
 }
 
-/// The change by the film of what the dielectric of a surface reflects, tint included.
+/// The change by the film of what a dielectric of a relative index lets through. `height` is the index times the cosine
+/// behind.
 #[inline(always)]
-pub fn film_change_of_dielectric<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    if !terms.metalness.less(T::one()).any() {
-        return Vec3::zero();
-    }
-    let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
-    let passed = T::out_of_line(
-        #[inline(always)]
-        || film_passed(terms, cosine, height),
-    );
-    -(terms.tint.map(|x| x.min(T::one())) * passed) * terms.weight
-}
-
-/// The change by the film of what the metal of a surface reflects, tint included.
-#[inline(always)]
-pub fn film_change_of_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    if !T::zero().less(terms.metalness).any() {
-        return Vec3::zero();
-    }
-    let changed = T::out_of_line(
-        #[inline(always)]
-        || film_on_metal(terms, cosine.max(T::from_f64(LEAST_FILM_COSINE))),
-    );
-    changed * terms.metal_tint
-}
-
-/// The change by the film of what a dielectric lets through. `height` is its relative index times the cosine behind it.
-#[inline(always)]
-pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: T) -> Vec3<T> {
+pub fn film_passed<T: Real>(film: &FilmTerms<T>, ior: T, cosine: T, height: T) -> Vec3<T> {
     let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
     let behind = Behind {
         perpendicular: [height, T::zero()],
-        parallel: [height / (terms.ior * terms.ior), T::zero()],
+        parallel: [height / (ior * ior), T::zero()],
     };
     let bare = entered_bare(cosine, behind);
-    (entered(&terms.film, cosine, [behind; 3]) - Vec3::splat(bare)) * terms.film.weight
+    (entered(film, cosine, [behind; 3]) - Vec3::splat(bare)) * film.weight
 }
 
-/// The share reflected by a film on a conductor of `eta` and `k`, untinted.
+/// The share reflected by a film on a conductor of `eta` and `k` that reflects `bare` without.
 #[inline(always)]
-pub fn film_on_conductor<T: Real>(terms: &FresnelTerms<T>, cosine: T, bare: Vec3<T>) -> Vec3<T> {
+pub fn film_on_conductor<T: Real>(film: &FilmTerms<T>, cosine: T, [eta, k]: [Vec3<T>; 2], bare: Vec3<T>) -> Vec3<T> {
     T::out_of_line(
         #[inline(always)]
         || {
             let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
-            let (eta, k) = (terms.eta, terms.k);
             let behind = [(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)].map(|(eta, k)| admittances(cosine, eta, k));
-            let filmed = Vec3::splat(T::one()) - entered(&terms.film, cosine, behind);
-            bare.mix(filmed.at_least_zero(), terms.film.weight)
+            let filmed = Vec3::splat(T::one()) - entered(film, cosine, behind);
+            bare.mix(filmed.at_least_zero(), film.weight)
         },
     )
 }
 
-/// The change by the film of what a metal known by its colours reflects: its loss is scaled as that of the complex index.
+/// The change by the film of what a metal reflects that is known by its colours, and reflects `bare` without: its loss is
+/// scaled as that of the complex index.
 #[inline(always)]
-fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    let (f0, edge) = (terms.metal_f0, terms.edge_tint);
+pub fn film_on_metal<T: Real>(film: &FilmTerms<T>, cosine: T, [f0, edge]: [Vec3<T>; 2], bare: Vec3<T>) -> Vec3<T> {
+    let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
     let behind = [(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)].map(|(f0, edge)| {
         let [eta, k] = index_of_colors(f0, edge);
         admittances(cosine, eta, k)
     });
-    let filmed = entered(&terms.film, cosine, behind);
+    let filmed = entered(film, cosine, behind);
     let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(FILM_TINY)));
     let scale = vec3(filmed.x / x, filmed.y / y, filmed.z / z);
-    let reflected = fresnel_metal(f0, edge, cosine);
-    let lost = Vec3::splat(T::one()) - reflected;
-    ((lost - lost * scale) * terms.film.weight + reflected).at_least_zero() - reflected
+    let lost = Vec3::splat(T::one()) - bare;
+    ((lost - lost * scale) * film.weight + bare).at_least_zero() - bare
 }
 
 /// Real and imaginary part of the index of a metal that reflects `f0` at normal incidence, with the edge's tint.
@@ -214,9 +186,4 @@ pub fn mean_facet<T: Real>([constant, grazing]: [T; 2]) -> [T; 2] {
     let share = (grazing / energy.max(T::from_f64(FILM_TINY))).clamp(T::zero(), T::one());
     let cosine = T::one() - share.max(T::from_f64(FILM_TINY)).powf(T::from_f64(0.2));
     [cosine, energy]
-}
-
-/// True where a film changes what a model reflects: not where everything is reflected at any angle.
-pub fn has_film(model: Fresnel, weight: f32, thickness_um: f32) -> bool {
-    model != Fresnel::None && weight > 0.0 && thickness_um > 0.0
 }

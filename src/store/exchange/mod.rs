@@ -5,10 +5,7 @@
 
 mod blender;
 pub mod carried;
-mod coat;
-mod film;
 mod gltf;
-mod highlight;
 mod materialx;
 mod measured;
 mod mitsuba;

@@ -1,9 +1,9 @@
 //! The coat of a material as other programs know it: what they show of it, and what becomes of it.
 
-use super::report::Entry;
-use super::surface::{Surface, Takes};
+use super::{Surface, Takes};
 use crate::document::{CoatLobe, MaterialSettings};
 use crate::optics::lobe::stretch_from_anisotropy;
+use crate::store::exchange::report::Entry;
 
 impl Surface {
     /// The coat's narrower width over its wider one.

@@ -1,8 +1,8 @@
 //! The thin film of a material as other programs know it: what they show of it, and what becomes of it.
 
-use super::report::Entry;
-use super::surface::{Surface, Takes};
+use super::{Surface, Takes};
 use crate::document::MaterialSettings;
+use crate::store::exchange::report::Entry;
 
 /// Leaves of a surface's film what a program takes.
 pub(super) fn take(surface: &mut Surface, takes: &Takes) {

@@ -1,8 +1,11 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::highlight::highlight;
+mod coat;
+mod film;
+mod highlight;
+
+use self::highlight::highlight;
 use super::report::{Entry, Residual};
-use super::{coat, film};
 use crate::document::material::{FILM_THICKNESS_MAX, specular_color};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
@@ -187,7 +190,7 @@ fn unit(x: f32) -> f32 {
 }
 
 /// To the digits that a file is read by people with.
-pub(super) fn rounded(x: f32) -> f32 {
+fn rounded(x: f32) -> f32 {
     ((f64::from(x) * 1e5).round() / 1e5) as f32
 }
 

@@ -1,11 +1,11 @@
 //! The highlight of a material as other programs know it: that of GGX.
 
-use super::report::{Entry, Residual};
-use super::surface::rounded;
+use super::rounded;
 use crate::document::MaterialSettings;
 use crate::document::import::ggx_under_texture;
 use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::lobe::{Lobe, Width};
+use crate::store::exchange::report::{Entry, Residual};
 
 /// The roughness of GGX that looks like a material's highlight, and how near it comes.
 pub(super) fn highlight(material: &MaterialSettings) -> (f32, Entry) {
