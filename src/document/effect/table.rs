@@ -298,13 +298,6 @@ pub static EFFECTS: &[Effect] = &[
         remove: Some(|document| each_material(document, |material| material.coat_weight = 0.0)),
     },
     Effect {
-        id: EffectId::ThinFilm,
-        label: "Thin film",
-        help: "Interference in a film over the surface that reflects: soap, oil, tempered steel.",
-        decide: |facts| facts.needed_by(|m| m.has_film == 1, "has a thin film"),
-        remove: Some(|document| each_material(document, |material| material.film_weight = 0.0)),
-    },
-    Effect {
         id: EffectId::CoatGgx,
         label: "GGX coat",
         help: "A coat that spreads its reflection as GGX does.",
@@ -340,6 +333,13 @@ pub static EFFECTS: &[Effect] = &[
                 }
             });
         }),
+    },
+    Effect {
+        id: EffectId::ThinFilm,
+        label: "Thin film",
+        help: "Interference in a film over the surface that reflects: soap, oil, tempered steel.",
+        decide: |facts| facts.needed_by(|m| m.has_film == 1, "has a thin film"),
+        remove: Some(|document| each_material(document, |material| material.film_weight = 0.0)),
     },
     Effect {
         id: EffectId::Transmission,
