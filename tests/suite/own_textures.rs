@@ -42,17 +42,6 @@ pub fn coated_on_a_box(folder: &Folder) -> Document {
     document
 }
 
-/// The same with a thin film whose thickness the picture gives.
-pub fn filmed_on_a_box(folder: &Folder) -> Document {
-    let mut document = coated_on_a_box(folder);
-    let material = &mut document.materials[0];
-    let picture = material.user_textures.get(TextureTarget::Coat).cloned();
-    material.user_textures.set(TextureTarget::Coat, None);
-    material.put_texture(TextureTarget::FilmThickness, picture.unwrap());
-    (material.coat_weight, material.film_weight, material.film_ior) = (0.0, 1.0, 2.5);
-    document
-}
-
 fn linear(code: u8) -> f64 {
     linear_from_srgb(Vec3::<f64>::splat(f64::from(code) / 255.0)).x
 }

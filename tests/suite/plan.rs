@@ -19,11 +19,12 @@ use glossmith::store::PRESETS;
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
+use crate::own_textures::coated_on_a_box;
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
 use crate::terminator::coarse;
 use crate::textures::{all_at_once, coated_all_over};
+use crate::thin_film::filmed_on_a_box;
 
 type Edit = fn(&mut Document);
 

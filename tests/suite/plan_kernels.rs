@@ -23,12 +23,13 @@ use glossmith::store::PRESETS;
 
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::{coated_on_a_box, filmed_on_a_box};
+use crate::own_textures::coated_on_a_box;
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
 use crate::terminator::coarse;
 use crate::textures::all_at_once;
+use crate::thin_film::filmed_on_a_box;
 
 /// Takes out of a job what the kernel does without whose constant for this effect has this value.
 fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [Material<f32>]) {

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
-use glossmith::document::{MaterialSettings, assign, compile};
+use glossmith::document::{Document, MaterialSettings, assign, compile};
 use glossmith::job::probe::{DrawQuestion, MaterialView, ProbeScene};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_metal};
@@ -15,12 +15,15 @@ use glossmith::optics::real::Scalar;
 use glossmith::optics::thin_film::{FilmTerms, WAVELENGTHS_NM, film_path, index_of_colors};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::scene::texture::TextureTarget;
 use glossmith::store::preset::{load_material, material_by_name};
 use glossmith::store::save_material;
 use glossmith::study::evaluate::Evaluator;
 use glossmith::study::probe::Prober;
 
 use crate::cli_support::Workplace;
+use crate::gltf_builder::Folder;
+use crate::own_textures::coated_on_a_box;
 
 const CPU: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Single);
 const EXACT: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Double);
@@ -73,6 +76,17 @@ const GLASS: [&str; 2] = ["base.metalness=0", "transmission.weight=1"];
 
 fn filmed(base: &[&str], more: &[&str]) -> MaterialSettings {
     material(&[base, &["thin_film.weight=1", "thin_film.ior=2"], more].concat())
+}
+
+/// A ball with a thin film whose thickness a picture on a box gives.
+pub fn filmed_on_a_box(folder: &Folder) -> Document {
+    let mut document = coated_on_a_box(folder);
+    let material = &mut document.materials[0];
+    let picture = material.user_textures.get(TextureTarget::Coat).cloned();
+    material.user_textures.set(TextureTarget::Coat, None);
+    material.put_texture(TextureTarget::FilmThickness, picture.unwrap());
+    (material.coat_weight, material.film_weight, material.film_ior) = (0.0, 1.0, 2.5);
+    document
 }
 
 #[test]
