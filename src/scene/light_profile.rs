@@ -149,7 +149,7 @@ fn rows_around(angles: &[f32]) -> Result<Vec<(f32, usize)>, String> {
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     rows.dedup_by(|a, b| near(a.0, b.0));
     let start = rows[0];
-    let is_whole = near(start.0, 0.0) && (rows[rows.len() - 1].0 > 180.0);
+    let is_whole = near(start.0, 0.0) && rows[rows.len() - 1].0 > 180.0 - ANGLE_ERROR_DEG;
     if !is_whole {
         return Err("its horizontal angles go neither around nor to 90 or 180 degrees".to_owned());
     }

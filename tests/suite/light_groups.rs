@@ -280,7 +280,7 @@ fn the_window_mixes_what_has_been_rendered() {
     spin(&mut harness, "Mix of environment", 0.0);
     let is_dark = |harness: &Editor| picture(harness).iter().all(|[r, g, b, _]| r + g + b == 0.0);
     assert!(is_dark(&harness), "{:?}", harness.state().document().lighting.light_mix);
-    assert_eq!(samples(&harness), spent, "nothing is rendered anew");
+    assert_eq!(samples(&harness), spent, "nothing is rendered again");
     spin(&mut harness, "Mix of environment", 1.0);
     assert!(!is_dark(&harness) && picture(&harness) != all);
     spin(&mut harness, "Mix of Key-light", 1.0);

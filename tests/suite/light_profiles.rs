@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
 use glossmith::app::Options;
@@ -203,7 +204,9 @@ fn a_profile_is_chosen_dropped_and_removed_in_the_window() {
         ("broken.ies", None),
         ("lamp.ies", Some(ProfileFile::new(&place.path("lamp.ies")))),
     ] {
-        harness.get_by_label("Area light 1 profile").click_accesskit();
+        harness
+            .get_by_role_and_label(Role::Button, "Area light 1 profile")
+            .click_accesskit();
         harness.run_steps(3);
         type_path(&mut harness, &place.path(name), "Open");
         settle(&mut harness);

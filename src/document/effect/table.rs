@@ -71,7 +71,7 @@ pub static EFFECTS: &[Effect] = &[
             ) {
                 (true, _) => Decision::on("an area light is a spot"),
                 (_, true) => Decision::on("an area light has a profile"),
-                _ => Decision::off("no area light is a spot or has a profile"),
+                _ => Decision::off("no light is a spot or has a profile"),
             }
         },
         remove: Some(|document| {
