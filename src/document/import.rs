@@ -123,6 +123,8 @@ impl MaterialSettings {
             (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
             (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
         }
+        (material.fuzz_weight, material.fuzz_color) = (unit(slot.fuzz), slot.fuzz_color.map(unit));
+        material.fuzz_roughness = unit(slot.fuzz_roughness);
         material.film_weight = unit(slot.film);
         material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);
         material.film_ior = slot.film_ior.clamp(1.0, 3.0);

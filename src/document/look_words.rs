@@ -41,6 +41,7 @@ impl MaterialSettings {
             ),
             (self.coat_weight > 0.0, "lacquered coated"),
             (self.fuzz_weight > 0.0, "cloth fabric soft"),
+            (self.has_film(), "iridescent film"),
             (self.emission_strength > 0.0, "glowing light"),
         ];
         words.extend(kinds.into_iter().filter(|(is, _)| *is).map(|(_, word)| word));

@@ -275,6 +275,12 @@ pub struct Slot {
     pub coat_on_base: bool,
     /// Share of its darkening that shows, in [0, 1].
     pub coat_darkening: f32,
+    /// Share of the surface that has fuzz, in [0, 1] (KHR_materials_sheen, the draft KHR_materials_fuzz).
+    pub fuzz: f32,
+    /// Tint of the fuzz, linear RGB in [0, 1].
+    pub fuzz_color: [f32; 3],
+    /// Roughness of the fuzz in [0, 1].
+    pub fuzz_roughness: f32,
     /// Share of the surface that has a thin film, in [0, 1] (KHR_materials_iridescence).
     pub film: f32,
     /// Index of refraction of the thin film, at least 1.
@@ -337,6 +343,9 @@ impl Default for Slot {
             coat_anisotropy: 0.0,
             coat_on_base: false,
             coat_darkening: 0.0,
+            fuzz: 0.0,
+            fuzz_color: [1.0; 3],
+            fuzz_roughness: 0.5,
             film: 0.0,
             film_ior: 1.3,
             film_thickness: 0.4,

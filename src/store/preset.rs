@@ -18,6 +18,7 @@ use crate::document::{
     MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
 };
 use crate::import::kept_keys;
+use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::scene::path_text::path_of_text;
 use crate::scene::texture::TextureTarget;
 
@@ -47,10 +48,13 @@ pub const SHIPPED: &[(&str, &[&str])] = shipped! {
         "lacquered-walnut" "lacquered-oak" "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red";
     "Metals":
         "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
-        "copper" "platinum" "titanium" "cast-iron" "mercury" "tempered-steel";
+        "copper" "platinum" "titanium" "cast-iron" "mercury";
     "Glass and liquids":
         "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass"
-        "diamond" "soap-film";
+        "diamond";
+    "Films and anodised metals":
+        "soap-film" "oil-on-water" "tempered-steel" "anodised-titanium-blue" "anodised-titanium-gold"
+        "anodised-titanium-magenta";
 };
 
 /// The shipped materials, in the order of the menus.
@@ -280,6 +284,24 @@ fn show_iridescence(values: &mut Map<String, Json>) {
     }
 }
 
+/// Turns what older files kept of glTF's sheen into fuzz.
+fn show_sheen(values: &mut Map<String, Json>) {
+    let roughness = values.shift_remove("sheen.roughness").and_then(|value| value.as_f64());
+    let Some(Json::Array(color)) = values.shift_remove("sheen.color") else {
+        return;
+    };
+    let channel = |i: usize| color.get(i).and_then(Json::as_f64).unwrap_or(0.0).clamp(0.0, 1.0) as f32;
+    let (weight, tint, roughness) = fuzz_of_sheen([0, 1, 2].map(channel), roughness.unwrap_or(0.0) as f32);
+    let fuzz = [
+        ("fuzz.weight", json!(weight)),
+        ("fuzz.color", json!(tint)),
+        ("fuzz.roughness", json!(roughness)),
+    ];
+    for (key, value) in fuzz {
+        values.entry(key).or_insert(value);
+    }
+}
+
 /// From `{"name": …, "material": {…}}`.
 impl TryFrom<Map<String, Json>> for MaterialSettings {
     type Error = MaterialError;
@@ -296,6 +318,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             None => Map::new(),
         };
         show_iridescence(&mut values);
+        show_sheen(&mut values);
         let has_coat = values.get("coat.weight").and_then(Json::as_f64) > Some(0.0);
         if has_coat && !values.contains_key("coat.on_base") {
             // From before coats changed what lies below them.

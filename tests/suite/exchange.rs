@@ -333,7 +333,7 @@ fn documents_of_materialx_are_read_and_graphs_are_named() {
 </materialx>"#;
     place.write("fabric.mtlx", document.as_bytes());
     let run = place.done("convert fabric.mtlx fabric.json --import-lobe ggx");
-    for words in ["the mean of checker.png", "wobble", "sheen"] {
+    for words in ["the mean of checker.png", "wobble", "fuzz of about its albedo"] {
         assert!(run.stderr.contains(words), "{words}: {}", run.stderr);
     }
     let material = load_material(&place.path("fabric.json")).unwrap().value;

@@ -188,11 +188,10 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
 #[test]
 fn what_cannot_be_shown_yet_is_kept_in_the_material() {
     let model = slot_of(&json!({"extensions": {
-        "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 1.0], "sheenRoughnessFactor": 0.5},
         "KHR_materials_dispersion": {"dispersion": 0.0},
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
     }}));
-    says(&model, Fate::Ignored, "sheen, kept in the material");
+    says(&model, Fate::Ignored, "diffuse transmission, kept in the material");
     assert!(
         !model
             .report
@@ -210,8 +209,31 @@ fn what_cannot_be_shown_yet_is_kept_in_the_material() {
         (read.value.extra.clone(), read.warnings),
         (material.extra, Vec::<String>::new())
     );
-    assert_eq!(read.value.extra["sheen.color"], json!([0.5, 0.25, 1.0]));
     assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
+}
+
+/// A sheen comes as fuzz of about its albedo, and older files that kept it show it.
+#[test]
+fn sheens_are_fuzz() {
+    let sheen = json!({"sheenColorFactor": [0.5, 0.25, 0.0], "sheenRoughnessFactor": 0.5});
+    let model = slot_of(&json!({"extensions": {"KHR_materials_sheen": sheen}}));
+    says(&model, Fate::Approximated, "a sheen, as fuzz of about its albedo");
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    assert_eq!((material.fuzz_weight, material.fuzz_color), (0.5, [1.0, 0.5, 0.0]));
+    assert!((material.fuzz_roughness - 0.55).abs() < 1e-6);
+    let folder = Folder::new();
+    let path = folder.path("older.json");
+    let kept = json!({"sheen.color": [0.5, 0.25, 0.0], "sheen.roughness": 0.5});
+    std::fs::write(&path, json!({"glossmith": 1, "material": kept}).to_string()).unwrap();
+    let older = glossmith::store::load_material(&path).unwrap();
+    assert!(older.warnings.is_empty(), "{:?}", older.warnings);
+    let fuzz = |of: &glossmith::document::MaterialSettings| (of.fuzz_weight, of.fuzz_color, of.fuzz_roughness);
+    assert_eq!(fuzz(&older.value), fuzz(&material));
+    // The draft has the numbers themselves, and goes before the sheen that stands beside it.
+    let draft = json!({"fuzzFactor": 0.25, "fuzzColorFactor": [1, 0, 1], "fuzzRoughnessFactor": 0.75});
+    let model = slot_of(&json!({"extensions": {"KHR_materials_sheen": sheen, "KHR_materials_fuzz": draft}}));
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    assert_eq!(fuzz(&material), (0.25, [1.0, 0.0, 1.0], 0.75));
 }
 
 #[test]

@@ -20,7 +20,7 @@ use crate::scene::report::{Fate, ImportReport};
 /// The extensions of buffer views and buffers.
 pub(super) const MESHOPT_EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// Extensions that are supported or irrelevant.
-const UNDERSTOOD: [&str; 32] = [
+const UNDERSTOOD: [&str; 33] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -37,6 +37,7 @@ const UNDERSTOOD: [&str; 32] = [
     "KHR_materials_ior",
     "KHR_materials_iridescence",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_fuzz",
     "KHR_materials_sheen",
     "KHR_materials_specular",
     "KHR_materials_transmission",

@@ -137,6 +137,35 @@ impl Default for Iridescence {
     }
 }
 
+/// KHR_materials_sheen.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Sheen {
+    pub sheen_color_factor: [f32; 3],
+    pub sheen_color_texture: Option<TextureInfo>,
+    pub sheen_roughness_factor: f32,
+    pub sheen_roughness_texture: Option<TextureInfo>,
+}
+
+/// The draft KHR_materials_fuzz.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Fuzz {
+    pub fuzz_factor: f32,
+    pub fuzz_color_factor: [f32; 3],
+    pub fuzz_roughness_factor: f32,
+}
+
+impl Default for Fuzz {
+    fn default() -> Self {
+        Self {
+            fuzz_factor: 0.0,
+            fuzz_color_factor: [1.0; 3],
+            fuzz_roughness_factor: 0.5,
+        }
+    }
+}
+
 /// KHR_materials_specular.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
@@ -223,10 +252,12 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
         is_there && extension::<T>(material, name).is_none()
     }
     type Check = fn(&Json, &str) -> bool;
-    let checks: [(&'static str, Check); 9] = [
+    let checks: [(&'static str, Check); 11] = [
         ("KHR_materials_coat", is_unreadable::<Coat>),
         ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
         ("KHR_materials_iridescence", is_unreadable::<Iridescence>),
+        ("KHR_materials_sheen", is_unreadable::<Sheen>),
+        ("KHR_materials_fuzz", is_unreadable::<Fuzz>),
         ("KHR_materials_specular", is_unreadable::<Specular>),
         ("KHR_materials_anisotropy", is_unreadable::<Anisotropy>),
         ("KHR_materials_diffuse_roughness", is_unreadable::<DiffuseRoughness>),
@@ -252,16 +283,7 @@ struct Kept {
 }
 
 /// Extensions that are not supported yet.
-const KEPT: [Kept; 3] = [
-    Kept {
-        extension: "KHR_materials_sheen",
-        weight: "sheenColorFactor",
-        values: &[
-            ("sheenColorFactor", "sheen.color"),
-            ("sheenRoughnessFactor", "sheen.roughness"),
-        ],
-        what: "sheen",
-    },
+const KEPT: [Kept; 2] = [
     Kept {
         extension: "KHR_materials_dispersion",
         weight: "dispersion",

@@ -15,7 +15,6 @@ const TAKES: Takes = Takes {
     absorption: false,
     coat_stretch: false,
     coat_on_base: false,
-    fuzz: false,
     film_weight: false,
     scattering: true,
     weighs_metal: false,
@@ -94,6 +93,10 @@ fn call(surface: &Surface, exact: &str) -> String {
         ("Coat Roughness", surface.coat_roughness.to_string()),
         ("Coat IOR", surface.coat_ior.to_string()),
         ("Coat Tint", rgba(surface.coat_color)),
+        // Blender's sheen of fibres is the same model.
+        ("Sheen Weight", surface.fuzz_weight.to_string()),
+        ("Sheen Roughness", surface.fuzz_roughness.to_string()),
+        ("Sheen Tint", rgba(surface.fuzz_color)),
         ("Emission Color", rgba(emitted)),
         ("Emission Strength", strongest.to_string()),
     ];

@@ -18,10 +18,11 @@ pub use self::table::GLTF_PARAMETERS;
 use super::anisotropy::{convert_widths, widths_from_gltf};
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Coat, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume,
-    coat, extension, kept, unreadable,
+    Anisotropy, Coat, DiffuseRoughness, Fuzz, Iridescence, Sheen, Specular, SpecularGlossiness, TextureInfo,
+    Transmission, Volume, coat, extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
+use crate::optics::layer::fuzz::{fuzz_of_sheen, sheen_of_fuzz};
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
 use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
@@ -393,6 +394,7 @@ impl<'a> Materials<'a> {
         if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
             self.read_film(&film, read, sets);
         }
+        self.read_fuzz(raw, read, &mut means);
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
             read.anisotropy = unit(anisotropy.anisotropy_strength);
             read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;
@@ -432,6 +434,38 @@ impl<'a> Materials<'a> {
             *read.texture_mut(TextureTarget::CoatNormal) =
                 self.texture(Some(normal.info.reference()), sets, &read.name);
             read.coat_normal_scale = normal.scale;
+        }
+    }
+
+    /// Fuzz; the draft takes precedence over a sheen, whose fibres are of another model.
+    fn read_fuzz(&mut self, raw: &Json, read: &mut Slot, means: &mut Vec<(usize, &'static str, Apply)>) {
+        if let Some(fuzz) = extension::<Fuzz>(raw, "KHR_materials_fuzz") {
+            (read.fuzz, read.fuzz_roughness) = (unit(fuzz.fuzz_factor), unit(fuzz.fuzz_roughness_factor));
+            read.fuzz_color = fuzz.fuzz_color_factor.map(unit);
+        } else if let Some(sheen) = extension::<Sheen>(raw, "KHR_materials_sheen") {
+            let color = sheen.sheen_color_factor.map(unit);
+            (read.fuzz, read.fuzz_color, read.fuzz_roughness) =
+                fuzz_of_sheen(color, unit(sheen.sheen_roughness_factor));
+            if read.fuzz == 0.0 {
+                return;
+            }
+            let what = "a sheen, as fuzz of about its albedo";
+            self.report.note(Fate::Approximated, what, &read.name);
+            means.extend(mean(
+                &sheen.sheen_color_texture,
+                "a sheen colour texture, by its mean",
+                |slot, mean| {
+                    slot.fuzz_color = [0, 1, 2].map(|i| slot.fuzz_color[i] * mean.linear[i]);
+                },
+            ));
+            means.extend(mean(
+                &sheen.sheen_roughness_texture,
+                "a sheen roughness texture, by its mean",
+                |slot, mean| {
+                    (_, _, slot.fuzz_roughness) =
+                        fuzz_of_sheen([1.0; 3], sheen_of_fuzz(slot.fuzz_roughness) * mean.codes[3]);
+                },
+            ));
         }
     }
 

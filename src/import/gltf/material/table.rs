@@ -96,10 +96,18 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "specularGlossinessTexture" TEXTURE => To "specular.roughness_texture" "converted texel by texel";
     }
     "/extensions/KHR_materials_sheen/" {
-        "sheenColorFactor" "[0.5, 0.25, 0]" => Kept "sheen.color" "";
-        "sheenColorTexture" TEXTURE => Kept "" "ignored";
-        "sheenRoughnessFactor" "0.25" => Kept "sheen.roughness" "";
-        "sheenRoughnessTexture" TEXTURE => Kept "" "ignored";
+        "sheenColorFactor" "[0.5, 0.25, 0]" => To "fuzz.weight, fuzz.color" "as fuzz of about its albedo";
+        "sheenColorTexture" TEXTURE => To "fuzz.color" "by its mean";
+        "sheenRoughnessFactor" "0.25" => To "fuzz.roughness" "as fuzz of about its albedo";
+        "sheenRoughnessTexture" TEXTURE => To "fuzz.roughness" "by its mean";
+    }
+    "/extensions/KHR_materials_fuzz/" {
+        "fuzzFactor" "0.25" => To "fuzz.weight" "a draft";
+        "fuzzTexture" TEXTURE => Nowhere "a texture of the fuzz" "";
+        "fuzzColorFactor" "[0.5, 0.25, 0]" => To "fuzz.color" "a draft";
+        "fuzzColorTexture" TEXTURE => Nowhere "a texture of the fuzz's colour" "";
+        "fuzzRoughnessFactor" "0.25" => To "fuzz.roughness" "a draft";
+        "fuzzRoughnessTexture" TEXTURE => Nowhere "a texture of the fuzz's roughness" "";
     }
     "/extensions/KHR_materials_iridescence/" {
         "iridescenceFactor" "0.25" => To "thin_film.weight" "";

@@ -4,6 +4,7 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::document::MaterialSettings;
 use crate::import::gltf_from_widths;
+use crate::optics::layer::fuzz::sheen_of_fuzz;
 use crate::scene::{AlphaMode, TextureRef};
 use crate::store::exchange::carried;
 use crate::store::exchange::surface::Surface;
@@ -189,6 +190,24 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
             });
             all.insert(COAT.to_owned(), draft);
         }
+    }
+    if surface.fuzz_weight > 0.0 {
+        all.insert(
+            "KHR_materials_fuzz".to_owned(),
+            json!({
+                "fuzzFactor": surface.fuzz_weight,
+                "fuzzColorFactor": surface.fuzz_color,
+                "fuzzRoughnessFactor": surface.fuzz_roughness,
+            }),
+        );
+        // Readers without the draft take the other.
+        all.insert(
+            "KHR_materials_sheen".to_owned(),
+            json!({
+                "sheenColorFactor": surface.fuzz_color.map(|x| x * surface.fuzz_weight),
+                "sheenRoughnessFactor": sheen_of_fuzz(surface.fuzz_roughness),
+            }),
+        );
     }
     if surface.film_weight > 0.0 {
         let film = json!({

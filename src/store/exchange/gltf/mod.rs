@@ -25,7 +25,7 @@ const TAKES: Takes = Takes {
     law: Law::Schlick,
     eta_and_k: false,
     diffuse_roughness: true,
-    fuzz: false,
+    fuzz: true,
     film: true,
     film_weight: true,
     scattering: true,

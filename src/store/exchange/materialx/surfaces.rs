@@ -5,6 +5,7 @@ use super::inputs::Inputs;
 use super::table;
 use crate::import::{FileParameter, widths_from_gltf};
 use crate::optics::fresnel::fresnel_f0;
+use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::optics::lobe::anisotropy_from_ratio;
 use crate::store::exchange::open_pbr::{NITS, widening};
 use crate::store::exchange::report::Entry;
@@ -110,6 +111,11 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
 }
 
 fn standard_surface(inputs: &mut Inputs) -> Surface {
+    let (fuzz_weight, fuzz_color, fuzz_roughness) = sheen(
+        inputs,
+        [Some("sheen"), Some("sheen_color"), Some("sheen_roughness")],
+        false,
+    );
     let [ratio, coat_ratio] =
         ["specular_anisotropy", "coat_anisotropy"].map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.98));
     let base_color = weighted(inputs.color("base_color"), inputs.number("base"));
@@ -139,6 +145,9 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         coat_ior: inputs.number("coat_IOR"),
         coat_color: inputs.color("coat_color"),
         coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
+        fuzz_weight,
+        fuzz_color,
+        fuzz_roughness,
         // Every thickness but 0 is a film.
         film_weight: f32::from(inputs.number("thin_film_thickness") > 0.0),
         film_thickness: 1e-3 * inputs.number("thin_film_thickness"),
@@ -149,7 +158,26 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
     }
 }
 
+/// Weight, tint and roughness of the fuzz that a sheen looks like, by its strength, colour and the root of its α.
+fn sheen(
+    inputs: &mut Inputs,
+    [strength, color, roughness]: [Option<&str>; 3],
+    is_squared: bool,
+) -> (f32, [f32; 3], f32) {
+    let strength = strength.map_or(1.0, |name| inputs.number(name));
+    let color = color.map_or([1.0; 3], |name| inputs.color(name)).map(|x| x * strength);
+    let root = roughness.map_or(0.5, |name| inputs.number(name));
+    let fuzz = fuzz_of_sheen(color, if is_squared { root } else { root.max(0.0).sqrt() });
+    if fuzz.0 > 0.0 {
+        let detail = "fuzz of about its albedo stands for it";
+        inputs.losses.push(Entry::approximated("sheen", detail, None));
+    }
+    fuzz
+}
+
 fn gltf_pbr(inputs: &mut Inputs) -> Surface {
+    let (fuzz_weight, fuzz_color, fuzz_roughness) =
+        sheen(inputs, [None, Some("sheen_color"), Some("sheen_roughness")], true);
     let distance = inputs.number("attenuation_distance");
     let inside = inputs.color("attenuation_color");
     let color = inputs.color("base_color");
@@ -175,6 +203,9 @@ fn gltf_pbr(inputs: &mut Inputs) -> Surface {
         transmission_depth: distance,
         coat_weight: inputs.number("clearcoat"),
         coat_roughness: inputs.number("clearcoat_roughness"),
+        fuzz_weight,
+        fuzz_color,
+        fuzz_roughness,
         film_weight: inputs.number("iridescence"),
         film_thickness: 1e-3 * inputs.number("iridescence_thickness"),
         film_ior: inputs.number("iridescence_ior"),
@@ -195,6 +226,10 @@ fn gltf_opacity(inputs: &Inputs) -> f32 {
 }
 
 fn disney_principled(inputs: &mut Inputs) -> Surface {
+    // The node has a sheen of no roughness of its own.
+    let (fuzz_weight, _, fuzz_roughness) = sheen(inputs, [Some("sheen"), None, None], true);
+    let tint = inputs.number("sheenTint").clamp(0.0, 1.0);
+    let fuzz_color = inputs.color("baseColor").map(|x| 1.0 + tint * (x - 1.0));
     let base_color = inputs.color("baseColor");
     let specular = inputs.number("specular");
     // MaterialX has the anisotropy of Standard Surface there.
@@ -212,6 +247,9 @@ fn disney_principled(inputs: &mut Inputs) -> Surface {
         transmission_color: base_color,
         coat_weight: inputs.number("clearcoat"),
         coat_roughness: 1.0 - inputs.number("clearcoatGloss"),
+        fuzz_weight,
+        fuzz_color,
+        fuzz_roughness,
         ..Surface::default()
     }
 }

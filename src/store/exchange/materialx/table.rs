@@ -9,7 +9,6 @@ const NORMALS: Goes = Nowhere("textures travel with models; here each parameter 
 const OCCLUSION: Goes = Nowhere("path tracing needs no occlusion");
 const COAT_ALONG: Goes = Nowhere("the coat's highlight lies along the tangent");
 const SCATTERING: Goes = Nowhere("nothing is scattered inside");
-const SHEEN: Goes = Nowhere("sheen is not shown yet");
 const SUBSURFACE: Goes = Nowhere("subsurface scattering is not shown yet");
 const THIN: Goes = Nowhere("what transmits is a solid");
 const TURN: Goes = To("specular.rotation");
@@ -143,9 +142,9 @@ pub(super) const STANDARD_SURFACE: &[FileParameter] = &[
     row("subsurface_radius", WHITE, COLOR, SUBSURFACE).of("subsurface"),
     row("subsurface_scale", "1", "0.5", SUBSURFACE).of("subsurface"),
     row("subsurface_anisotropy", "0", "0.5", SUBSURFACE).of("subsurface"),
-    row("sheen", "0", "0.5", SHEEN),
-    row("sheen_color", WHITE, COLOR, SHEEN).of("sheen"),
-    row("sheen_roughness", "0.3", "0.5", SHEEN).of("sheen"),
+    unit("sheen", "0", "0.5", To("fuzz.weight")).with_note("as fuzz of about its albedo"),
+    unit("sheen_color", WHITE, COLOR, To("fuzz.color")).of("sheen"),
+    unit("sheen_roughness", "0.3", "0.5", To("fuzz.roughness")).of("sheen"),
     unit("coat", "0", "0.5", To("coat.weight")),
     unit("coat_color", WHITE, COLOR, To("coat.color")).of("coat"),
     unit("coat_roughness", "0.1", "0.5", To("coat.roughness")).of("coat"),
@@ -209,8 +208,8 @@ pub(super) const GLTF_PBR: &[FileParameter] = &[
     row("iridescence_thickness", "100", "500", To("thin_film.thickness"))
         .within(0.0, 10_000.0)
         .of("iridescence"),
-    row("sheen_color", BLACK, COLOR, SHEEN),
-    row("sheen_roughness", "0", "0.5", SHEEN).of("sheen_color"),
+    unit("sheen_color", BLACK, COLOR, To("fuzz.weight, fuzz.color")).with_note("as fuzz of about its albedo"),
+    unit("sheen_roughness", "0", "0.5", To("fuzz.roughness")).of("sheen_color"),
     unit("clearcoat", "0", "0.5", To("coat.weight")),
     unit("clearcoat_roughness", "0", "0.5", To("coat.roughness")).of("clearcoat"),
     direction("clearcoat_normal", NORMALS),
@@ -271,8 +270,8 @@ pub(super) const DISNEY_PRINCIPLED: &[FileParameter] = &[
         "0.5",
         Nowhere("reflections of a dielectric are white"),
     ),
-    row("sheen", "0", "0.5", SHEEN),
-    row("sheenTint", "0.5", "0.25", SHEEN).of("sheen"),
+    unit("sheen", "0", "0.5", To("fuzz.weight")).with_note("as fuzz of about its albedo"),
+    unit("sheenTint", "0.5", "0.25", To("fuzz.color")).of("sheen"),
     unit("clearcoat", "0", "0.5", To("coat.weight")),
     unit("clearcoatGloss", "1", "0.5", To("coat.roughness")).of("clearcoat"),
     unit("specTrans", "0", "0.5", To("transmission.weight")),
