@@ -1,0 +1,85 @@
+//! Layers of a material that lie over its base: coat, fuzz, thin film.
+
+use serde_json::Value as Json;
+
+use super::{Apply, IOR_MAX, Materials, mean, not_negative, unit};
+use crate::gltf::anisotropy::widths_from_gltf;
+use crate::gltf::material_extensions::{Coat, Fuzz, Iridescence, Sheen, TextureInfo, extension};
+use crate::optics::layer::fuzz::{fuzz_of_sheen, sheen_of_fuzz};
+use crate::scene::Slot;
+use crate::scene::report::Fate;
+use crate::scene::texture::TextureTarget;
+
+impl Materials<'_> {
+    pub(super) fn read_coat(&mut self, coat: &Coat, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        read.coat = unit(coat.coat_factor);
+        let widths = widths_from_gltf(unit(coat.coat_roughness_factor), unit(coat.coat_anisotropy_strength));
+        (read.coat_roughness, read.coat_anisotropy) = (widths.roughness, widths.stretch);
+        read.coat_ior = coat.coat_ior.clamp(1.0, IOR_MAX);
+        read.coat_color = coat.coat_color_factor.map(unit);
+        (read.coat_on_base, read.coat_darkening) = (coat.is_on_base, unit(coat.coat_darkening_factor));
+        if read.coat == 0.0 {
+            return;
+        }
+        if coat.is_on_base {
+            let what = "a coat of the draft KHR_materials_coat, as OpenPBR has it";
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
+        let place = |info: &Option<TextureInfo>| info.as_ref().map(TextureInfo::reference);
+        *read.texture_mut(TextureTarget::Coat) = self.texture(place(&coat.coat_texture), sets, &read.name);
+        *read.texture_mut(TextureTarget::CoatRoughness) =
+            self.texture(place(&coat.coat_roughness_texture), sets, &read.name);
+        *read.texture_mut(TextureTarget::CoatColor) = self.texture(place(&coat.coat_color_texture), sets, &read.name);
+        if let Some(normal) = &coat.coat_normal_texture {
+            *read.texture_mut(TextureTarget::CoatNormal) =
+                self.texture(Some(normal.info.reference()), sets, &read.name);
+            read.coat_normal_scale = normal.scale;
+        }
+    }
+
+    /// Fuzz; the draft takes precedence over a sheen, whose fibres are of another model.
+    pub(super) fn read_fuzz(&mut self, raw: &Json, read: &mut Slot, means: &mut Vec<(usize, &'static str, Apply)>) {
+        if let Some(fuzz) = extension::<Fuzz>(raw, "KHR_materials_fuzz") {
+            (read.fuzz, read.fuzz_roughness) = (unit(fuzz.fuzz_factor), unit(fuzz.fuzz_roughness_factor));
+            read.fuzz_color = fuzz.fuzz_color_factor.map(unit);
+        } else if let Some(sheen) = extension::<Sheen>(raw, "KHR_materials_sheen") {
+            let color = sheen.sheen_color_factor.map(unit);
+            (read.fuzz, read.fuzz_color, read.fuzz_roughness) =
+                fuzz_of_sheen(color, unit(sheen.sheen_roughness_factor));
+            if read.fuzz == 0.0 {
+                return;
+            }
+            let what = "a sheen, as fuzz of about its albedo";
+            self.report.note(Fate::Approximated, what, &read.name);
+            means.extend(mean(
+                &sheen.sheen_color_texture,
+                "a sheen colour texture, by its mean",
+                |slot, mean| {
+                    slot.fuzz_color = [0, 1, 2].map(|i| slot.fuzz_color[i] * mean.linear[i]);
+                },
+            ));
+            means.extend(mean(
+                &sheen.sheen_roughness_texture,
+                "a sheen roughness texture, by its mean",
+                |slot, mean| {
+                    (_, _, slot.fuzz_roughness) =
+                        fuzz_of_sheen([1.0; 3], sheen_of_fuzz(slot.fuzz_roughness) * mean.codes[3]);
+                },
+            ));
+        }
+    }
+
+    /// A thin film. Without a texture it has the largest thickness.
+    pub(super) fn read_film(&mut self, film: &Iridescence, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        read.film = unit(film.iridescence_factor);
+        read.film_ior = film.iridescence_ior.max(1.0);
+        let thicknesses = [film.iridescence_thickness_minimum, film.iridescence_thickness_maximum];
+        [read.film_thickness_min, read.film_thickness] = thicknesses.map(|nm| 1e-3 * not_negative(nm));
+        if read.film > 0.0 {
+            let [weight, thickness] = [&film.iridescence_texture, &film.iridescence_thickness_texture]
+                .map(|texture| texture.as_ref().map(TextureInfo::reference));
+            *read.texture_mut(TextureTarget::Film) = self.texture(weight, sets, &read.name);
+            *read.texture_mut(TextureTarget::FilmThickness) = self.texture(thickness, sets, &read.name);
+        }
+    }
+}
