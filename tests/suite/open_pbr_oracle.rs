@@ -7,6 +7,8 @@
 use std::fmt::Write as _;
 
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
+use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
+use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Precision};
 use glossmith::store::exchange::{ReadOptions, find};
@@ -139,21 +141,105 @@ fn coats_have_the_oracle_s_lobe() {
     assert_values("coat", 3e-3, true);
 }
 
+/// What a coat is held to where the oracle leaves the specification (its notes list nine such places).
+enum Coated {
+    /// The oracle's own albedos within this.
+    Oracle(f64),
+    /// The darkening by the specification's closed form: the oracle takes averages of the Fresnel factor, and for a smooth
+    /// base the mean over all directions instead of the view's.
+    Darkening,
+    /// Between no coat and a whole one: the oracle blends other quantities for a coat in part.
+    InPart,
+    /// The oracle's way of light through the coat once: here refracted light finds no coat on its way out, and pays it on the
+    /// way in.
+    Refracted,
+}
+
+fn held_to(name: &str) -> Coated {
+    match name {
+        _ if name.contains("w0.5") => Coated::InPart,
+        "coat_ior2.0" | "coat_metal" | "coat_metal_rough_coat" | "coat_r1" => Coated::Darkening,
+        "trans_coat_color" => Coated::Refracted,
+        // Its table of fuzz is a fit here.
+        _ if name.starts_with("fuzz") => Coated::Oracle(0.02),
+        // Albedos of stretched lobes are those of one azimuth.
+        "coat_aniso" | "furnace_coat_trans" => Coated::Oracle(0.015),
+        _ => Coated::Oracle(0.01),
+    }
+}
+
 #[test]
 fn coats_over_bases_have_the_oracle_s_albedo() {
     let place = Workplace::new();
+    let mut worst = (0.0_f64, "");
     for (name, inputs, cells) in rows("coated") {
-        let material = material(&place, inputs, false);
-        let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
         let numbers: Vec<f64> = cells[1..].iter().map(|cell| cell.parse().unwrap()).collect();
-        let found = evaluator.albedo(numbers[0], 1 << 14, 1).unwrap();
-        let all = found.reflected.into_iter().chain(found.transmitted);
-        let off: Vec<f64> = all
-            .zip(&numbers[1..])
-            .map(|(value, expected)| value - expected)
-            .collect();
-        println!("{name} {} {off:.4?}", numbers[0]);
+        let cosine = numbers[0];
+        let albedo = |more: &str| {
+            let material = material(&place, &format!("{inputs}{more}"), false);
+            let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
+            (evaluator.albedo(cosine, 1 << 14, 1).unwrap(), material)
+        };
+        let (found, material) = albedo("");
+        let near = |found: f64, expected: f64, tolerance: f64| {
+            let off = (found - expected).abs();
+            assert!(off < tolerance, "{name} at {cosine}: {found} for {expected}");
+            off
+        };
+        match held_to(name) {
+            Coated::Oracle(tolerance) => {
+                let all = found.reflected.into_iter().chain(found.transmitted);
+                for (value, expected) in all.zip(&numbers[1..]) {
+                    let off = near(value, *expected, tolerance);
+                    worst = if off > worst.0 { (off, name) } else { worst };
+                }
+            }
+            Coated::Darkening => {
+                let bright = albedo(";coat_darkening=0").0.reflected;
+                let black = albedo(";base_color=0 0 0;specular_weight=0;base_metalness=0")
+                    .0
+                    .reflected[0];
+                let kept = darkened(&material, cosine);
+                for channel in 0..3 {
+                    let below = bright[channel] - black;
+                    near(found.reflected[channel], black + kept[channel] * below, 3e-3);
+                }
+            }
+            Coated::InPart => {
+                let ends = [";coat_weight=0", ";coat_weight=1"].map(|more| albedo(more).0.reflected);
+                for (channel, value) in found.reflected.into_iter().enumerate() {
+                    let [a, b] = ends.map(|end| end[channel]);
+                    let is_between = value > a.min(b) - 1e-3 && value < a.max(b) + 1e-3;
+                    assert!(is_between, "{name} at {cosine}: {value} is not between {a} and {b}");
+                }
+            }
+            Coated::Refracted => {
+                let behind = (1.0 - (1.0 - cosine * cosine) / f64::from(material.coat_ior).powi(2)).sqrt();
+                for channel in 0..3 {
+                    near(found.reflected[channel], numbers[1 + channel], 0.01);
+                    let once = f64::from(material.coat_color[channel]).powf(0.5 / behind);
+                    near(found.transmitted[channel], once * numbers[4 + channel], 0.01);
+                }
+            }
+        }
     }
+    println!("coats: {} off at most, {}", worst.0, worst.1);
+}
+
+/// The specification's darkening of a base under a whole coat (OpenPBR 1.1, "Darkening").
+fn darkened(material: &MaterialSettings, cosine: f64) -> [f64; 3] {
+    let [of_coat, of_base] = [material.coat_ior, material.ior].map(f64::from);
+    let head_on = fresnel_f0(of_coat.max(of_base) / of_coat.min(of_base));
+    let (roughness, metalness) = (f64::from(material.roughness), f64::from(material.metalness));
+    let of_gloss = 1.0 + (roughness - 1.0) * head_on;
+    let spread = of_gloss + (roughness - of_gloss) * metalness;
+    let smooth = fresnel_dielectric(cosine, of_coat);
+    let inner = smooth + (inner_reflection(of_coat) - smooth) * spread;
+    material.base_color.map(|color| {
+        let color = f64::from(color * material.base_weight);
+        let base = (head_on + (1.0 - head_on) * color) * (1.0 - metalness) + color * metalness;
+        (1.0 - inner) / (1.0 - base * inner)
+    })
 }
 
 #[test]
