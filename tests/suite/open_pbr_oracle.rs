@@ -4,6 +4,7 @@
 //! that facets scatter more than once is a lobe of its own there and a factor here, so peaks are compared without it, and
 //! albedos with it.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
@@ -30,7 +31,9 @@ fn rows(kind: &str) -> impl Iterator<Item = (&'static str, &'static str, Vec<&'s
 /// The material of a MaterialX file with these inputs, `name=value;…`.
 fn material(place: &Workplace, inputs: &str, is_single: bool) -> MaterialSettings {
     let mut text = String::new();
-    for (name, value) in inputs.split(';').filter_map(|input| input.split_once('=')) {
+    // Of an input that is said twice the last counts.
+    let said: BTreeMap<&str, &str> = inputs.split(';').filter_map(|input| input.split_once('=')).collect();
+    for (name, value) in said {
         let of_type = if value.contains(' ') { "color3" } else { "float" };
         let value = value.replace(' ', ", ");
         let _ = writeln!(text, "<input name=\"{name}\" type=\"{of_type}\" value=\"{value}\"/>");
