@@ -164,8 +164,8 @@ fn the_colour_of_a_coat_deepens_along_the_way() {
                 let way = 1.0 / behind(out) + 1.0 / behind(back);
                 let albedo = weight * fresnel_dielectric(out, IOR);
                 let share = (weight - albedo) / (1.0 - albedo);
-                for channel in 0..3 {
-                    let expected = 1.0 - share + share * f64::powf(color[channel], 0.5 * way);
+                for (channel, color) in color.into_iter().enumerate() {
+                    let expected = 1.0 - share + share * f64::powf(color, 0.5 * way);
                     let ratio = found.value[channel] / white.value[channel];
                     assert!(
                         (ratio - expected).abs() < 2e-3,
