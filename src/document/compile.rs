@@ -119,7 +119,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
         has_rough_tables: 0,
-        texture_roughness: settings.roughness,
+        texture_roughness: roughness,
         roughness_table: NO_TEXTURE,
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
         spot_scale: 0.0,
@@ -147,7 +147,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         bare_ior: settings.ior,
         coated_ior: settings.ior,
         coat_blur: 0.0,
-        ggx_roughness: settings.ggx_roughness(),
+        ggx_roughness: settings.ggx_roughness(roughness),
         coat_darkening: 0.0,
         coat_inner: 0.0,
         coat_anisotropy: 0.0,
@@ -334,7 +334,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let varies = material.textures[1] != NO_TEXTURE || material.has_varied_blur();
     if varies && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
-        material.texture_roughness = ggx_under_texture(settings.roughness);
+        material.texture_roughness = ggx_under_texture(material.texture_roughness);
         material.roughness_table = append_table(tables, &*MATCHED);
     }
     if material.coat_weight > 0.0 {

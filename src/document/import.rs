@@ -53,11 +53,11 @@ impl ImportLobe {
 }
 
 impl MaterialSettings {
-    /// GGX's roughness that looks like the lobe's.
-    pub fn ggx_roughness(&self) -> f32 {
+    /// GGX's roughness that looks like the lobe of this one.
+    pub fn ggx_roughness(&self, roughness: f32) -> f32 {
         match self.lobe.traits().width {
-            Width::Roughness => ggx_from_geometric(self.roughness),
-            Width::Fixed | Width::Alpha => self.roughness,
+            Width::Roughness => ggx_from_geometric(roughness),
+            Width::Fixed | Width::Alpha => roughness,
         }
     }
 
