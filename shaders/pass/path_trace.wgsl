@@ -1,4 +1,5 @@
 // The path tracer. Twin of src/cpu/integrator/mod.rs.
+#import "pass/light_groups"
 #import "optics/coat_medium"
 #import "optics/layer/scatter"
 #import "optics/random"
@@ -84,31 +85,14 @@ struct GuideSums {
 // Side of a tile in pixels; a tile is a workgroup.
 const TILE_SIDE: u32 = 8u;
 
-// The light of each group that the path has found.
-var<private> group_light: array<vec3f, LIGHT_GROUPS_MAX>;
-
-// Adds light of a group's sources, where groups are summed apart.
-fn add_to_group(group: u32, light: vec3f) {
-    if PLAN_LIGHT_GROUPS == 1u {
-        group_light[group] += light;
-    }
-}
-
-fn clear_groups() {
-    if PLAN_LIGHT_GROUPS == 1u {
-        for (var group = 0u; group < globals.light_groups; group++) {
-            group_light[group] = vec3f(0.0);
-        }
-    }
-}
-
 // Adds the groups' light of a path to the sums of its pixel; `odd` is 1 for a sample of an odd number, else 0.
 fn sum_groups(index: u32, odd: f32) {
     if PLAN_LIGHT_GROUPS == 1u {
         for (var group = 0u; group < globals.light_groups; group++) {
             let place = (1u + group) * band.y + index;
-            color_sums[place].all += vec4f(group_light[group], 0.0);
-            color_sums[place].odd += odd * vec4f(group_light[group], 0.0);
+            let light = vec4f(group_light(group), 0.0);
+            color_sums[place].all += light;
+            color_sums[place].odd += odd * light;
         }
     }
 }

@@ -31,7 +31,7 @@ const REMEMBERED: usize = 32;
 const ROUGH_ALBEDO_SAMPLES: u32 = 256;
 
 /// Samples of each node of the energies that a lobe keeps: their errors are those of a whole metal.
-const ENERGY_SAMPLES: u32 = 2048;
+const ENERGY_SAMPLES: u32 = 8192;
 
 /// The materials in the same order, and the tables they refer to.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {

@@ -28,6 +28,7 @@ pub const GENERATED: &[Generated] = &[
     ("optics/choices", optics_choices),
     ("scene/material", material_structure),
     ("scene/choices", scene_choices),
+    ("pass/light_groups", light_groups),
     ("scene/plan_constants", plan_constants),
 ];
 
@@ -71,7 +72,7 @@ fn scene_choices() -> String {
     let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
-         const LIGHT_GROUPS_MAX: u32 = {LIGHT_GROUPS_MAX}u;\nconst ENVIRONMENT_GROUP: u32 = {ENVIRONMENT_GROUP}u;\n\
+         const ENVIRONMENT_GROUP: u32 = {ENVIRONMENT_GROUP}u;\n\
          const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n\
          const FEW_MATERIALS: u32 = {FEW_MATERIALS}u;\n\
          const CATCHER_BEND: f32 = {CATCHER_BEND:?};\nconst CATCHER_HALF_SIDE: f32 = {CATCHER_HALF_SIDE:?};\n\
@@ -79,6 +80,22 @@ fn scene_choices() -> String {
         choices::<Strategy>("STRATEGY"),
         choices::<PixelFilter>("FILTER"),
         backgrounds.concat(),
+    )
+}
+
+/// The light of each group that a path has found. These are variables of their own: Mesa's software driver compiles a kernel
+/// with a private array again for each dispatch.
+fn light_groups() -> String {
+    let each = |line: fn(usize) -> String| (0..LIGHT_GROUPS_MAX).map(line).collect::<String>();
+    format!(
+        "// Generated from src/job/light_sums.rs.\n{}\
+         fn add_to_group(group: u32, light: vec3f) {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
+         fn clear_groups() {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
+         fn group_light(group: u32) -> vec3f {{\n    switch group {{\n{}        default: {{ return vec3f(0.0); }}\n    }}\n}}\n",
+        each(|i| format!("var<private> group_light_{i}: vec3f;\n")),
+        each(|i| format!("        group_light_{i} += select(vec3f(0.0), light, group == {i}u);\n")),
+        each(|i| format!("        group_light_{i} = vec3f(0.0);\n")),
+        each(|i| format!("        case {i}u: {{ return group_light_{i}; }}\n")),
     )
 }
 
