@@ -252,7 +252,7 @@ fn iridescence_is_a_thin_film() {
     );
     let material = materials_of(&model, ImportLobe::Geometric).remove(0);
     let film = |m: &MaterialSettings| [m.film_weight, m.film_ior, m.film_thickness];
-    assert_eq!(film(&material), [0.5, 1.75, 0.35]);
+    assert_eq!(film(&material), [0.5, 1.75, 1e-3 * 350.0]);
     // Both texels of the picture are (10, 20, 30); the least thickness is 100 nm.
     let (compiled, _) = compile_textured(&[material], &Textures::new(&model).slots);
     let share = 20.0 / 255.0;

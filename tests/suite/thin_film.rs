@@ -535,11 +535,11 @@ fn films_come_back_from_other_formats() {
             "{format}: {}",
             back.film_weight
         );
-        let is_told = report.stdout.contains("the thin film's weight");
+        let is_told = report.stdout.contains("the format's film is everywhere");
         assert_eq!(is_told, weight == 1.0, "{format}: {}", report.stdout);
     }
     let blender = place.done("convert a.json a.py --to blender --report -");
-    assert!(blender.stdout.contains("the thin film's weight"), "{}", blender.stdout);
+    assert!(blender.stdout.contains("the format's film is everywhere"), "{}", blender.stdout);
     let script = std::fs::read_to_string(place.path("a.py")).unwrap();
     assert!(script.contains("\"Thin Film Thickness\": 250") && script.contains("\"Thin Film IOR\": 1.75"));
     let mitsuba = place.done("convert a.json a.xml --to mitsuba --report -");
