@@ -24,6 +24,7 @@ pages! {
     "reference/render.md"
     "reference/commands.md"
     "reference/materials.md"
+    "reference/layers.md"
     "reference/settings.md"
     "reference/effects.md"
     "reference/output.md"

@@ -88,7 +88,7 @@ fn scene_choices() -> String {
 fn light_groups() -> String {
     let each = |line: fn(usize) -> String| (0..LIGHT_GROUPS_MAX).map(line).collect::<String>();
     format!(
-        "// Generated from src/job/light_sums.rs.\n{}\
+        "// Generated from src/job/light_sums.rs.\n#import \"scene/plan\"\n{}\
          fn add_to_group(group: u32, light: vec3f) {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
          fn clear_groups() {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
          fn group_light(group: u32) -> vec3f {{\n    switch group {{\n{}        default: {{ return vec3f(0.0); }}\n    }}\n}}\n",

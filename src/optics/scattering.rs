@@ -115,7 +115,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
         let mut energies = [reflected_energy(&material, cosine, samples, |_| 1.0), 1.0, 1.0, 0.0];
         if material.transmits() {
             for (energy, is_inside) in energies[1..].iter_mut().zip([false, true]) {
-                *energy = interface_energy(&material, is_inside, cosine, samples / INTERFACE_SHARE);
+                *energy = interface_energy(&material, is_inside, cosine, samples);
             }
         }
         energies.map(|energy| energy as f32)
@@ -125,9 +125,6 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
         .flat_map_iter(energies)
         .collect()
 }
-
-/// A metal's samples for each of an interface, which take six times as long and vary less.
-const INTERFACE_SHARE: u32 = 4;
 
 /// Energy that reflection and refraction of a clear interface keep together.
 fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
