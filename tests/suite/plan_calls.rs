@@ -383,7 +383,8 @@ fn the_least_of_an_effect_calls_for_it() {
     for effect in EFFECTS {
         let name = effect.name();
         let calls = calls_for(name);
-        let is_of_texture = name.ends_with("-texture") || ["normal-map", "coat-normal-map", "box-projection"].contains(&name);
+        let is_of_texture =
+            name.ends_with("-texture") || ["normal-map", "coat-normal-map", "box-projection"].contains(&name);
         let without = if is_of_texture {
             textures.clone()
         } else {

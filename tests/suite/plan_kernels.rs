@@ -211,7 +211,13 @@ fn what_kernels_leave_out_shows_nowhere() {
     assert!(plans.len() > 40, "only {} plans were met", plans.len());
     for (effect, count) in EFFECTS.iter().zip(left_out) {
         // No built-in model has textures, colours at vertices or coarse triangles: theirs are the next test's.
-        let of_models = ["normal-map", "box-projection", "vertex-colors", "shadow-terminator"];
+        let of_models = [
+            "normal-map",
+            "coat-normal-map",
+            "box-projection",
+            "vertex-colors",
+            "shadow-terminator",
+        ];
         let is_of_model = effect.name().ends_with("-texture") || of_models.contains(&effect.name());
         let Some(constant) = effect.id.constant().filter(|_| !is_of_model) else {
             continue;

@@ -539,7 +539,11 @@ fn films_come_back_from_other_formats() {
         assert_eq!(is_told, weight == 1.0, "{format}: {}", report.stdout);
     }
     let blender = place.done("convert a.json a.py --to blender --report -");
-    assert!(blender.stdout.contains("the format's film is everywhere"), "{}", blender.stdout);
+    assert!(
+        blender.stdout.contains("the format's film is everywhere"),
+        "{}",
+        blender.stdout
+    );
     let script = std::fs::read_to_string(place.path("a.py")).unwrap();
     assert!(script.contains("\"Thin Film Thickness\": 250") && script.contains("\"Thin Film IOR\": 1.75"));
     let mitsuba = place.done("convert a.json a.xml --to mitsuba --report -");

@@ -15,10 +15,10 @@ use super::ui_files::drop_on;
 use super::walk::Walk;
 
 impl Walk {
-    /// Clicks a control, once it is scrolled into sight.
+    /// Clicks a control, once it is scrolled into sight, which takes a while for what is far away.
     fn press(&mut self, role: Role, label: &str) {
         self.harness.get_by_role_and_label(role, label).scroll_to_me();
-        self.harness.run_steps(3);
+        self.harness.run_steps(40);
         self.click(role, label);
     }
 
@@ -116,9 +116,11 @@ fn a_light_is_hidden() {
 fn a_material_is_replaced_everywhere() {
     let mut walk = Walk::new(|_| {});
     let name = walk.app().document().materials[0].name.clone();
+    walk.tile("Ruby glass");
+    walk.harness.run_steps(40);
     let glass = walk.tile("Ruby glass");
     walk.click_at(glass, PointerButton::Secondary);
-    walk.press(Role::Button, &format!("Replace on all that use {name} (1)"));
+    walk.click(Role::Button, &format!("Replace on all that use {name} (1)"));
     assert_eq!(walk.app().document().materials[0].name, "Ruby glass");
     walk.ends("Replace a material on all that use it");
 }
@@ -140,7 +142,7 @@ fn a_reference_is_laid_over_the_render() {
 #[test]
 fn the_error_is_looked_at() {
     let mut walk = Walk::new(|_| {});
-    walk.click(Role::Button, "Workspace Measure");
+    walk.tab(Pane::Convergence);
     assert!(walk.harness.query_by_label("Manual: Convergence").is_some());
     walk.ends("See what the error is, and what less would cost");
 }
