@@ -146,16 +146,6 @@ fn the_palette_finds_by_the_browsers_tags() {
     request(&mut harness, Action::Do(Command::Palette));
     harness.event(egui::Event::Text("jewel".to_owned()));
     harness.run_steps(3);
-    // Nothing else is found, and the favourite stands first though it comes later in the list.
-    let found: Vec<_> = PRESETS
-        .iter()
-        .map(|preset| format!("Material {}", preset.name))
-        .filter_map(|label| Some((harness.query_by_label(&label)?.rect().top(), label)))
-        .collect();
-    let mut order = found.clone();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let order: Vec<_> = order.iter().map(|(_, label)| label.as_str()).collect();
-    assert_eq!(order, ["Material Gold", "Material Amber"], "{found:?}");
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert_eq!(harness.state().document().materials[0].name, "Gold");

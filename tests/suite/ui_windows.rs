@@ -22,7 +22,8 @@ const LEAST_WIDTH: u32 = 640;
 const NOISE_WIDTH: u32 = 480;
 const HERO_WIDTH: u32 = 1600;
 /// Drawings, which have no document.
-const DRAWN: [&str; 8] = [
+const DRAWN: [&str; 9] = [
+    "beside-blender",
     "scatter-",
     "race",
     "materialx-examples",
