@@ -7,9 +7,9 @@ use super::refraction::refracted_square;
 use super::vector::Vec3;
 
 /// Least cosine of the way through a coat.
-const WAY_COSINE_MIN: f64 = 1e-3;
+pub const WAY_COSINE_MIN: f64 = 1e-3;
 /// Least colour of a coat, whose powers are finite.
-const COLOR_MIN: f64 = 1e-12;
+pub const COLOR_MIN: f64 = 1e-12;
 
 /// Length of the way through the coat with this cosine outside, over that at right angles.
 #[inline(always)]

@@ -17,7 +17,7 @@ pub const ANGLES_MAX: usize = 2048;
 /// Tolerance of angles, degrees.
 const ANGLE_ERROR_DEG: f32 = 1e-2;
 /// Numbers of a table before its angles: axes, each followed by a count.
-const AXES_LENGTH: usize = 12;
+pub const PROFILE_AXES_LENGTH: usize = 12;
 
 /// Intensities over a grid of angles; between them they are linear in both.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,7 +166,7 @@ pub fn profile_share<T: Scalar>(table: &[f32], direction: Vec3<T>) -> T {
     let degrees = T::from_f64(180.0 / PI);
     let vertical = (aside.atan2(ahead) * degrees).min(T::from_f64(180.0));
     let [rows, columns] = [table[3] as usize, table[7] as usize];
-    let angles = &table[AXES_LENGTH..];
+    let angles = &table[PROFILE_AXES_LENGTH..];
     let (verticals, horizontals) = (&angles[..rows], &angles[rows..rows + columns]);
     let shares = &angles[rows + columns..];
     let bound = |angle: f32| T::from_f64(f64::from(angle));

@@ -214,6 +214,7 @@ fn what_kernels_leave_out_shows_nowhere() {
         let of_models = [
             "normal-map",
             "coat-normal-map",
+            "light-groups",
             "box-projection",
             "vertex-colors",
             "shadow-terminator",
@@ -330,6 +331,7 @@ fn weak_effects_are_in_their_kernels() {
             "interreflection",
             "firefly-clamp",
             "guides",
+            "coat-ggx",
         ];
         assert!(
             seen.contains(effect.name()) || elsewhere.contains(&effect.name()),

@@ -9,17 +9,19 @@ use glossmith::gpu::shader::{
 };
 use glossmith::job::plan::Plan;
 use glossmith::job::tiles::TILE_SIDE;
-use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
-use glossmith::optics::chord;
+use glossmith::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
 use glossmith::optics::layer::base::BASE_EDGE;
+use glossmith::optics::layer::coat::INNER_MAX;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::rough_diffuse;
 use glossmith::optics::thin_film;
+use glossmith::optics::{chord, coat_medium};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{self, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
 use glossmith::scene::inversion::DRAW_BITS;
+use glossmith::scene::light_profile::PROFILE_AXES_LENGTH;
 use glossmith::scene::medium::NO_MEDIUM;
 use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
@@ -273,6 +275,14 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("HAS_BOX", f64::from(material::HAS_BOX)),
         ("WEIGHS_INDEX", f64::from(material::WEIGHS_INDEX)),
         ("HAS_PROFILE", f64::from(material::HAS_PROFILE)),
+        ("COATS_BASE", f64::from(material::COATS_BASE)),
+        ("COAT_ABSORBS", f64::from(material::COAT_ABSORBS)),
+        ("COAT_IS_GGX", f64::from(material::COAT_IS_GGX)),
+        ("COLOR_MIN", coat_medium::COLOR_MIN),
+        ("WAY_COSINE_MIN", coat_medium::WAY_COSINE_MIN),
+        ("INNER_MAX", INNER_MAX),
+        ("PROFILE_AXES_LENGTH", PROFILE_AXES_LENGTH as f64),
+        ("ROUGH_ALBEDO_LENGTH", ROUGH_ALBEDO_LENGTH as f64),
         ("LIGHT_GROUP_SHIFT", f64::from(material::LIGHT_GROUP_SHIFT)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),

@@ -55,7 +55,7 @@ impl<S: Scalar> Results<S> {
     pub fn groups(&self, path: usize) -> impl Iterator<Item = [f64; 3]> {
         let groups = self.light_groups.len() / self.count.max(1);
         let lights = &self.light_groups[path * groups..(path + 1) * groups];
-        lights.iter().map(|light| light.to_f64().into())
+        lights.iter().map(|light| light.to_f64())
     }
 
     /// Radiances of `N` consecutive paths, channel by channel; arbitrary beyond the last path.

@@ -20,7 +20,7 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 
 /// Most of the light that a coat reflects back inside: at 1 nothing would get out.
-const INNER_MAX: f64 = 0.9999;
+pub const INNER_MAX: f64 = 0.9999;
 
 /// The clear coat layer.
 #[derive(Debug)]

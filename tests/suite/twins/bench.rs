@@ -143,9 +143,12 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             let matched: Vec<_> = (0..MATCHED_NODES).map(|node| (node as f32 / 16.0).powf(0.7)).collect();
             material.roughness_table = append_table(&mut tables, &matched);
         }
+        // Stretched, these peaks would be narrower than directions of single precision.
         if material.coat_roughness < 1e-3 {
-            // Stretched, its peak would be narrower than single-precision directions.
             material.coat_anisotropy = 0.0;
+        }
+        if material.roughness.min(material.transmission_roughness) < 1e-3 {
+            material.anisotropy = 0.0;
         }
         let coat = Material {
             metalness: 0.0,
