@@ -338,7 +338,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
-        flags: rng.below(16) as u32 | rng.below(8) as u32 * COATS_BASE,
+        flags: rng.below(16) as u32 | (rng.below(8) as u32 * COATS_BASE),
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: NO_TEXTURE,
