@@ -320,7 +320,7 @@ fn weak_effects_are_in_their_kernels() {
         assert_same_but_for_rounding(&specialised, &of_gpu, &what);
         assert_same_but_for_rounding(&general, &of_gpu, &what);
     }
-    // Where emitters and clamp are, or nothing interreflects, other tests look.
+    // Where emitters and clamp are, nothing interreflects, coats absorb or groups are summed, other tests look.
     for effect in EFFECTS
         .iter()
         .filter(|effect| effect.id.constant().is_some_and(|c| c.general != ANY))
@@ -332,6 +332,9 @@ fn weak_effects_are_in_their_kernels() {
             "firefly-clamp",
             "guides",
             "coat-ggx",
+            "coat-absorption",
+            "coat-normal-map",
+            "light-groups",
         ];
         assert!(
             seen.contains(effect.name()) || elsewhere.contains(&effect.name()),

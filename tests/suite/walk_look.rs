@@ -1,4 +1,4 @@
-//! Ten more tasks of docs/WALK.md: what an artist does in the first minutes.
+//! Eight more tasks of docs/WALK.md: what an artist does in the first minutes.
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, PointerButton};
@@ -7,7 +7,6 @@ use glossmith::app::layout::Pane;
 use glossmith::document::AreaLight;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::scene::camera::Projection;
-use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::TextureTarget;
 
 use super::ui::{see_label, wait};
@@ -20,15 +19,6 @@ impl Walk {
         self.harness.get_by_role_and_label(role, label).scroll_to_me();
         self.harness.run_steps(40);
         self.click(role, label);
-    }
-
-    /// Presses a button of a long list, wherever that is scrolled to.
-    fn press_in_list(&mut self, label: &str) {
-        self.harness
-            .get_by_role_and_label(Role::Button, label)
-            .click_accesskit();
-        self.harness.run_steps(4);
-        self.events += 1;
     }
 
     /// Types into what has the keys.
@@ -78,14 +68,6 @@ fn a_measured_metal_becomes_two_colours() {
 }
 
 #[test]
-fn another_studio_lights_the_scene() {
-    let mut walk = Walk::new(|_| {});
-    walk.press_in_list("Environment Portrait");
-    assert_eq!(walk.app().document().lighting.environment, EnvironmentSource::Portrait);
-    walk.ends("Light it in another studio");
-}
-
-#[test]
 fn a_map_is_put_beside_its_parameter() {
     let mut walk = Walk::new(|_| {});
     let file = walk.image("any.png");
@@ -119,16 +101,6 @@ fn a_light_is_hidden() {
     walk.press(Role::CheckBox, "Area light 1 hidden");
     assert!(walk.app().document().lighting.area_lights[0].is_hidden);
     walk.ends("Hide a light from the camera");
-}
-
-#[test]
-fn a_material_is_replaced_everywhere() {
-    let mut walk = Walk::new(|_| {});
-    let name = walk.app().document().materials[0].name.clone();
-    walk.press_in_list("More of Ruby glass");
-    walk.press_in_list(&format!("Replace on all that use {name} (1)"));
-    assert_eq!(walk.app().document().materials[0].name, "Ruby glass");
-    walk.ends("Replace a material on all that use it");
 }
 
 #[test]
