@@ -30,8 +30,8 @@ const REMEMBERED: usize = 32;
 /// Samples of each node of a table over the roughness too, of which there are many.
 const ROUGH_ALBEDO_SAMPLES: u32 = 256;
 
-/// Samples of each node of the energies that a lobe keeps: their errors are those of a whole metal.
-const ENERGY_SAMPLES: u32 = 8192;
+/// Samples of the energies that a lobe keeps, over those of an albedo table: their errors are those of a whole metal.
+const ENERGY_SAMPLES: u32 = 8;
 
 /// The materials in the same order, and the tables they refer to.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {
@@ -406,7 +406,7 @@ fn remembered(key: TableKey) -> Arc<[f32]> {
     let samples = if is_rough { ROUGH_ALBEDO_SAMPLES } else { ALBEDO_SAMPLES };
     let is_inside = key.holds == Holds::InnerAlbedo;
     let table: Arc<[f32]> = match key.holds {
-        Holds::Energies => scattering_table(&of, ENERGY_SAMPLES).into(),
+        Holds::Energies => scattering_table(&of, ENERGY_SAMPLES * samples).into(),
         _ if is_rough => rough_albedo_table(&of, &key.curve_table, samples, is_inside).into(),
         _ => albedo_table(&of, &key.curve_table, samples, is_inside).into(),
     };

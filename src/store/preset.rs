@@ -71,12 +71,20 @@ pub static PRESETS: LazyLock<Vec<MaterialSettings>> = LazyLock::new(|| {
 /// The key in a shipped file that says where its values come from.
 const SOURCE: &str = "source";
 
+/// Where the values of [`PRESETS`] come from, in their order: read once, because the browser shows them in each frame.
+static SOURCES: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let source = |text: &&str| {
+        let object = file::object(Path::new("assets/presets"), text.as_bytes()).ok()?;
+        Some(object.get(SOURCE)?.as_str()?.to_owned())
+    };
+    let texts = SHIPPED.iter().flat_map(|(_, files)| *files);
+    texts.map(|text| source(text).unwrap_or_default()).collect()
+});
+
 /// Where a shipped material's values come from, one or two sentences; `None` for a material that is not shipped.
-pub fn source_of_values(name: &str) -> Option<String> {
+pub fn source_of_values(name: &str) -> Option<&'static str> {
     let index = PRESETS.iter().position(|material| material.name == name)?;
-    let text = SHIPPED.iter().flat_map(|(_, files)| *files).nth(index)?;
-    let object = file::object(Path::new("assets/presets"), text.as_bytes()).ok()?;
-    Some(object.get(SOURCE)?.as_str()?.to_owned())
+    Some(&SOURCES[index])
 }
 
 /// A material's name as it is written on the command line: lower case, hyphens for spaces.

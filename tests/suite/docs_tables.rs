@@ -122,7 +122,7 @@ fn presets() -> String {
             } else {
                 "–".to_owned()
             },
-            source_of_values(&material.name).unwrap_or_default(),
+            source_of_values(&material.name).unwrap_or_default().to_owned(),
         ]
     };
     table(

@@ -27,7 +27,7 @@ fn shipped_materials_are_in_the_format_that_is_saved() {
         let written = preset::material_text(std::path::Path::new(""), &loaded.value);
         assert_eq!(written, *text, "{}", material.name);
         let source = preset::source_of_values(&material.name).expect("a source");
-        assert!(text.contains(&source) && source.ends_with('.'), "{}", material.name);
+        assert!(text.contains(source) && source.ends_with('.'), "{}", material.name);
         assert!(is_in_range(material), "{}", material.name);
         let name = preset::command_line_name(&material.name);
         assert_eq!(

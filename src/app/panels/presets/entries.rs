@@ -100,6 +100,9 @@ impl Entry {
 
     /// Whether its name, its group, its tags and the words of its look have each word that is searched for, in lower case.
     pub(super) fn is_wanted(&self, search: &str, group: &str, kept: &KeptShelves) -> bool {
+        if search.is_empty() {
+            return true;
+        }
         let look = match &self.kind {
             EntryKind::Material(material) => material.look_words().join(" "),
             EntryKind::Environment(_) | EntryKind::Broken(_) => String::new(),
