@@ -51,16 +51,27 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
     (compiled, tables)
 }
 
+/// The record of a target's texture, if it is switched on.
+fn looked_up(settings: &MaterialSettings, slot: SlotTextures, target: TextureTarget) -> u32 {
+    if settings.uses_texture(target) {
+        slot.record(target)
+    } else {
+        NO_TEXTURE
+    }
+}
+
+/// The value of a target's texture of one value, if it is switched on.
+fn constant(settings: &MaterialSettings, slot: SlotTextures, target: TextureTarget) -> Option<[f32; 3]> {
+    slot.constant(target).filter(|_| settings.uses_texture(target))
+}
+
 /// The plain numbers of a material, its tables still to be made.
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
     use TextureTarget as On;
     let uses = settings.textures;
-    let looked_up = |target| match settings.uses_texture(target) {
-        true => slot.record(target),
-        false => NO_TEXTURE,
-    };
+    let looked_up = |target| looked_up(settings, slot, target);
     // Textures of one value are multiplied in here.
-    let constant = |target| slot.constant(target).filter(|_| settings.uses_texture(target));
+    let constant = |target| constant(settings, slot, target);
     let factor = |target| constant(target).map_or(1.0, |[value, ..]| value);
     let color = constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
     let roughness =
@@ -207,18 +218,16 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 /// What a coat has of its own, and what it does to what lies below it.
 fn put_coat(settings: &MaterialSettings, slot: SlotTextures, material: &mut Material<f32>) {
     use TextureTarget as On;
-    let uses = settings.textures;
-    let looked_up = |is_on: bool, target| if is_on { slot.record(target) } else { NO_TEXTURE };
-    material.coat_roughness_texture = looked_up(uses.coat_roughness, On::CoatRoughness);
-    material.coat_color_texture = looked_up(uses.coat_color, On::CoatColor);
-    material.coat_normal_texture = looked_up(uses.coat_normal, On::CoatNormal);
+    material.coat_roughness_texture = looked_up(settings, slot, On::CoatRoughness);
+    material.coat_color_texture = looked_up(settings, slot, On::CoatColor);
+    material.coat_normal_texture = looked_up(settings, slot, On::CoatNormal);
     material.coat_normal_strength = settings.coat_normal_strength;
-    if let Some(color) = slot.constant(On::CoatColor).filter(|_| uses.coat_color) {
+    if let Some(color) = constant(settings, slot, On::CoatColor) {
         material.coat_color = material.coat_color * Vec3::from_f32(color);
     }
     // A texture's values are meant for GGX.
     let mut roughness = settings.coat_ggx_roughness();
-    if let Some([share, ..]) = slot.constant(On::CoatRoughness).filter(|_| uses.coat_roughness) {
+    if let Some([share, ..]) = constant(settings, slot, On::CoatRoughness) {
         roughness *= share;
         material.coat_roughness = match settings.coat_lobe {
             CoatLobe::Geometric => geometric_from_ggx(roughness),

@@ -28,7 +28,7 @@ use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
 use crate::terminator::coarse;
-use crate::textures::all_at_once;
+use crate::textures::{all_at_once, coated_all_over};
 use crate::thin_film::filmed_on_a_box;
 
 /// Takes out of a job what the kernel does without whose constant for this effect has this value.
@@ -273,6 +273,16 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     ] {
         assign(&mut glass.materials[0], assignment).unwrap();
     }
+    let mut coated = of_material(ModelSource::Shaderball, PRESETS[0].clone());
+    for assignment in [
+        "coat.weight=0.5",
+        "coat.lobe=ggx",
+        "coat.roughness=0.5",
+        "coat.color=0.9,0.6,0.3",
+        "coat.on_base=on",
+    ] {
+        assign(&mut coated.materials[0], assignment).unwrap();
+    }
     glass.camera.aperture = 0.05;
     glass.lighting.area_lights.push(AreaLight::spot());
     glass.ground = true;
@@ -281,6 +291,8 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         metals,
         rough,
         glass,
+        coated,
+        small(coated_all_over(folder)),
         small(all_at_once(folder)),
         coated_on_a_box(folder),
         filmed_on_a_box(folder),
@@ -320,7 +332,7 @@ fn weak_effects_are_in_their_kernels() {
         assert_same_but_for_rounding(&specialised, &of_gpu, &what);
         assert_same_but_for_rounding(&general, &of_gpu, &what);
     }
-    // Where emitters and clamp are, nothing interreflects, coats absorb or groups are summed, other tests look.
+    // Where emitters and clamp are, nothing interreflects or groups are summed, other tests look.
     for effect in EFFECTS
         .iter()
         .filter(|effect| effect.id.constant().is_some_and(|c| c.general != ANY))
@@ -331,9 +343,6 @@ fn weak_effects_are_in_their_kernels() {
             "interreflection",
             "firefly-clamp",
             "guides",
-            "coat-ggx",
-            "coat-absorption",
-            "coat-normal-map",
             "light-groups",
         ];
         assert!(
