@@ -1,7 +1,7 @@
 //! Words for how a material looks, which a search finds it by.
 
 use super::MaterialSettings;
-use crate::optics::fresnel::{Fresnel, fresnel_conductor};
+use crate::optics::fresnel::Fresnel;
 
 /// Roughness below which a reflection is a mirror's, glossy, satin; above it is matt.
 const SMOOTHNESS: [(f32, &str); 3] = [(0.06, "mirror"), (0.28, "glossy"), (0.52, "satin")];
@@ -52,7 +52,7 @@ impl MaterialSettings {
     fn seen_color(&self, is_metal: bool) -> [f32; 3] {
         let coat = self.coat_color.map(|x| 1.0 + self.coat_weight * (x - 1.0));
         let below = if is_metal && self.fresnel == Fresnel::Conductor {
-            [0, 1, 2].map(|i| fresnel_conductor(1.0, f64::from(self.eta[i]), f64::from(self.k[i])) as f32)
+            self.measured_reflectance(1.0).map(|x| x as f32)
         } else if self.transmits() && self.transmission_weight > 0.5 {
             self.transmission_color
         } else {

@@ -12,11 +12,7 @@ impl MaterialSettings {
     /// The same metal by its colours where it goes by η and k: what it reflects head-on becomes the colour, and what it
     /// reflects at 82° the edge tint.
     pub fn by_colors(&self) -> Self {
-        let reflectance = |cosine: f64| {
-            let channel = |i: usize| fresnel_conductor(cosine, f64::from(self.eta[i]), f64::from(self.k[i]));
-            [0, 1, 2].map(channel)
-        };
-        let (f0, there) = (reflectance(1.0), reflectance(EDGE));
+        let (f0, there) = (self.measured_reflectance(1.0), self.measured_reflectance(EDGE));
         let plain = fresnel_schlick(Vec3::from_f64(f0), EDGE).to_f64();
         let mut material = Self {
             fresnel: Fresnel::Schlick,
@@ -30,6 +26,11 @@ impl MaterialSettings {
         // η and k had no texture.
         material.textures.color = false;
         material
+    }
+
+    /// What its η and k reflect at a cosine, linear RGB in [0, 1].
+    pub(super) fn measured_reflectance(&self, cosine: f64) -> [f64; 3] {
+        [0, 1, 2].map(|i| fresnel_conductor(cosine, f64::from(self.eta[i]), f64::from(self.k[i])))
     }
 
     /// A measured metal by its η and k.
