@@ -234,7 +234,7 @@ fn what_kernels_leave_out_shows_nowhere() {
 }
 
 /// Weak and coloured: documents in which every effect of the materials takes part in the picture, but hardly.
-fn weak_documents(folder: &Folder) -> Vec<Document> {
+fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
     let mut metals = of_material(ModelSource::Shaderball, PRESETS[0].clone());
     let metal = &mut metals.materials[0];
     for assignment in [
@@ -292,7 +292,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         rough,
         glass,
         coated,
-        small(coated_all_over(folder)),
+        small(coated_all_over(of_coat)),
         small(all_at_once(folder)),
         coated_on_a_box(folder),
         filmed_on_a_box(folder),
@@ -304,10 +304,11 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
 /// What the kernels of weak effects do without: nothing that shows. Shown on the processor to be seen where it does.
 #[test]
 fn weak_effects_are_in_their_kernels() {
-    let folder = Folder::new();
+    // Both write a model of one name.
+    let folders = [Folder::new(), Folder::new()];
     let mut engine = gpu();
     let mut seen = HashSet::new();
-    for (document, job) in jobs(weak_documents(&folder)) {
+    for (document, job) in jobs(weak_documents(folders.each_ref())) {
         let general = on_cpu(generally(&job));
         for (effect, decision) in job.plan.table() {
             let Some(constant) = effect.constant().filter(|constant| constant.general != ANY) else {
