@@ -48,15 +48,17 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
     let mut whole = joined(&arguments.films)?;
     whole.document.view.denoise = arguments.denoise;
     let samples = whole.film.samples() as f64 / whole.film.pixel_count().max(1) as f64;
-    let image = whole.film.image();
+    let (film, lights) = (whole.mixed(), whole.light_layers());
+    let image = film.image();
     let layers = match arguments.aovs {
-        true => Some(Layers::of(&whole.film, whole.features()?)),
+        true => Some(Layers::of(&film, whole.features()?)),
         false => None,
     };
     let denoised = denoised(&whole)?;
     let rendered = Rendered {
         denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
+        lights: &lights,
         sums: Some(&whole),
         ..Rendered::from(&image)
     };

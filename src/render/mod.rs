@@ -13,6 +13,7 @@ mod engine;
 pub mod environment_thumbnails;
 mod error;
 mod lens;
+pub mod light_layers;
 pub mod looks;
 pub mod memory;
 pub mod output;

@@ -11,6 +11,7 @@ use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
 use super::display::display;
+use super::light_layers::LightLayer;
 use super::sums::KeptFilm;
 use crate::document::Document;
 use crate::import::endings::ending;
@@ -48,9 +49,6 @@ pub struct Rendered<'a> {
     /// The sums that an .exr file keeps, to be joined with others.
     pub sums: Option<&'a KeptFilm>,
 }
-
-/// The light of a group, under its name.
-pub type LightLayer = (String, Image);
 
 impl<'a> From<&'a Image> for Rendered<'a> {
     fn from(image: &'a Image) -> Self {

@@ -2,9 +2,10 @@
 //!
 //! Besides the image's channels, a file has `sums.even.R.high`, `.low` and so on for each half of the samples: the upper and
 //! lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold only 48 of its 53 bits. The sums of the
-//! guides of each half's first samples are f32 (`sums.guides.even.…`), with their number. An attribute has the document and
-//! the sample ranges.
+//! guides of each half's first samples are f32 (`sums.guides.even.…`), with their number. Light groups have sums of their own
+//! (`sums.light.NAME.even.…`). An attribute has the document and the sample ranges.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{
@@ -12,12 +13,14 @@ use exr::prelude::{
     Text, read,
 };
 
-use crate::document::Document;
 use crate::document::change::Change;
+use crate::document::effect::without_what_is_off;
+use crate::document::{Document, GroupName};
 use crate::job::features::Features;
-use crate::job::film::{Extras, Film, HalfSums};
+use crate::job::film::{Extras, Film, HalfSums, LightSums};
 use crate::job::guides::GUIDE_SAMPLES;
 use crate::render::denoise::Noisy;
+use crate::render::light_layers::{LightLayer, light_groups, light_layers, mixed};
 use crate::store::FileError;
 use crate::store::project::{document_text, parse_document};
 
@@ -86,11 +89,17 @@ pub enum SumsError {
     },
 }
 
-/// Upper and lower half of each number's bits.
-fn bits(values: impl Iterator<Item = f64> + Clone) -> [FlatSamples; 2] {
+/// Channels of the upper and the lower half of each number's bits.
+fn doubles(name: &str, values: impl Iterator<Item = f64> + Clone) -> [(String, FlatSamples); 2] {
     let upper = values.clone().map(|x| (x.to_bits() >> 32) as u32).collect();
     let lower = values.map(|x| x.to_bits() as u32).collect();
-    [FlatSamples::U32(upper), FlatSamples::U32(lower)]
+    let of = |half: &str, bits| (format!("sums.{name}.{half}"), FlatSamples::U32(bits));
+    [of("high", upper), of("low", lower)]
+}
+
+/// Name of the sums of a light group in one half of the samples, such as `light.key.even`.
+fn light_sums(group: GroupName, half: &str) -> String {
+    format!("light.{}.{half}", group.as_str())
 }
 
 impl KeptFilm {
@@ -114,6 +123,16 @@ impl KeptFilm {
         }
     }
 
+    /// The film with the mix of its light groups.
+    pub fn mixed(&self) -> Cow<'_, Film> {
+        mixed(&self.film, &self.document)
+    }
+
+    /// The light of each group as it was rendered, by the group's name.
+    pub fn light_layers(&self) -> Vec<LightLayer> {
+        light_layers(&self.film, &self.document)
+    }
+
     /// First-hit features.
     ///
     /// # Errors
@@ -133,7 +152,7 @@ impl KeptFilm {
     pub fn noisy(&self) -> Result<Noisy, SumsError> {
         self.check_seen(|seen, samples| (0..2).all(|half| seen[half] > 0 || samples[half] == 0.0))?;
         let samples = |pixel: usize| self.guide_samples[pixel].map(f64::from);
-        Ok(Noisy::of_samples(&self.film, samples, self.document.render.region))
+        Ok(Noisy::of_samples(&self.mixed(), samples, self.document.render.region))
     }
 
     /// Refuses a film with a pixel that has samples, but not enough of the first among them.
@@ -166,35 +185,37 @@ impl KeptFilm {
         let film = &self.film;
         let pixels = || 0..film.pixel_count();
         let mut channels = Vec::new();
-        let mut push = |name: String, samples: FlatSamples| channels.push((format!("sums.{name}"), samples));
+        let groups = light_groups(film, &self.document);
+        let groups = || groups.iter().enumerate();
         for (half, word) in HALVES.into_iter().enumerate() {
             for (i, color) in COLORS.into_iter().enumerate() {
-                let [high, low] = bits(pixels().map(|pixel| film.halves(pixel)[half].color[i]));
-                push(format!("{word}.{color}.high"), high);
-                push(format!("{word}.{color}.low"), low);
+                let sums = pixels().map(|pixel| film.halves(pixel)[half].color[i]);
+                channels.extend(doubles(&format!("{word}.{color}"), sums));
+                for (group, name) in groups() {
+                    let sums = pixels().map(|pixel| film.lights(pixel)[group][half][i]);
+                    channels.extend(doubles(&format!("{}.{color}", light_sums(*name, word)), sums));
+                }
             }
             let of = |pixel: usize| film.halves(pixel)[half];
             let deviations = pixels()
                 .map(|pixel| of(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32)
                 .collect();
-            push(format!("{word}.deviations"), FlatSamples::F32(deviations));
+            channels.push((format!("sums.{word}.deviations"), FlatSamples::F32(deviations)));
             let samples = pixels().map(|pixel| of(pixel).samples as u32).collect();
-            push(format!("{word}.samples"), FlatSamples::U32(samples));
+            channels.push((format!("sums.{word}.samples"), FlatSamples::U32(samples)));
         }
         if film.extras().coverage {
-            let [high, low] = bits(pixels().map(|pixel| film.color(pixel)[3]));
-            push("coverage.high".to_owned(), high);
-            push("coverage.low".to_owned(), low);
+            channels.extend(doubles("coverage", pixels().map(|pixel| film.color(pixel)[3])));
         }
         if film.extras().guides {
             let guides: &[[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice(&film.guides);
             for (half, word) in HALVES.into_iter().enumerate() {
                 for (i, name) in GUIDES.into_iter().enumerate() {
                     let values = guides.iter().map(|guides| guides[half][i]).collect();
-                    push(format!("guides.{word}.{name}"), FlatSamples::F32(values));
+                    channels.push((format!("sums.guides.{word}.{name}"), FlatSamples::F32(values)));
                 }
                 let samples = self.guide_samples.iter().map(|samples| samples[half]).collect();
-                push(format!("guides.{word}.samples"), FlatSamples::U32(samples));
+                channels.push((format!("sums.guides.{word}.samples"), FlatSamples::U32(samples)));
             }
         }
         channels
@@ -211,16 +232,24 @@ impl KeptFilm {
         let document = parse_document(path, document.as_bytes())?.value;
         let samples = ranges(&samples).ok_or_else(|| file.missing(SAMPLES))?;
         let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
+        // Files of before groups had sums know their names alone.
+        let mut groups = without_what_is_off(&document).light_groups();
+        groups.retain(|name| file.find(&format!("{}.R.high", light_sums(*name, HALVES[0]))).is_some());
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
             guides: file.find(&format!("{}samples", file.guides_of(HALVES[0]))).is_some(),
-            light_groups: 0,
+            light_groups: groups.len() as u32,
         };
         let [width, height] = file.size();
         let mut film = Film::keeping(width, height, extras);
         let halves = file.halves(film.pixel_count())?;
         for (pixel, halves) in halves.iter().enumerate() {
             film.set_halves(pixel, halves);
+        }
+        for (group, name) in groups.iter().enumerate() {
+            for (half, word) in HALVES.into_iter().enumerate() {
+                file.add_light(&mut film, group, half, &light_sums(*name, word))?;
+            }
         }
         if extras.coverage {
             let coverage = file.doubles("coverage")?.into_iter().enumerate();
@@ -265,6 +294,7 @@ impl KeptFilm {
         document.render.first_sample = self.document.render.first_sample;
         !Change::between(&self.document, &document).restarts()
             && self.film.extras().coverage == other.film.extras().coverage
+            && self.film.light_groups() == other.film.light_groups()
     }
 
     /// Adds the samples of another film of the same image. The paths are for messages.
@@ -299,6 +329,9 @@ impl KeptFilm {
             self.film
                 .set_halves(pixel, &[own[0].with(&more[0]), own[1].with(&more[1])]);
             self.film.add_coverage(pixel, other.film.color(pixel)[3]);
+            for (group, more) in other.film.lights(pixel).iter().enumerate() {
+                self.film.add_light(pixel, group, *more);
+            }
         }
         if other.film.extras().guides {
             self.film.guides.resize(other.film.guides.len(), Default::default());
@@ -408,6 +441,18 @@ impl<'a> Sums<'a> {
         let both = high.iter().zip(low);
         let joined = both.map(|(high, low)| (u64::from(*high) << 32) | u64::from(*low));
         Ok(joined.map(f64::from_bits).collect())
+    }
+
+    /// Adds the sums of a light group in one half of the samples to a film.
+    fn add_light(&self, film: &mut Film, group: usize, half: usize, name: &str) -> Result<(), SumsError> {
+        for (channel, color) in COLORS.into_iter().enumerate() {
+            for (pixel, sum) in self.doubles(&format!("{name}.{color}"))?.into_iter().enumerate() {
+                let mut sums = LightSums::default();
+                sums[half][channel] = sum;
+                film.add_light(pixel, group, sums);
+            }
+        }
+        Ok(())
     }
 
     /// The sums of both halves of each pixel's samples.

@@ -164,7 +164,7 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
 fn parts_of_the_samples_join_to_the_whole_pictures() {
     let place = Workplace::new();
     let text = format!(
-        "materials = [\"gold\", \"car-paint-red\"]\nframes = 3\nturn = \"light\"\nformats = [\"png\", \"exr\"]\n{SMALL}"
+        "materials = [\"gold\", \"car-paint-red\"]\nframes = 3\nturn = \"light\"\nformats = [\"png\", \"exr\"]\n{SMALL}light-groups = true\n"
     );
     place.write("a.toml", text.replace("samples = 4", "samples = 7").as_bytes());
     let whole = place.done("batch a.toml --engine cpu --folder whole --frame-range 2-3");

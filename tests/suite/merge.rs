@@ -96,6 +96,21 @@ fn a_region_of_a_picture_joins_like_the_whole() {
     place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another image"]);
 }
 
+/// Light groups: the sums of each and the mix.
+#[test]
+fn light_groups_join_with_their_mix() {
+    let place = Workplace::new();
+    let scene = format!("{SCENE} --light-groups --area-light 20,30,3,1,1,10,group=key --light-mix key=0.25,#ff8000");
+    render_whole_and_joined(&place, &scene);
+    let [joined, whole] = ["joined.exr", "whole.exr"].map(|name| bits(&place.path(name)));
+    assert!(whole.contains_key("light.key.R") && whole.contains_key("sums.light.key.odd.B.low"));
+    assert_joined(&joined, &whole);
+    place.done(&format!(
+        "render {SCENE} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
+    ));
+    place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another image"]);
+}
+
 /// The GPU sums in f32 before it hands over: pictures agree to its rounding.
 #[test]
 fn films_of_the_gpu_join_to_rounding() {

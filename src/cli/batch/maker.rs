@@ -232,9 +232,10 @@ impl<'a> Maker<'a> {
         };
         whole.document.view.denoise = wanted.document.view.denoise;
         let denoised = denoised(&whole)?;
-        let image = whole.film.image();
+        let (image, lights) = (whole.mixed().image(), whole.light_layers());
         let rendered = Rendered {
             denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+            lights: &lights,
             ..Rendered::from(&image)
         };
         let row = Row {

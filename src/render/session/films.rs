@@ -4,11 +4,11 @@ use std::borrow::Cow;
 
 use super::{Session, SessionError};
 use crate::document::ViewSettings;
-use crate::document::effect::without_what_is_off;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::render::denoise::Noisy;
-use crate::render::output::{Layers, LightLayer};
+use crate::render::light_layers::{LightLayer, light_layers, mixed};
+use crate::render::output::Layers;
 use crate::render::shown::Source;
 use crate::render::sums::KeptFilm;
 
@@ -24,9 +24,11 @@ impl Session {
 
     /// The film with the mix of its light groups.
     fn mixed_film(&mut self) -> Result<Cow<'_, Film>, SessionError> {
-        let document = self.document.as_deref().map(without_what_is_off);
-        let factors = document.map(|document| document.light_factors()).unwrap_or_default();
-        Ok(self.engine.film()?.mixed(&factors))
+        let film = self.engine.film()?;
+        Ok(match self.document.as_deref() {
+            Some(document) => mixed(film, document),
+            None => Cow::Borrowed(film),
+        })
     }
 
     /// The light of each group as it was rendered, by the group's name.
@@ -35,13 +37,11 @@ impl Session {
     ///
     /// If the GPU fails.
     pub fn light_layers(&mut self) -> Result<Vec<LightLayer>, SessionError> {
-        let document = self.document.as_deref().map(without_what_is_off);
-        let names = document.map(|document| document.light_groups()).unwrap_or_default();
         let film = self.engine.film()?;
-        let layers = names.into_iter().zip(0..film.light_groups());
-        Ok(layers
-            .map(|(name, group)| (name.into(), film.light_image(group)))
-            .collect())
+        let document = self.document.as_deref();
+        Ok(document
+            .map(|document| light_layers(film, document))
+            .unwrap_or_default())
     }
 
     /// The mean image, linear, with the mix of its light groups.
