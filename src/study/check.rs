@@ -265,10 +265,6 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
     let cases = sample_cases(options.thorough);
     let cases_total = cases.len();
     let sampler = Sampler::open(options.engine)?;
-    let clouds = cases
-        .iter()
-        .map_while(|case| unless_stopped(stop, || sampler.draw(case)))
-        .collect::<Result<Vec<_>, _>>()?;
     let limit = sidak_level(LEVEL, cases.len());
     let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {
         unless_stopped(stop, || {
@@ -279,8 +275,12 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
     // A few for each thread at a time: the stops between them cost little, and show what is left.
     let part = CASES_PER_THREAD * rayon::current_num_threads();
     let mut checks = Vec::with_capacity(cases.len());
-    for (cases, clouds) in cases.chunks(part).zip(clouds.chunks(part)) {
-        checks.par_extend(cases.par_iter().zip(clouds).filter_map(check));
+    for cases in cases.chunks(part) {
+        let clouds = cases
+            .iter()
+            .map_while(|case| unless_stopped(stop, || sampler.draw(case)));
+        let clouds = clouds.collect::<Result<Vec<_>, _>>()?;
+        checks.par_extend(cases.par_iter().zip(&clouds).filter_map(check));
         if stop.load(Ordering::Relaxed) {
             break;
         }
