@@ -1,6 +1,7 @@
 //! Why a session refuses a document or fails.
 
 use super::memory;
+use crate::compile::AssetError;
 use crate::gpu::GpuError;
 use crate::import::ModelError;
 use crate::import::environment::EnvironmentError;
@@ -23,6 +24,15 @@ pub enum SessionError {
     /// The model's instances do not fit into memory one by one; nothing was started.
     #[error(transparent)]
     Instances(#[from] memory::InstancesTooLarge),
+}
+
+impl From<AssetError> for SessionError {
+    fn from(error: AssetError) -> Self {
+        match error {
+            AssetError::Model(error) => Self::Model(error),
+            AssetError::Environment(error) => Self::Environment(error),
+        }
+    }
 }
 
 impl SessionError {

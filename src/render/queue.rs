@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use super::assets::Assets;
 use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::output::{self, OutputError, Rendered};
@@ -14,6 +13,7 @@ use super::session::Session;
 use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use super::turntable::{self, Turntable, TurntableError};
+use crate::compile::Assets;
 use crate::document::Document;
 use crate::panics::{caught, lock};
 use crate::store::FileError;

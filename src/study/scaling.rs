@@ -161,7 +161,8 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
             let source = EnvironmentSource::File(format!("{} x {height} texels", 2 * height).into());
             let original = session
                 .assets()
-                .environment(&document.lighting.environment, document.lighting.environment_encoding)?;
+                .environment(&document.lighting.environment, document.lighting.environment_encoding)
+                .map_err(SessionError::from)?;
             let resampled = resampled(&original, height).map_err(|error| SessionError::Environment(error.into()))?;
             session.assets().keep_environment(source.clone(), resampled);
             grown.lighting.environment = source;

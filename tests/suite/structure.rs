@@ -19,25 +19,26 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
     ("document", &["named", "panics", "optics", "scene", "import", "job"]),
+    ("compile", &["panics", "optics", "scene", "import", "job", "document"]),
     ("matching", &["optics", "analysis", "plot", "document"]),
     (
         "store",
         &[
-            "named", "panics", "optics", "scene", "import", "analysis", "document", "matching",
+            "named", "panics", "optics", "scene", "import", "analysis", "document", "compile", "matching",
         ],
     ),
     (
         "render",
         &[
-            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
-            "store", "import",
+            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "compile",
+            "matching", "store", "import",
         ],
     ),
     (
         "study",
         &[
-            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
-            "store", "render",
+            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "compile",
+            "matching", "store", "render",
         ],
     ),
     (

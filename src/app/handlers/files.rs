@@ -13,7 +13,7 @@ use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
 use crate::document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference};
 use crate::import::endings::ending;
-use crate::import::holds_model;
+use crate::import::{holds_model, light_profile};
 use crate::render::output::format_of;
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
@@ -22,7 +22,7 @@ use crate::scene::{ModelOptions, ModelSource};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::opened::Opened;
-use crate::store::{FileError, Loaded, light_profile, lut, preset, save_document, save_material};
+use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
 const KIND: &str = ".glossmith";

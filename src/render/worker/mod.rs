@@ -14,7 +14,6 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::assets::Assets;
 use super::convergence::Measurement;
 use super::engine::{EngineChoice, EngineInfo};
 use super::output::{Layers, Rendered};
@@ -23,6 +22,7 @@ use super::progress::Progress;
 use super::session::Session;
 use super::shown::{Facts, Scale, Shown};
 use crate::analysis::halves::Distance;
+use crate::compile::Assets;
 use crate::document::Document;
 use crate::gpu::Moment;
 use crate::job::Job;
