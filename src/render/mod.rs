@@ -12,6 +12,7 @@ pub mod environment_thumbnails;
 mod error;
 mod lens;
 pub mod looks;
+mod mailbox;
 pub mod memory;
 pub mod output;
 mod picture_cache;

@@ -101,7 +101,7 @@ impl<'a> State<'a> {
             is_inspected: false,
             denoising: Denoising::spawn({
                 let shared = shared.clone();
-                move || shared.wake()
+                move || shared.commands.change(|_| ())
             }),
             denoised: None,
             at_work: None,
@@ -538,7 +538,7 @@ mod tests {
         });
         for _ in 0..5 {
             // Something to do, so that no turn waits.
-            *lock(&shared.commands) = CommandQueue {
+            *shared.commands.look() = CommandQueue {
                 commands: Commands {
                     environments: vec![EnvironmentSource::Furnace],
                     ..Commands::default()
