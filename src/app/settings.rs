@@ -7,9 +7,9 @@ use egui::ThemePreference;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
+use crate::app::services::viewing::Resolution;
 use crate::app::workspaces;
 use crate::document::{Denoise, ImportLobe};
 use crate::import::resource;

@@ -79,8 +79,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             return;
         }
         self.begun = None;
-        desk.shared.is_measuring = false;
-        if std::mem::take(&mut self.holds_renderer) && desk.shared.is_paused {
+        desk.shared.rendering.is_measuring = false;
+        if std::mem::take(&mut self.holds_renderer) && desk.shared.rendering.is_paused {
             desk.act(Command::Pause);
         }
     }
@@ -103,7 +103,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     ) {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
-        let is_free = !desk.shared.is_measuring && !self.is_at_work();
+        let is_free = !desk.shared.rendering.is_measuring && !self.is_at_work();
         let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
@@ -119,8 +119,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                 let work = begin(desk);
                 self.begin(ui, work);
                 self.begun = Some(Instant::now());
-                desk.shared.is_measuring = true;
-                if !desk.shared.is_paused {
+                desk.shared.rendering.is_measuring = true;
+                if !desk.shared.rendering.is_paused {
                     self.holds_renderer = true;
                     desk.act(Command::Pause);
                 }

@@ -134,7 +134,7 @@ fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     }
     let request = ScatterRequest {
         model,
-        view_angle_deg: desk.shared.view_angle_deg,
+        view_angle_deg: desk.shared.lobe_plots.view_angle_deg,
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
     };

@@ -46,7 +46,7 @@ fn halves(area: Rect) -> [Rect; 2] {
 impl Viewport {
     /// Shows A, `a`, and B where there is an image of it; returns where what the pointer is over is shown.
     pub(super) fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
-        let resolution = desk.shared.resolution;
+        let resolution = desk.shared.viewing.resolution;
         let place = placed(area_of_a(area, desk.shared.compare.view), a, resolution);
         let Some(b) = desk.shared.compare.picture() else {
             self.picture.paint(ui, place, place, a, 0);

@@ -29,7 +29,7 @@ impl DenoiserOffer {
     /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         if self.is_declined
-            || !desk.shared.offers_downloads
+            || !desk.shared.offers.offers_downloads
             || !can_fetch()
             || (self.worker.is_none() && !Library::is_missing())
         {

@@ -32,9 +32,10 @@ use orbit::Orbit;
 use seen::{hit_at, pixel_at};
 
 use super::actions::Action;
-use super::desk::{Desk, Resolution};
+use super::desk::Desk;
 use super::kit::theme;
 use super::services::compare::View;
+use super::services::viewing::Resolution;
 use crate::document::ReferencePlace;
 use crate::render::shown;
 use crate::render::worker::{Picture, Scene};
@@ -200,12 +201,12 @@ impl Viewport {
             let place = if is_compared {
                 self.compared(ui, area, picture, desk)
             } else {
-                let place = self.magnified(ui, &response, area, picture, desk.shared.resolution);
+                let place = self.magnified(ui, &response, area, picture, desk.shared.viewing.resolution);
                 self.picture.over_plate = reference::within(ui, area, place, ReferencePlace::Under, desk);
                 self.picture.paint(ui, area.intersect(place), place, picture, 0);
                 reference::within(ui, area, place, ReferencePlace::Over, desk);
                 if let Some(scene) = &desk.snapshot.scene
-                    && desk.shared.shown == shown::Shown::Precision
+                    && desk.shared.viewing.shown == shown::Shown::Precision
                 {
                     self.precision.show(ui, area, place, &scene.job);
                 }
@@ -214,7 +215,7 @@ impl Viewport {
             if is_compared && desk.shared.compare.view == View::Wipe {
                 Self::divider(ui, place, desk);
             }
-            if desk.shared.shows_safe_frames && !is_compared {
+            if desk.shared.viewing.shows_safe_frames && !is_compared {
                 safe_frames(&ui.painter().with_clip_rect(area), place);
             }
             if let Some((shown, scale)) = picture.map {
@@ -374,7 +375,7 @@ impl Viewport {
         if picking::is_picked(&hit, modifiers.command, desk) {
             return;
         }
-        desk.shared.view_angle_deg = hit.view_angle_deg;
+        desk.shared.lobe_plots.view_angle_deg = hit.view_angle_deg;
         picking::choose(&hit, modifiers.shift, desk);
     }
 

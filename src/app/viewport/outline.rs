@@ -54,7 +54,7 @@ impl Outline {
         let Some(map) = latest.filter(|map| map.is_of(job)) else {
             return;
         };
-        let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.slot);
+        let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.selection.slot);
         let mut hasher = DefaultHasher::new();
         let of_map = (Arc::as_ptr(&map) as usize, ui.visuals().dark_mode);
         (&chosen, surface, lit, of_map).hash(&mut hasher);
@@ -77,7 +77,7 @@ fn chosen(desk: &Desk<'_>) -> Vec<Thing> {
         return selection.objects.iter().copied().map(Thing::Object).collect();
     }
     let count = desk.scene().map_or(0, |scene| scene.model.slots.len());
-    let slots = selection.slots(desk.shared.slot);
+    let slots = selection.slots();
     slots.into_iter().filter(|_| count > 1).map(Thing::Slot).collect()
 }
 

@@ -64,7 +64,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
         } else {
             Lobe::Geometric
         },
-        view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
+        view_angle_deg: f64::from(desk.shared.lobe_plots.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
     };
     if state.worker.is_none() {
         let ctx = ui.ctx().clone();

@@ -96,7 +96,7 @@ impl Panel for LobePanel {
             return;
         }
         let other = other_lobe(self, desk);
-        let view_angle_deg = f64::from(desk.shared.view_angle_deg);
+        let view_angle_deg = f64::from(desk.shared.lobe_plots.view_angle_deg);
         let query = Query {
             kind,
             lobes: [Some(material), other.clone()].into_iter().flatten().collect(),
@@ -107,7 +107,7 @@ impl Panel for LobePanel {
         if self.other != Other::Nothing {
             ui.add_space(crate::app::kit::theme::GAP);
             let target = match self.other {
-                Other::Measured => desk.shared.measured.clone().map(matching::Source::File),
+                Other::Measured => desk.shared.lobe_plots.measured.clone().map(matching::Source::File),
                 _ => other.map(matching::Source::Lobe),
             };
             matching::show(ui, desk, &mut self.matching, target);
