@@ -69,6 +69,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
+/// The most lines of a file.
+const LINES_MAX: usize = 600;
+
 fn collect(ending: &str, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -138,6 +141,19 @@ fn every_folder_has_its_place_in_the_order() {
             || ["lib", "main", "book_pages", "engine"].contains(&name);
         assert!(is_known, "src/{name} has no place in the order of the folders");
     }
+}
+
+#[test]
+fn files_fit_the_head() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let code = ["src", "tests", "benches", "fuzz/fuzz_targets"].map(|folder| files_with("rs", &root.join(folder)));
+    let files = code
+        .into_iter()
+        .flatten()
+        .chain(files_with("wgsl", &root.join("shaders")));
+    let lines = files.map(|file| (fs::read_to_string(&file).unwrap().lines().count(), file));
+    let long: Vec<_> = lines.filter(|(lines, _)| *lines > LINES_MAX).collect();
+    assert!(long.is_empty(), "files of more than {LINES_MAX} lines: {long:?}");
 }
 
 /// The folders and files of `src/` that are of the engine, which is a package of its own.

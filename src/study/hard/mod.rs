@@ -20,6 +20,7 @@ use std::time::Instant;
 use super::check::Check;
 use crate::job::film::Image;
 use crate::render::{EngineChoice, EngineInfo};
+pub use fresnel::naive_conductor;
 pub use stage::{HardError, Stage};
 
 /// A situation where naive code fails.
