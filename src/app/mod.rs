@@ -191,7 +191,7 @@ impl App {
     /// If no thread can be started.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> io::Result<Self> {
         theme::install(&creation.egui_ctx);
-        let kept = settings::Kept::load(creation);
+        let kept = settings::KeptSettings::load(creation);
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
         // The command line overrides what was chosen in the window.
@@ -563,7 +563,7 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let mut layout = self.layout.clone();
         layout::set_maximised(&mut layout, false);
-        let kept = settings::Kept {
+        let kept = settings::KeptSettings {
             allowed: crate::import::resource::allowed(),
             theme: self.theme,
             layout: None,

@@ -43,7 +43,7 @@ const TEXTURES: usize = 8;
 /// the same scene load it once.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    kept: Arc<Mutex<Kept>>,
+    kept: Arc<Mutex<Cache>>,
     loading: Loading,
 }
 
@@ -59,7 +59,7 @@ pub struct Reloaded {
 }
 
 #[derive(Debug)]
-struct Kept {
+struct Cache {
     models: Shelf<ModelKey, Model>,
     pictures: Shelf<PictureKey, Texture>,
     packs: Shelf<PackKey, Pack>,
@@ -71,7 +71,7 @@ struct Kept {
     memory: usize,
 }
 
-impl Default for Kept {
+impl Default for Cache {
     fn default() -> Self {
         Self {
             models: Shelf::new(Model::bytes),
@@ -89,9 +89,9 @@ impl Default for Kept {
 impl Assets {
     /// Keeps within another memory, in bytes.
     pub fn within(memory: usize) -> Self {
-        let kept = Kept {
+        let kept = Cache {
             memory,
-            ..Kept::default()
+            ..Cache::default()
         };
         Self {
             kept: Arc::new(Mutex::new(kept)),
@@ -105,7 +105,7 @@ impl Assets {
     }
 
     /// A panic leaves consistent state behind: every change is a single assignment.
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept(&self) -> MutexGuard<'_, Cache> {
         lock(&self.kept)
     }
 
@@ -205,7 +205,7 @@ impl Assets {
         environment: &EnvironmentSource,
         encoding: EnvironmentEncoding,
     ) -> Result<Reloaded, AssetError> {
-        let mut fresh = Kept::default();
+        let mut fresh = Cache::default();
         let (of_model, of_environment) = ((source.clone(), options.clone()), (environment.clone(), encoding));
         let model = fresh.model(&of_model, &self.loading)?;
         let environment = fresh.environment(&of_environment, &self.loading)?;
@@ -221,7 +221,7 @@ impl Assets {
     }
 }
 
-impl Kept {
+impl Cache {
     fn now(&mut self) -> u64 {
         self.clock += 1;
         self.clock

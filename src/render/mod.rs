@@ -16,7 +16,7 @@ mod mailbox;
 pub mod memory;
 pub mod output;
 mod picture_cache;
-pub mod precision;
+pub mod precision_maps;
 pub mod priority;
 mod progress;
 pub mod queue;

@@ -36,7 +36,7 @@ pub(in crate::app) struct Listed {
 }
 
 /// A material of the panel, with the key of its image.
-pub(in crate::app) struct Shown {
+pub(in crate::app) struct MaterialCard {
     pub(in crate::app) entry: Entry,
     pub(in crate::app) key: u64,
 }
@@ -46,7 +46,7 @@ pub(in crate::app) struct Shown {
 pub(in crate::app) struct Library {
     /// Where the user's are; `None` where there is no place for them.
     pub(in crate::app) folder: Option<PathBuf>,
-    pub(in crate::app) own: Vec<Shown>,
+    pub(in crate::app) own: Vec<MaterialCard>,
     /// Keys of the shipped ones.
     shipped: Vec<u64>,
     pub(in crate::app) renaming: Option<(PathBuf, String)>,
@@ -105,7 +105,7 @@ impl Library {
     }
 
     pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {
-        let show = |entry: Entry| Shown {
+        let show = |entry: Entry| MaterialCard {
             key: entry.material.as_ref().map_or(0, thumbnails::key),
             entry,
         };

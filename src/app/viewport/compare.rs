@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Align, Align2, Color32, CursorIcon, Key, Layout, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 
-use super::{Shown, Viewport, placed};
+use super::{ShownTexture, Viewport, placed};
 use crate::analysis::difference::diverging;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
@@ -208,7 +208,7 @@ fn legend(ui: &Ui, place: Rect, compared: &Compared) {
     );
 }
 
-impl Shown {
+impl ShownTexture {
     fn paint_difference(&mut self, ui: &Ui, place: Rect, compared: &Compared, generation: u64) {
         let image = || egui::ColorImage::from_rgba_unmultiplied(compared.size, &compared.rgba);
         self.upload(ui, [generation, compared.serial], image);

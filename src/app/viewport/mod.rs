@@ -17,7 +17,7 @@ mod messages;
 mod orbit;
 mod outline;
 mod picking;
-mod precision;
+mod precision_map;
 mod reference;
 mod region;
 mod seen;
@@ -62,13 +62,13 @@ const SIDE_MAX_PX: u32 = 8192;
 /// The viewport's own state.
 #[derive(Default)]
 pub(super) struct Viewport {
-    picture: Shown,
+    picture: ShownTexture,
     /// B's, where two are compared.
-    rival: Shown,
+    rival: ShownTexture,
     /// How B differs from A.
-    difference: Shown,
+    difference: ShownTexture,
     /// What of the numbers is not to be trusted.
-    precision: precision::Precision,
+    precision: precision_map::PrecisionView,
     /// Where the image may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
@@ -85,7 +85,7 @@ pub(super) struct Viewport {
 
 /// A texture, and what it shows.
 #[derive(Default)]
-struct Shown {
+struct ShownTexture {
     texture: Option<TextureHandle>,
     /// What it stands for, and whether its pixels have edges.
     key: Option<([u64; 2], bool)>,
@@ -96,7 +96,7 @@ struct Shown {
     over_plate: bool,
 }
 
-impl Shown {
+impl ShownTexture {
     /// Makes the texture show what the key stands for.
     fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
         let options = if self.shows_pixels {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Rect, Ui};
 
-use super::Shown;
+use super::ShownTexture;
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::services::selection::Thing;
@@ -18,7 +18,7 @@ pub(super) struct Outline {
     maps: Option<SeenMaps>,
     /// What the latest map was asked of, and in what size.
     asked: Option<(Arc<Job>, [u32; 2])>,
-    shown: Shown,
+    shown: ShownTexture,
 }
 
 impl Outline {

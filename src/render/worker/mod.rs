@@ -21,7 +21,7 @@ use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
 use super::progress::Progress;
 use super::session::Session;
-use super::shown::{Facts, Scale, Shown};
+use super::shown::{PixelFacts, Scale, Shown};
 use crate::analysis::halves::Distance;
 use crate::compile::Assets;
 use crate::document::Document;
@@ -116,7 +116,7 @@ pub struct Picture {
     /// The map that `rgba` shows, with its colour scale if it has one; `None` for the image itself.
     pub map: Option<(Shown, Option<Scale>)>,
     /// Per-pixel quantities while the inspector is open.
-    pub facts: Option<Arc<Facts>>,
+    pub facts: Option<Arc<PixelFacts>>,
     /// The document, with the size at full resolution.
     pub document: Arc<Document>,
 }

@@ -62,7 +62,7 @@ struct Query {
 /// What came of a query.
 struct Answer {
     query: Query,
-    shown: Shown,
+    shown: Drawn,
 }
 
 impl Query {
@@ -74,7 +74,7 @@ impl Query {
     }
 }
 
-enum Shown {
+enum Drawn {
     Lines(LinePlot),
     Pictures(Vec<ColorImage>),
 }
@@ -204,7 +204,7 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
         ui.multiply_opacity(OLD_OPACITY);
     }
     match &answer.shown {
-        Shown::Lines(plot) => {
+        Drawn::Lines(plot) => {
             line_plot(ui, "lobe view", plot, &state.radii);
             widgets::comes_and_goes(ui, |ui| {
                 if plot.is_polar {
@@ -212,7 +212,7 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
                 }
             });
         }
-        Shown::Pictures(images) => {
+        Drawn::Pictures(images) => {
             if !state
                 .pictured
                 .as_ref()
@@ -241,7 +241,7 @@ fn computing(ui: &mut Ui) {
     egui::Spinner::new().paint_at(ui, spinner);
 }
 
-fn compute(query: &Query) -> Shown {
+fn compute(query: &Query) -> Drawn {
     let angles_deg = if query.kind.is_against_angle() {
         query.kind.view_angles_deg()
     } else {
@@ -249,7 +249,7 @@ fn compute(query: &Query) -> Shown {
     };
     // One figure a lobe, under each other, on a common scale: the panel is narrow.
     let figures: Vec<LobeView> = match lobe_view(query.kind, &query.lobes, &angles_deg) {
-        LobeView::Lines(plot) => return Shown::Lines(plot),
+        LobeView::Lines(plot) => return Drawn::Lines(plot),
         LobeView::Maps(MapPlot { title, range, maps }) => maps
             .into_iter()
             .map(|map| {
@@ -277,5 +277,5 @@ fn compute(query: &Query) -> Shown {
         let size = [picture.width() as usize, picture.height() as usize];
         ColorImage::from_rgb(size, picture.as_raw())
     };
-    Shown::Pictures(pictures.map(image).collect())
+    Drawn::Pictures(pictures.map(image).collect())
 }
