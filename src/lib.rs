@@ -14,8 +14,8 @@ pub mod console;
 
 pub mod plot;
 
-pub mod document;
 pub mod compile;
+pub mod document;
 pub mod matching;
 pub mod store;
 

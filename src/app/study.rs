@@ -11,6 +11,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::app::kit::words::time_left;
+use crate::app::services::beside::started;
 use crate::document::{Change, Document};
 use crate::render::EngineChoice;
 use crate::render::background::Background;
@@ -178,26 +179,22 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     fn begin(&mut self, ui: &Ui, work: Work<R>) {
         self.stop.store(false, Ordering::Relaxed);
         self.is_stopped = false;
-        if self.worker.is_none() {
-            let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
-            let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Status<R>>| {
+        let worker = started(&mut self.worker, ui.ctx(), |repaint| {
+            let stop = self.stop.clone();
+            Background::spawn("study", repaint, move |work: Work<R>, responder| {
                 let mut watch = |progress| {
-                    desk.publish(Status::Running(progress));
-                    !stop.load(Ordering::Relaxed) && !desk.is_superseded()
+                    responder.publish(Status::Running(progress));
+                    !stop.load(Ordering::Relaxed) && !responder.is_superseded()
                 };
-                desk.publish(match work(&mut watch) {
+                responder.publish(match work(&mut watch) {
                     Ok(result) => Status::Done(Arc::new(result)),
                     Err(StudyError::Stopped) => Status::Stopped,
                     Err(error) => Status::Failed(error.to_string()),
                 });
-            };
-            // Without a thread the button does nothing; the log says why.
-            match Background::spawn("study", move || ctx.request_repaint(), body) {
-                Ok(worker) => self.worker = Some(worker),
-                Err(error) => log::error!("cannot start a thread to measure on: {error}"),
-            }
-        }
-        if let Some(worker) = &self.worker {
+            })
+        });
+        // Without a thread the button does nothing; the log says why.
+        if let Some(worker) = worker {
             worker.ask(work);
         }
     }

@@ -37,7 +37,11 @@ pub(super) struct Workspaces {
 impl Workspaces {
     /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
     /// name, which earlier versions kept.
-    pub(super) fn new(kept: KeptWorkspaces, former: Option<Tree<Pane>>, requested: Option<String>) -> (Self, Tree<Pane>) {
+    pub(super) fn new(
+        kept: KeptWorkspaces,
+        former: Option<Tree<Pane>>,
+        requested: Option<String>,
+    ) -> (Self, Tree<Pane>) {
         let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
         let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
         for (name, layout) in kept.all.into_iter().filter_map(whole) {

@@ -187,7 +187,12 @@ fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dy
 }
 
 /// Carries out orders until the window is gone.
-fn obey(slot: RecoveryFile, mut leftovers: Vec<Option<RecoveryFile>>, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
+fn obey(
+    slot: RecoveryFile,
+    mut leftovers: Vec<Option<RecoveryFile>>,
+    ordered: &Receiver<Order>,
+    report: &dyn Fn(Report),
+) {
     let mut is_kept = true;
     let mut is_empty = true;
     let mut has_failed = false;

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
+use crate::app::services::beside::started;
 use crate::document::MaterialSettings;
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
 use crate::store::PRESETS;
@@ -142,18 +143,12 @@ impl Library {
         if self.shipped.is_empty() {
             self.shipped = PRESETS.iter().map(thumbnails::key).collect();
         }
-        if self.worker.is_none() {
-            let repainting = ctx.clone();
-            let folder = cache.join("thumbnails");
-            let repaint = move || repainting.request_repaint();
-            let worker = thumbnails::spawn_thumbnails(folder, self.hold.clone(), repaint);
-            match worker {
-                Ok(worker) => self.worker = Some(worker),
-                // Colours stand in for images.
-                Err(_) => return self.cache = None,
-            }
-        }
-        let Some(worker) = &self.worker else {
+        let worker = started(&mut self.worker, ctx, |repaint| {
+            thumbnails::spawn_thumbnails(cache.join("thumbnails"), self.hold.clone(), repaint)
+        });
+        let Some(worker) = worker else {
+            // Colours stand in for images.
+            self.cache = None;
             return;
         };
         if !std::mem::replace(&mut self.is_asked, true) {

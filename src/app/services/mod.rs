@@ -1,6 +1,7 @@
 //! What the window keeps beside the document, each on its own: it sees neither panels nor the window.
 
 pub(super) mod autosave;
+pub(super) mod beside;
 pub mod compare;
 pub(super) mod crash;
 pub(super) mod disk;

@@ -8,6 +8,7 @@ use egui::{Color32, ColorImage, Rect, Ui};
 use super::ShownTexture;
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
+use crate::app::services::beside::started;
 use crate::app::services::selection::Thing;
 use crate::job::Job;
 use crate::render::seen_map::{self, SeenMap, SeenMaps};
@@ -29,11 +30,9 @@ impl Outline {
         if chosen.is_empty() && lit.is_none() {
             return;
         }
-        if self.maps.is_none() {
-            let ctx = ui.ctx().clone();
-            self.maps = seen_map::spawn(move || ctx.request_repaint()).ok();
-        }
-        let Some(maps) = &self.maps else { return };
+        let Some(maps) = started(&mut self.maps, ui.ctx(), seen_map::spawn) else {
+            return;
+        };
         // In the screen's pixels, at any size of the image.
         let pixels = place.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));

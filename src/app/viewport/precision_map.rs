@@ -5,6 +5,7 @@ use std::sync::Arc;
 use egui::{Align, Color32, ColorImage, Layout, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 
 use super::ShownTexture;
+use crate::app::services::beside::started;
 use crate::job::Job;
 use crate::job::precision::{Fault, PrecisionMap};
 use crate::render::precision_maps::{self, PrecisionMaps};
@@ -31,11 +32,9 @@ pub(super) struct PrecisionView {
 impl PrecisionView {
     /// Paints the map of a job over `place` once it is there, and the legend into a corner of `area`.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
-        if self.maps.is_none() {
-            let ctx = ui.ctx().clone();
-            self.maps = precision_maps::spawn(move || ctx.request_repaint()).ok();
-        }
-        let Some(maps) = &self.maps else { return };
+        let Some(maps) = started(&mut self.maps, ui.ctx(), precision_maps::spawn) else {
+            return;
+        };
         if !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, job)) {
             maps.ask(job.clone());
             self.asked = Some(job.clone());

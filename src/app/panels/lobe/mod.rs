@@ -14,6 +14,7 @@ use matching::MatchState;
 use super::Panel;
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::app::services::beside::started;
 use crate::matching::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
@@ -174,16 +175,13 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: V
 }
 
 fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
-    if state.worker.is_none() {
-        let ctx = ui.ctx().clone();
-        let repaint = move || ctx.request_repaint();
-        state.worker = Background::spawn("lobe view", repaint, |query, desk| {
+    let worker = started(&mut state.worker, ui.ctx(), |repaint| {
+        Background::spawn("lobe view", repaint, |query, responder| {
             let shown = compute(&query);
-            desk.publish(Arc::new(Answer { query, shown }))
+            responder.publish(Arc::new(Answer { query, shown }))
         })
-        .ok();
-    }
-    let Some(worker) = &state.worker else {
+    });
+    let Some(worker) = worker else {
         widgets::note(ui, "Cannot start a thread to compute.");
         return;
     };
