@@ -9,6 +9,7 @@ use crate::analysis::difference::diverging;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::keys::hold_arrows;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, NumberStyle};
 use crate::app::services::compare::{BEFORE, Compared, Rival, View};
@@ -140,13 +141,7 @@ fn arrows(ui: &Ui, response: &Response) -> f32 {
     if !response.has_focus() {
         return 0.0;
     }
-    ui.memory_mut(|memory| {
-        let filter = egui::EventFilter {
-            horizontal_arrows: true,
-            ..Default::default()
-        };
-        memory.set_focus_lock_filter(response.id, filter);
-    });
+    hold_arrows(ui, response, true, false);
     let count = |key| ui.input(|input| input.num_presses(key)) as f32;
     count(Key::ArrowRight) - count(Key::ArrowLeft)
 }

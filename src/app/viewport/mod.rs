@@ -33,6 +33,7 @@ use seen::{hit_at, pixel_at};
 
 use super::actions::Action;
 use super::desk::Desk;
+use super::kit::keys::hold_arrows;
 use super::kit::theme;
 use super::services::compare::View;
 use super::services::viewing::Resolution;
@@ -384,14 +385,7 @@ impl Viewport {
         if !response.has_focus() {
             return;
         }
-        ui.memory_mut(|memory| {
-            let filter = egui::EventFilter {
-                horizontal_arrows: true,
-                vertical_arrows: true,
-                ..Default::default()
-            };
-            memory.set_focus_lock_filter(response.id, filter);
-        });
+        hold_arrows(ui, response, true, true);
         let arrows = [
             (Key::ArrowLeft, [-KEY_POINTS, 0.0]),
             (Key::ArrowRight, [KEY_POINTS, 0.0]),
