@@ -13,3 +13,13 @@ pub enum AssetError {
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
 }
+
+impl AssetError {
+    /// Whether it was cancelled rather than failed.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Model(ModelError::Cancelled(_)) | Self::Environment(EnvironmentError::Cancelled(_))
+        )
+    }
+}

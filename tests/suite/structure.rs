@@ -144,7 +144,7 @@ fn every_folder_has_its_place_in_the_order() {
 }
 
 #[test]
-fn files_fit_the_head() {
+fn files_stay_short() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let code = ["src", "tests", "benches", "fuzz/fuzz_targets"].map(|folder| files_with("rs", &root.join(folder)));
     let files = code
