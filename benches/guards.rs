@@ -21,6 +21,7 @@ use glossmith::optics::warp::uniform_sphere;
 use glossmith::render::{EngineChoice, Session, SessionError};
 use glossmith::scene::surface::position_error;
 use glossmith::scene::{Geometry, Model, RayFrame, intersect_triangle, teapot, triangle_normal};
+use glossmith::study::hard::naive_conductor;
 use obvhs::cwbvh::CwBvh;
 use obvhs::ray::{Ray, RayHit};
 
@@ -228,18 +229,6 @@ fn small_forms(scene: &Scene) {
         |&v| naive_conductor(v.z.abs(), 0.2, 3.9),
     );
     row("Fresnel's equations of a metal", "one channel", times);
-}
-
-/// The textbook form.
-fn naive_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
-    let (cos2, sin2) = (cosine * cosine, 1.0 - cosine * cosine);
-    let t0 = eta * eta - k * k - sin2;
-    let size = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
-    let a = (0.5 * (size + t0)).sqrt();
-    let (t1, t2) = (size + cos2, 2.0 * a * cosine);
-    let perpendicular = (t1 - t2) / (t1 + t2);
-    let (t3, t4) = (cos2 * size + sin2 * sin2, t2 * sin2);
-    0.5 * (perpendicular + perpendicular * (t3 - t4) / (t3 + t4))
 }
 
 fn sums(scene: &Scene) {

@@ -2,7 +2,7 @@
 //!
 //! The modules, in the order in which they may use each other:
 //! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`study`] ← [`cli`], [`app`] ← `main`, and between
-//! [`job`] and [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`matching`] ← [`store`]; [`import`], after [`scene`],
+//! [`job`] and [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`matching`], [`compile`] ← [`store`]; [`import`], after [`scene`],
 //! reads files.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
@@ -14,6 +14,7 @@ pub mod console;
 
 pub mod plot;
 
+pub mod compile;
 pub mod document;
 pub mod matching;
 pub mod store;

@@ -1,13 +1,11 @@
 // The path tracer. Twin of src/cpu/integrator/mod.rs.
+#import "pass/light"
 #import "pass/light_groups"
-#import "optics/coat_medium"
 #import "optics/layer/scatter"
 #import "optics/random"
-#import "optics/warp"
 #import "scene/camera"
 #import "scene/catcher"
 #import "scene/choices"
-#import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
 #import "scene/visibility"
@@ -109,88 +107,6 @@ struct PathResult {
     guides: GuideSums,
 }
 
-fn world_environment_radiance(direction: vec3f) -> vec3f {
-    let local = environment_local_from_world(direction, globals.environment_rotation);
-    return environment_radiance(local) * globals.environment_strength;
-}
-
-// MIS weight of BSDF sampling for the environment's light, in [0, 1].
-fn environment_mis_weight(direction: vec3f, lobe_density: f32, is_mirror: bool) -> f32 {
-    if !samples_environment() || is_mirror {
-        return 1.0;
-    }
-    let local = environment_local_from_world(direction, globals.environment_rotation);
-    let light_density = globals.environment_probability * environment_density(local, globals.environment_cells_size);
-    return mis_weight_lobe(lobe_density, light_density);
-}
-
-// Emission of a surface that the path hit after `distance`, times the MIS weight of BSDF sampling.
-fn emitted_light(
-    point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
-) -> vec3f {
-    var emission = material.emission;
-    if PLAN_SPOT == 1u {
-        let cosine = dot(point.flat, point.surface.wo);
-        emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
-        emission *= profile_share(material, point.surface.wo);
-    }
-    if PLAN_COAT_ABSORPTION == 1u {
-        let cosine = dot(point.flat, point.surface.wo);
-        emission *= coat_over_emission(material, cosine, point.surface.is_inside);
-    }
-    if !samples_emitters() || is_mirror {
-        return emission;
-    }
-    if globals.strategy == STRATEGY_LIGHT {
-        return vec3f(0.0);
-    }
-    let cosine = dot(point.flat, point.surface.wo);
-    return emission * mis_weight_lobe(lobe_density, light_density(material.light_luminance, cosine, distance));
-}
-
-// Balance-heuristic weight of BSDF sampling (Veach 1997).
-fn mis_weight_lobe(lobe_density: f32, light_density: f32) -> f32 {
-    return lobe_density / max(lobe_density + light_density, 1e-30);
-}
-
-// Whether light sampling samples the environment.
-fn samples_environment() -> bool {
-    return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
-}
-
-// Whether light sampling samples emitting triangles.
-fn samples_emitters() -> bool {
-    return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
-}
-
-// Whether light is sampled (next-event estimation).
-fn samples_light() -> bool {
-    return samples_environment() || samples_emitters();
-}
-
-// Chooses by a light sample's first number between the environment (is_below) and the emitters; also returns the remapped
-// number.
-fn choose_environment(xi: f32) -> Part {
-    if !samples_emitters() {
-        return Part(true, xi);
-    }
-    if !samples_environment() {
-        return Part(false, xi);
-    }
-    return split(xi, globals.environment_probability);
-}
-
-// Samples a direction to the environment or an emitter. The environment's radiance is left out: it is looked up only if the
-// shadow ray is unoccluded.
-fn sample_light(point: SurfacePoint, is_environment: bool, xi: vec3f) -> LightSample {
-    if !is_environment {
-        return light_sample(point.position, point.error, xi);
-    }
-    let sampled = environment_sample(xi, globals.environment_cells_size);
-    let direction = environment_world_from_local(sampled.direction, globals.environment_rotation);
-    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30, ENVIRONMENT_GROUP);
-}
-
 // A shadow ray and the light that it may bring.
 struct ShadowRay {
     ray: Ray,
@@ -244,46 +160,6 @@ fn transmittance_over(medium: u32, distance: f32) -> vec3f {
         return vec3f(1.0);
     }
     return exp(-material_at(medium).absorption * distance);
-}
-
-// Whether an escaped path looks up the environment.
-fn needs_environment(bounce: u32, was_mirror: bool) -> bool {
-    if bounce == 0u {
-        return globals.background_kind == BACKGROUND_BLURRED || globals.background_kind == BACKGROUND_ENVIRONMENT;
-    }
-    return was_mirror || !samples_environment() || globals.strategy != STRATEGY_LIGHT;
-}
-
-fn blurred(direction: vec3f, xi: vec2f) -> vec3f {
-    let disc = globals.background.x * uniform_disc(xi);
-    return world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
-}
-
-// Background colour and alpha of camera rays that miss; `sky` is the environment's radiance, if needed.
-fn plain_background(sky: vec3f) -> vec4f {
-    if needs_environment(0u, true) {
-        return vec4f(sky, 1.0);
-    }
-    let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    return select(vec4f(globals.background, 1.0), vec4f(0.0), is_transparent);
-}
-
-// Whether the kernel is compiled with light sampling.
-fn may_sample_light() -> bool {
-    return PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u;
-}
-
-// Background colour and alpha of a camera ray that misses; a blur draws the random pair of `dimension`.
-fn camera_background(direction: vec3f, state: RandomState, dimension: u32) -> vec4f {
-    var sky = vec3f(0.0);
-    if needs_environment(0u, true) {
-        var along = direction;
-        if globals.background_kind == BACKGROUND_BLURRED {
-            along = blurred(direction, random_pair(state, dimension));
-        }
-        sky = world_environment_radiance(along);
-    }
-    return plain_background(sky);
 }
 
 // How a path continues after its camera ray hit the shadow catcher.

@@ -1,9 +1,6 @@
 //! What the parts of the window work on: the document, the renderer's state, a queue of actions, and what they share.
 
-use std::path::PathBuf;
-
 use egui::{Response, Ui};
-use serde::{Deserialize, Serialize};
 
 use crate::app::actions::{Action, Command};
 use crate::app::kit::parameter_row;
@@ -12,22 +9,22 @@ use crate::app::services::compare::Compare;
 use crate::app::services::edits::Edits;
 use crate::app::services::environments::Environments;
 use crate::app::services::library::Library;
+use crate::app::services::lobe_plots::{LobePlots, VIEW_ANGLE_DEG};
 use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
+use crate::app::services::offers::Offers;
 use crate::app::services::recent::Recent;
 use crate::app::services::reference::ReferenceImage;
+use crate::app::services::rendering::Rendering;
 use crate::app::services::selection::Selection;
 use crate::app::services::shelves::Shelves;
 use crate::app::services::snapshots::Snapshots;
+use crate::app::services::viewing::{Pick, Viewing};
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::queue::Queue;
-use crate::render::shown::Shown;
 use crate::render::worker::{Scene, Snapshot};
-use crate::render::{EngineChoice, RayQueries};
-use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
-use crate::study::references::ReferenceCache;
 
 /// What panels work on.
 pub(super) struct Desk<'a> {
@@ -40,12 +37,8 @@ pub(super) struct Desk<'a> {
 
 /// What the parts of the window share that is no part of the document: what is selected and shown, and the services.
 pub(super) struct Shared {
-    /// The material slot that is edited.
-    pub(super) slot: usize,
-    /// What is chosen beside it, and what is lit up.
+    /// What is edited, chosen and lit up.
     pub(super) selection: Selection,
-    /// The slots that were selected of other models, for when undo or redo brings them back.
-    pub(super) slots_of: Vec<(ModelSource, usize)>,
     /// What was said, oldest first.
     pub(super) messages: Vec<Entry>,
     /// Thumbnails of environments.
@@ -54,35 +47,16 @@ pub(super) struct Shared {
     pub(super) recent: Recent,
     /// The lobe of the materials of models that are opened.
     pub(super) import_lobe: ImportLobe,
-    /// The engine that was asked for, and the one that is remembered: the command line's is not.
-    pub(super) engine: EngineChoice,
-    pub(super) kept_engine: EngineChoice,
-    /// Whether the GPU's engine uses ray queries, as it is remembered.
-    pub(super) kept_ray_queries: RayQueries,
-    /// How large the image is.
-    pub(super) resolution: Resolution,
-    /// What of the render the viewport shows.
-    pub(super) shown: Shown,
+    /// The engine, and when it rests.
+    pub(super) rendering: Rendering,
+    /// How the viewport shows the render.
+    pub(super) viewing: Viewing,
     /// The pixel that is looked at closely.
     pub(super) look: Look,
-    /// How many of the hints for new users are over.
-    pub(super) hints_seen: usize,
-    /// The window may offer to download what it lacks.
-    pub(super) offers_downloads: bool,
-    /// The angle between view and normal in the plots of lobes and their samples, degrees.
-    pub(super) view_angle_deg: f32,
-    /// The file of a measured material, to compare lobes with.
-    pub(super) measured: Option<PathBuf>,
-    /// What the next click in the viewport is for.
-    pub(super) picks: Option<Pick>,
-    /// What every screen shows is marked in the viewport.
-    pub(super) shows_safe_frames: bool,
-    /// Rendering was stopped by hand.
-    pub(super) is_paused: bool,
-    /// A study measures, for which the viewport's renderer rests.
-    pub(super) is_measuring: bool,
-    /// Converged images to measure against.
-    pub(super) references: ReferenceCache,
+    /// What is offered to new users.
+    pub(super) offers: Offers,
+    /// What the plots of lobes share.
+    pub(super) lobe_plots: LobePlots,
     /// The materials to choose from.
     pub(super) library: Library,
     /// What the browser keeps, and the folders that it watches.
@@ -97,56 +71,6 @@ pub(super) struct Shared {
     pub(super) reference: ReferenceImage,
 }
 
-/// What a click in the viewport can be for instead of choosing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pick {
-    /// It says what is sharp.
-    Focus,
-    /// It says where the highlight of the area light with this number is seen.
-    Highlight(usize),
-}
-
-/// The angle between view and normal at first, degrees.
-pub(super) const VIEW_ANGLE_DEG: f32 = 45.0;
-
-/// How large the image is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Resolution {
-    /// It fills the viewport: with the screen's pixels on a hardware GPU, else with one a point.
-    #[default]
-    Auto,
-    /// It fills the viewport with the screen's pixels.
-    Native,
-    /// It fills the viewport with half as many pixels each way.
-    Half,
-    /// Width and height as in the document, shown with its own shape.
-    Document,
-}
-
-/// The sizes of the image to choose from: (value, label, help).
-pub(super) const RESOLUTIONS: [(Resolution, &str, &str); 4] = [
-    (
-        Resolution::Auto,
-        "Fill",
-        "Fills the viewport: with the screen's pixels on a GPU, with fewer on the CPU.",
-    ),
-    (
-        Resolution::Native,
-        "Fill, native",
-        "Fills the viewport with the screen's own pixels.",
-    ),
-    (
-        Resolution::Half,
-        "Fill, half",
-        "Fills the viewport with half as many pixels each way.",
-    ),
-    (
-        Resolution::Document,
-        "Image size",
-        "Width and height as set below, for any shape of the viewport.",
-    ),
-];
-
 /// The group of the settings that only count where the viewport has the image's size.
 pub(super) const PICTURE_SIZE: &str = "Image size";
 
@@ -157,10 +81,10 @@ impl Desk<'_> {
 
     /// A button that says what the next click in the viewport is for, until it is pressed again.
     pub(super) fn pick_toggle(&mut self, ui: &mut Ui, pick: Pick, text: &str, help: &str) -> Response {
-        let is_on = self.shared.picks == Some(pick);
+        let is_on = self.shared.viewing.picks == Some(pick);
         let response = ui.add(egui::Button::new(text).selected(is_on)).on_hover_text(help);
         if response.clicked() {
-            self.shared.picks = (!is_on).then_some(pick);
+            self.shared.viewing.picks = (!is_on).then_some(pick);
         }
         response
     }
@@ -193,7 +117,7 @@ impl Desk<'_> {
 
     /// The material of the selected slot.
     pub(super) fn material(&self) -> MaterialSettings {
-        self.document.material(self.shared.slot)
+        self.document.material(self.shared.selection.slot)
     }
 
     /// The slots of the model whose materials are as asked for.
@@ -208,7 +132,7 @@ impl Desk<'_> {
     /// same in the materials that are chosen beside it.
     pub(super) fn set_material(&mut self, material: MaterialSettings) {
         let before = self.material();
-        for slot in self.shared.selection.slots(self.shared.slot).into_iter().skip(1) {
+        for slot in self.shared.selection.slots().into_iter().skip(1) {
             let other = self.document.material_mut(slot);
             for parameter in PARAMETERS.iter() {
                 let value = parameter.get(&material);
@@ -226,7 +150,7 @@ impl Desk<'_> {
                 }
             }
         }
-        *self.document.material_mut(self.shared.slot) = material;
+        *self.document.material_mut(self.shared.selection.slot) = material;
     }
 
     /// The rows of a group of settings, those that have an effect.
@@ -288,9 +212,9 @@ impl Desk<'_> {
             symbol: "θ",
             help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
         };
-        let angle = &mut self.shared.view_angle_deg;
+        let angle = &mut self.shared.lobe_plots.view_angle_deg;
         if widgets::row(ui, name, |ui| widgets::number(ui, angle, &style)).reset {
-            self.shared.view_angle_deg = VIEW_ANGLE_DEG;
+            self.shared.lobe_plots.view_angle_deg = VIEW_ANGLE_DEG;
         }
     }
 

@@ -29,7 +29,6 @@ use egui::Ui;
 use egui_tiles::Tree;
 
 use actions::Action;
-pub use desk::Resolution;
 use desk::{Desk, Shared};
 use handlers::dropped;
 use handlers::models::ENVIRONMENT_CHANGED;
@@ -39,8 +38,14 @@ use panels::Panels;
 use services::autosave::{self, Autosave, Leftover};
 pub use services::crash::report_panics;
 use services::edits::Edits;
+use services::lobe_plots::LobePlots;
 pub use services::log_failures::listen;
+use services::offers::Offers;
 use services::recent::Recent;
+use services::rendering::Rendering;
+use services::selection::Selection;
+pub use services::viewing::Resolution;
+use services::viewing::Viewing;
 pub use services::{compare, library, snapshots};
 use services::{environments, messages};
 use sheets::book::Manual;
@@ -56,13 +61,11 @@ use workspaces::Workspaces;
 use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
-use crate::render::shown::Shown;
 use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::still_life;
-use crate::study::references::ReferenceCache;
 
 /// A finished image that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -188,7 +191,7 @@ impl App {
     /// If no thread can be started.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> io::Result<Self> {
         theme::install(&creation.egui_ctx);
-        let kept = settings::Kept::load(creation);
+        let kept = settings::KeptSettings::load(creation);
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
         // The command line overrides what was chosen in the window.
@@ -221,30 +224,22 @@ impl App {
             queue: Vec::new(),
             awaited: 0,
             shared: Shared {
-                slot: 0,
-                selection: services::selection::Selection::default(),
-                slots_of: Vec::new(),
+                selection: Selection::default(),
                 messages: Vec::new(),
                 environments,
                 recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
-                engine,
-                kept_engine: kept.engine,
-                kept_ray_queries: kept.ray_queries,
-                resolution: options.resolution.unwrap_or(kept.resolution),
-                shown: Shown::default(),
+                rendering: Rendering::new(engine, (kept.engine, kept.ray_queries), options.cache.as_deref()),
+                viewing: Viewing {
+                    resolution: options.resolution.unwrap_or(kept.resolution),
+                    ..Viewing::default()
+                },
                 look: services::look::Look::default(),
-                hints_seen: kept.hints_seen,
-                offers_downloads: options.offers_downloads,
-                view_angle_deg: desk::VIEW_ANGLE_DEG,
-                measured: None,
-                picks: None,
-                shows_safe_frames: false,
-                is_paused: false,
-                is_measuring: false,
-                references: options.cache.as_ref().map_or_else(ReferenceCache::none, |cache| {
-                    ReferenceCache::at(cache.join("references"))
-                }),
+                offers: Offers {
+                    hints_seen: kept.hints_seen,
+                    offers_downloads: options.offers_downloads,
+                },
+                lobe_plots: LobePlots::default(),
                 library,
                 shelves: services::shelves::Shelves::new(kept.shelves),
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
@@ -385,7 +380,7 @@ impl App {
     }
 
     fn desk_material(&self) -> MaterialSettings {
-        self.document.material(self.shared.slot)
+        self.document.material(self.shared.selection.slot)
     }
 
     /// Records what was edited since this was last done.
@@ -419,7 +414,7 @@ impl App {
             .show(ui, |ui| {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
-                let chosen = (self.shared.import_lobe, self.shared.engine);
+                let chosen = (self.shared.import_lobe, self.shared.rendering.engine);
                 let names: Vec<&str> = self.workspaces.names().collect();
                 let panels = ((names.as_slice(), self.workspaces.current()), is_open);
                 menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, panels, actions);
@@ -568,18 +563,18 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let mut layout = self.layout.clone();
         layout::set_maximised(&mut layout, false);
-        let kept = settings::Kept {
+        let kept = settings::KeptSettings {
             allowed: crate::import::resource::allowed(),
             theme: self.theme,
             layout: None,
             workspaces: self.workspaces.kept(layout),
-            resolution: self.shared.resolution,
+            resolution: self.shared.viewing.resolution,
             import_lobe: self.shared.import_lobe,
-            engine: self.shared.kept_engine,
-            ray_queries: self.shared.kept_ray_queries,
+            engine: self.shared.rendering.kept_engine,
+            ray_queries: self.shared.rendering.kept_ray_queries,
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
-            hints_seen: self.shared.hints_seen,
+            hints_seen: self.shared.offers.hints_seen,
             shelves: self.shared.shelves.kept.clone(),
         };
         kept.save(storage);

@@ -7,9 +7,9 @@ use egui::ThemePreference;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
+use crate::app::services::viewing::Resolution;
 use crate::app::workspaces;
 use crate::document::{Denoise, ImportLobe};
 use crate::import::resource;
@@ -119,13 +119,13 @@ pub(super) fn cache_folder() -> Option<PathBuf> {
 /// What is remembered.
 #[derive(Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct Kept {
+pub(super) struct KeptSettings {
     pub(super) theme: ThemePreference,
     /// The arrangement of versions without workspaces: read, not written any more.
     #[serde(skip_serializing)]
     pub(super) layout: Option<Tree<Pane>>,
     /// The workspaces, with their arrangements of the panels.
-    pub(super) workspaces: workspaces::Kept,
+    pub(super) workspaces: workspaces::KeptWorkspaces,
     pub(super) resolution: Resolution,
     pub(super) import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
@@ -145,12 +145,12 @@ pub(super) struct Kept {
     pub(super) allowed: Vec<PathBuf>,
 }
 
-impl Default for Kept {
+impl Default for KeptSettings {
     fn default() -> Self {
         Self {
             theme: ThemePreference::Dark,
             layout: None,
-            workspaces: workspaces::Kept::default(),
+            workspaces: workspaces::KeptWorkspaces::default(),
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
             engine: EngineChoice::Auto,
@@ -164,7 +164,7 @@ impl Default for Kept {
     }
 }
 
-impl Kept {
+impl KeptSettings {
     /// What the last start left; the defaults where that can't be read any more, or nothing is kept.
     pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
         let first = || Self {
@@ -233,15 +233,15 @@ mod tests {
     #[test]
     fn the_engine_chosen_by_hand_is_there_at_the_next_start() {
         let mut storage = Memory::default();
-        let kept = Kept {
+        let kept = KeptSettings {
             engine: EngineChoice::Gpu,
             ray_queries: RayQueries::Off,
-            ..Kept::default()
+            ..KeptSettings::default()
         };
         kept.save(&mut storage);
         let mut creation = eframe::CreationContext::_new_kittest(egui::Context::default());
         creation.storage = Some(&storage);
-        let loaded = Kept::load(&creation);
+        let loaded = KeptSettings::load(&creation);
         assert_eq!(
             (loaded.engine, loaded.ray_queries),
             (EngineChoice::Gpu, RayQueries::Off)

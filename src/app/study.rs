@@ -11,6 +11,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::app::kit::words::time_left;
+use crate::app::services::beside::started;
 use crate::document::{Change, Document};
 use crate::render::EngineChoice;
 use crate::render::background::Background;
@@ -79,8 +80,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             return;
         }
         self.begun = None;
-        desk.shared.is_measuring = false;
-        if std::mem::take(&mut self.holds_renderer) && desk.shared.is_paused {
+        desk.shared.rendering.is_measuring = false;
+        if std::mem::take(&mut self.holds_renderer) && desk.shared.rendering.is_paused {
             desk.act(Command::Pause);
         }
     }
@@ -103,7 +104,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     ) {
         let is_busy = self.is_running();
         // Two at once would take each other's time.
-        let is_free = !desk.shared.is_measuring && !self.is_at_work();
+        let is_free = !desk.shared.rendering.is_measuring && !self.is_at_work();
         let is_requested = is_free && std::mem::take(&mut self.is_requested);
         ui.horizontal(|ui| {
             let dress = |button: egui::Response| {
@@ -119,8 +120,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                 let work = begin(desk);
                 self.begin(ui, work);
                 self.begun = Some(Instant::now());
-                desk.shared.is_measuring = true;
-                if !desk.shared.is_paused {
+                desk.shared.rendering.is_measuring = true;
+                if !desk.shared.rendering.is_paused {
                     self.holds_renderer = true;
                     desk.act(Command::Pause);
                 }
@@ -178,26 +179,22 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     fn begin(&mut self, ui: &Ui, work: Work<R>) {
         self.stop.store(false, Ordering::Relaxed);
         self.is_stopped = false;
-        if self.worker.is_none() {
-            let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
-            let body = move |work: Work<R>, desk: &crate::render::background::Responder<'_, Work<R>, Status<R>>| {
+        let worker = started(&mut self.worker, ui.ctx(), |repaint| {
+            let stop = self.stop.clone();
+            Background::spawn("study", repaint, move |work: Work<R>, responder| {
                 let mut watch = |progress| {
-                    desk.publish(Status::Running(progress));
-                    !stop.load(Ordering::Relaxed) && !desk.is_superseded()
+                    responder.publish(Status::Running(progress));
+                    !stop.load(Ordering::Relaxed) && !responder.is_superseded()
                 };
-                desk.publish(match work(&mut watch) {
+                responder.publish(match work(&mut watch) {
                     Ok(result) => Status::Done(Arc::new(result)),
                     Err(StudyError::Stopped) => Status::Stopped,
                     Err(error) => Status::Failed(error.to_string()),
                 });
-            };
-            // Without a thread the button does nothing; the log says why.
-            match Background::spawn("study", move || ctx.request_repaint(), body) {
-                Ok(worker) => self.worker = Some(worker),
-                Err(error) => log::error!("cannot start a thread to measure on: {error}"),
-            }
-        }
-        if let Some(worker) = &self.worker {
+            })
+        });
+        // Without a thread the button does nothing; the log says why.
+        if let Some(worker) = worker {
             worker.ask(work);
         }
     }

@@ -22,7 +22,7 @@ struct Workspace {
 /// What is kept of them from one start to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct Kept {
+pub(super) struct KeptWorkspaces {
     current: String,
     all: Vec<Workspace>,
 }
@@ -37,7 +37,11 @@ pub(super) struct Workspaces {
 impl Workspaces {
     /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
     /// name, which earlier versions kept.
-    pub(super) fn new(kept: Kept, former: Option<Tree<Pane>>, requested: Option<String>) -> (Self, Tree<Pane>) {
+    pub(super) fn new(
+        kept: KeptWorkspaces,
+        former: Option<Tree<Pane>>,
+        requested: Option<String>,
+    ) -> (Self, Tree<Pane>) {
         let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
         let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
         for (name, layout) in kept.all.into_iter().filter_map(whole) {
@@ -68,11 +72,11 @@ impl Workspaces {
     }
 
     /// What is kept for the next start.
-    pub(super) fn kept(&self, layout: Tree<Pane>) -> Kept {
+    pub(super) fn kept(&self, layout: Tree<Pane>) -> KeptWorkspaces {
         let mut all = self.all.clone();
         put(&mut all, &self.current, layout);
         let current = self.current.clone();
-        Kept { current, all }
+        KeptWorkspaces { current, all }
     }
 
     /// Makes a change; `layout` is the arrangement of the current one.
@@ -147,7 +151,7 @@ mod tests {
     /// What is measured is out of sight at the start, and all of it is in the other workspace.
     #[test]
     fn the_start_is_for_looks_and_the_other_workspace_for_numbers() {
-        let (mut workspaces, mut layout) = Workspaces::new(Kept::default(), None, None);
+        let (mut workspaces, mut layout) = Workspaces::new(KeptWorkspaces::default(), None, None);
         assert_eq!((workspaces.current(), names(&workspaces)), (LOOK, vec![LOOK, MEASURE]));
         for pane in [Pane::Presets, Pane::Material, Pane::Lighting, Pane::Camera] {
             assert!(layout::is_open(&layout, pane), "{pane:?}");
@@ -173,7 +177,7 @@ mod tests {
     /// A workspace is found again as it was left, in the same session and in the next one.
     #[test]
     fn each_workspace_keeps_its_panels() {
-        let (mut workspaces, mut layout) = Workspaces::new(Kept::default(), None, None);
+        let (mut workspaces, mut layout) = Workspaces::new(KeptWorkspaces::default(), None, None);
         layout::close(&mut layout, Pane::Presets);
         workspaces.change(Change::Save("  Shots ".to_owned()), &mut layout);
         layout::reveal(&mut layout, Pane::Log);
@@ -201,7 +205,7 @@ mod tests {
     fn a_layout_without_a_name_becomes_a_workspace() {
         let mut former = layout::to_measure();
         layout::close(&mut former, Pane::Presets);
-        let (workspaces, layout) = Workspaces::new(Kept::default(), Some(former), None);
+        let (workspaces, layout) = Workspaces::new(KeptWorkspaces::default(), Some(former), None);
         assert_eq!(
             (workspaces.current(), names(&workspaces)),
             (FORMER, vec![LOOK, MEASURE, FORMER])

@@ -8,9 +8,9 @@ use crate::document::parameter::parse_color;
 use crate::document::{
     AreaLight, AreaLightShape, GroupName, LIGHT_PARAMETERS, LightMix, Parameter, ProfileFile, range,
 };
+use crate::import::light_profile::{self, LightProfileError};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
 use crate::scene::path_text::path_of_text;
-use crate::store::{FileError, light_profile};
 
 /// Luminous flux of a light in lumens, or illuminance of a sun in lux.
 const POWER: RangeInclusive<f64> = 0.0..=1e12;
@@ -34,7 +34,7 @@ impl LightArgument {
     }
 
     /// Whether its profile can be read.
-    pub(super) fn check_profile(&self) -> Result<(), FileError> {
+    pub(super) fn check_profile(&self) -> Result<(), LightProfileError> {
         let profile = self.light.profile;
         profile.map_or(Ok(()), |file| light_profile::load(file.path()).map(drop))
     }

@@ -2,6 +2,8 @@
 
 use super::MaterialSettings;
 use crate::optics::fresnel::Fresnel;
+use crate::optics::tone::srgb_from_linear;
+use crate::optics::vector::Vec3;
 
 /// Roughness below which a reflection is a mirror's, glossy, satin; above it is matt.
 const SMOOTHNESS: [(f32, &str); 3] = [(0.06, "mirror"), (0.28, "glossy"), (0.52, "satin")];
@@ -68,10 +70,11 @@ impl MaterialSettings {
 
 /// The everyday word for a linear colour.
 fn colour_word(color: [f32; 3]) -> &'static str {
-    let [r, g, b] = color.map(|x| x.clamp(0.0, 1.0).powf(1.0 / 2.2));
+    let linear = Vec3::<f32>::from_f32(color.map(|x| x.clamp(0.0, 1.0)));
+    let [r, g, b] = srgb_from_linear(linear).to_f32();
     let (high, low) = (r.max(g).max(b), r.min(g).min(b));
     let spread = high - low;
-    if high < 0.14 {
+    if high < 0.12 {
         return "black";
     }
     if spread < 0.12 * high {

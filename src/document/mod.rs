@@ -1,10 +1,9 @@
 //! What is edited and saved, as plain values: what is rendered, its materials, light, camera, view and render settings;
-//! their parameters as data; files; differences; history; and what a document compiles to.
+//! their parameters as data; files; differences; history.
 
 mod area_light;
 pub mod change;
 mod checked;
-mod compile;
 pub mod custom_curve;
 pub mod effect;
 mod ground;
@@ -35,7 +34,6 @@ use serde::{Deserialize, Serialize};
 pub use area_light::{AreaLight, AreaLightShape, Shine};
 pub use change::Change;
 pub use checked::SettingError;
-pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use group_name::GroupName;

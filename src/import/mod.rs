@@ -1,4 +1,4 @@
-//! Import of models, textures and environments from files, a package of its own (`src/import/Cargo.toml`): its decoders are
+//! Import of models, textures, environments and light profiles from files, a package of its own (`src/import/Cargo.toml`): its decoders are
 //! compiled once, and not again when the engine's formulas or the window change.
 
 use glossmith_engine::{optics, panics, scene};
@@ -10,11 +10,13 @@ mod file_parameter;
 mod files;
 pub mod free_memory;
 mod gltf;
+pub mod light_profile;
 mod model;
 mod model_error;
 mod obj;
 pub mod picture;
 mod ply;
+pub mod remembered;
 pub mod resource;
 mod stl;
 

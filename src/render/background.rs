@@ -1,10 +1,12 @@
 //! Work beside the window whose latest request wins: plots, fits, checks.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use super::mailbox::{IDLE, Mailbox};
 use crate::panics::{caught, lock};
 
 /// Interval at which held work checks whether to continue.
@@ -16,8 +18,7 @@ pub struct Background<Q, A> {
 }
 
 struct Shared<Q, A> {
-    orders: Mutex<Orders<Q>>,
-    ordered: Condvar,
+    orders: Mailbox<Orders<Q>>,
     answer: Mutex<Option<A>>,
     failure: Mutex<Option<String>>,
 }
@@ -26,6 +27,16 @@ struct Orders<Q> {
     query: Option<Q>,
     is_busy: bool,
     quit: bool,
+}
+
+impl<Q> Default for Orders<Q> {
+    fn default() -> Self {
+        Self {
+            query: None,
+            is_busy: false,
+            quit: false,
+        }
+    }
 }
 
 /// Handle through which the work reports.
@@ -51,12 +62,12 @@ impl<Q, A> Responder<'_, Q, A> {
 
     /// Whether a newer query has superseded this one.
     pub fn is_superseded(&self) -> bool {
-        let orders = lock(&self.shared.orders);
+        let orders = self.shared.orders.look();
         orders.quit || orders.query.is_some()
     }
 }
 
-impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
+impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
     /// Starts the thread, which gives way to the window. `repaint` is called when there is something new to show.
     ///
     /// # Errors
@@ -67,14 +78,9 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
         mut work: impl FnMut(Q, &Responder<'_, Q, A>) + Send + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
-            orders: Mutex::new(Orders {
-                query: None,
-                is_busy: false,
-                quit: false,
-            }),
-            ordered: Condvar::new(),
-            answer: Mutex::new(None),
-            failure: Mutex::new(None),
+            orders: Mailbox::default(),
+            answer: Mutex::default(),
+            failure: Mutex::default(),
         });
         let of_thread = shared.clone();
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -90,7 +96,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
                     *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
                 }
                 // Free again before the window looks.
-                lock(&of_thread.orders).is_busy = false;
+                of_thread.orders.look().is_busy = false;
                 repaint();
             }
         })?;
@@ -99,13 +105,30 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
 
     /// Submits a query.
     pub fn ask(&self, query: Q) {
-        lock(&self.shared.orders).query = Some(query);
-        self.shared.ordered.notify_one();
+        self.shared.orders.change(|orders| orders.query = Some(query));
+    }
+
+    /// Withdraws a query that has not been started.
+    pub(super) fn withdraw(&self) {
+        self.shared.orders.look().query = None;
     }
 
     /// The latest answer.
-    pub fn latest(&self) -> Option<A> {
+    pub fn latest(&self) -> Option<A>
+    where
+        A: Clone,
+    {
         lock(&self.shared.answer).clone()
+    }
+
+    /// Whether there is an answer.
+    pub(super) fn has_answer(&self) -> bool {
+        lock(&self.shared.answer).is_some()
+    }
+
+    /// The latest answer, taken away.
+    pub(super) fn take(&self) -> Option<A> {
+        lock(&self.shared.answer).take()
     }
 
     /// The panic's message of the latest query, if the work panicked; the thread continues.
@@ -115,7 +138,10 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
 
     /// The first answer that is good enough, for a test to wait for.
     #[cfg(test)]
-    pub fn wait_for(&self, is_enough: impl Fn(&A) -> bool) -> A {
+    pub fn wait_for(&self, is_enough: impl Fn(&A) -> bool) -> A
+    where
+        A: Clone,
+    {
         let begun = std::time::Instant::now();
         loop {
             if let Some(answer) = self.latest().filter(&is_enough) {
@@ -128,31 +154,27 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
 
     /// Whether something asked for is still to come.
     pub fn is_busy(&self) -> bool {
-        let orders = lock(&self.shared.orders);
+        let orders = self.shared.orders.look();
         orders.is_busy || orders.query.is_some()
     }
 }
 
 impl<Q, A> Drop for Background<Q, A> {
     fn drop(&mut self) {
-        lock(&self.shared.orders).quit = true;
-        self.shared.ordered.notify_one();
+        self.shared.orders.change(|orders| orders.quit = true);
     }
 }
 
 /// Waits for a query; `None` when it is time to go.
 fn next<Q, A>(shared: &Shared<Q, A>) -> Option<Q> {
-    let mut orders = lock(&shared.orders);
-    loop {
-        if orders.quit {
-            return None;
-        }
-        if let Some(query) = orders.query.take() {
+    shared.orders.wait(|orders| match orders.query.take() {
+        _ if orders.quit => ControlFlow::Break(None),
+        None => ControlFlow::Continue(IDLE),
+        query => {
             orders.is_busy = true;
-            return Some(query);
+            ControlFlow::Break(query)
         }
-        orders = shared.ordered.wait(orders).unwrap_or_else(PoisonError::into_inner);
-    }
+    })
 }
 
 #[cfg(test)]

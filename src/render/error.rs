@@ -1,19 +1,15 @@
 //! Why a session refuses a document or fails.
 
 use super::memory;
+use crate::compile::AssetError;
 use crate::gpu::GpuError;
-use crate::import::ModelError;
-use crate::import::environment::EnvironmentError;
 
 /// Why a session refuses a document or fails.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// The model can't be loaded.
+    /// The model or the environment can't be loaded.
     #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The environment can't be loaded.
-    #[error(transparent)]
-    Environment(#[from] EnvironmentError),
+    Asset(#[from] AssetError),
     /// The GPU can't be used.
     #[error(transparent)]
     Gpu(#[from] GpuError),
@@ -28,9 +24,6 @@ pub enum SessionError {
 impl SessionError {
     /// Whether it was cancelled rather than failed.
     pub fn is_cancelled(&self) -> bool {
-        matches!(
-            self,
-            Self::Model(ModelError::Cancelled(_)) | Self::Environment(EnvironmentError::Cancelled(_))
-        )
+        matches!(self, Self::Asset(error) if error.is_cancelled())
     }
 }

@@ -2,10 +2,8 @@
 //!
 //! `submit` a document, `step` with a time budget until `progress` is done, read `film` or `image`.
 
-mod assets;
 pub mod background;
 mod chosen;
-mod compile;
 mod convergence;
 pub mod denoise;
 pub mod display;
@@ -15,10 +13,11 @@ mod error;
 mod lens;
 pub mod light_layers;
 pub mod looks;
+mod mailbox;
 pub mod memory;
 pub mod output;
 mod picture_cache;
-pub mod precision;
+pub mod precision_maps;
 pub mod priority;
 mod progress;
 pub mod queue;
@@ -35,8 +34,7 @@ pub mod turntable;
 pub mod worker;
 mod workshop;
 
-pub use assets::{Assets, Reloaded};
-pub(crate) use compile::slot_materials;
+pub use crate::compile::{Assets, Reloaded};
 pub use convergence::Measurement;
 pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, RayQueries, Sampler};
 pub(crate) use engine::{cpu_name, device_for_functions};

@@ -1,21 +1,23 @@
 //! Queue of renders in the background, one after the other, with their own thread and session.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
-use super::assets::Assets;
 use super::engine::EngineChoice;
 use super::error::SessionError;
+use super::mailbox::{IDLE, Mailbox};
 use super::output::{self, OutputError, Rendered};
 use super::quiet;
 use super::session::Session;
 use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
 use super::turntable::{self, Turntable, TurntableError};
+use crate::compile::Assets;
 use crate::document::Document;
-use crate::panics::{caught, lock};
+use crate::panics::caught;
 use crate::store::FileError;
 use crate::store::replace::check_saving;
 
@@ -71,13 +73,7 @@ impl Entry {
 
 /// The queue and its thread. Dropping it cancels all tasks.
 pub struct Queue {
-    shared: Arc<Shared>,
-}
-
-#[derive(Default)]
-struct Shared {
-    book: Mutex<Book>,
-    changed: Condvar,
+    book: Arc<Mailbox<Book>>,
 }
 
 #[derive(Default)]
@@ -109,45 +105,41 @@ enum TaskError {
     Turntable(#[from] TurntableError),
 }
 
-impl Shared {
-    /// Locks the list, poisoned or not: it stays consistent, as every change is a single assignment.
-    fn book(&self) -> MutexGuard<'_, Book> {
-        lock(&self.book)
-    }
-
+impl Mailbox<Book> {
     /// The next task, once there is one; `None` when it is time to go.
     fn next(&self) -> Option<(u64, Task, EngineChoice)> {
-        let mut book = self.book();
-        loop {
+        self.wait(|book| {
             if book.quits {
-                return None;
+                return ControlFlow::Break(None);
             }
-            if !book.is_paused && !book.tasks.is_empty() {
-                let next = book.tasks.remove(0);
-                book.is_cancelled = false;
-                book.set(next.0, State::Rendering(0.0));
-                return Some(next);
+            if book.is_paused || book.tasks.is_empty() {
+                return ControlFlow::Continue(IDLE);
             }
-            book = self.changed.wait(book).unwrap_or_else(PoisonError::into_inner);
-        }
+            let next = book.tasks.remove(0);
+            book.is_cancelled = false;
+            book.set(next.0, State::Rendering(0.0));
+            ControlFlow::Break(Some(next))
+        })
     }
 
     /// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
     fn report(&self, id: u64, share: f64) -> bool {
-        let mut book = self.book();
-        book.set(id, State::Rendering(share));
-        if book.gives_way {
-            let waited = self.changed.wait_timeout(book, GIVES_WAY);
-            book = waited.unwrap_or_else(PoisonError::into_inner).0;
-        }
-        while book.is_paused && !book.is_cancelled && !book.quits {
-            book = self.changed.wait(book).unwrap_or_else(PoisonError::into_inner);
-        }
-        !book.is_cancelled && !book.quits
+        let mut has_rested = false;
+        self.wait(|book| {
+            book.set(id, State::Rendering(share));
+            let is_over = book.is_cancelled || book.quits;
+            if book.gives_way && !std::mem::replace(&mut has_rested, true) {
+                return ControlFlow::Continue(GIVES_WAY);
+            }
+            if book.is_paused && !is_over {
+                return ControlFlow::Continue(IDLE);
+            }
+            ControlFlow::Break(!is_over)
+        })
     }
 
     fn end(&self, id: u64, ended: Result<String, String>) {
-        let mut book = self.book();
+        let mut book = self.look();
         let state = match &ended {
             Ok(words) if book.is_cancelled => State::Cancelled(words.clone()),
             Ok(words) => State::Done(words.clone()),
@@ -172,8 +164,8 @@ impl Queue {
     /// # Errors
     /// If no thread can be started.
     pub fn new(assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let shared = Arc::new(Shared::default());
-        let of_thread = shared.clone();
+        let book = Arc::new(Mailbox::<Book>::default());
+        let of_thread = book.clone();
         std::thread::Builder::new().name("queue".to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
             let mut session: Option<(EngineChoice, Session)> = None;
@@ -199,68 +191,66 @@ impl Queue {
                     }
                 };
                 of_thread.end(id, ended);
-                if of_thread.book().tasks.is_empty() {
+                if of_thread.look().tasks.is_empty() {
                     // An engine's memory is the viewport's again.
                     session = None;
                 }
                 repaint();
             }
         })?;
-        Ok(Self { shared })
+        Ok(Self { book })
     }
 
     /// Appends a task, to be rendered by an engine.
     pub fn add(&self, task: Task, engine: EngineChoice) {
-        let mut book = self.shared.book();
-        book.last_id += 1;
-        let (id, name) = (book.last_id, free_name(&book.entries, &task.name()));
-        book.entries.push(Entry {
-            id,
-            name,
-            state: State::Waiting,
+        self.book.change(|book| {
+            book.last_id += 1;
+            let (id, name) = (book.last_id, free_name(&book.entries, &task.name()));
+            book.entries.push(Entry {
+                id,
+                name,
+                state: State::Waiting,
+            });
+            book.tasks.push((id, task, engine));
         });
-        book.tasks.push((id, task, engine));
-        drop(book);
-        self.shared.changed.notify_all();
     }
 
     /// All tasks, in order.
     pub fn entries(&self) -> Vec<Entry> {
-        self.shared.book().entries.clone()
+        self.book.look().entries.clone()
     }
 
     /// Results of tasks that ended since the last call: summaries or errors.
     pub fn take_news(&self) -> Vec<Result<String, String>> {
-        std::mem::take(&mut self.shared.book().news)
+        std::mem::take(&mut self.book.look().news)
     }
 
     /// Whether tasks are waiting or under way.
     pub fn is_busy(&self) -> bool {
-        self.shared.book().entries.iter().any(|entry| !entry.is_over())
+        self.book.look().entries.iter().any(|entry| !entry.is_over())
     }
 
     /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
-        let mut book = self.shared.book();
         let is_rendering = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
-        if book.entries.iter().any(is_rendering) {
-            book.is_cancelled = true;
-        } else {
-            book.entries.retain(|entry| entry.id != id);
-            book.tasks.retain(|(of, ..)| *of != id);
-        }
-        drop(book);
-        self.shared.changed.notify_all();
+        self.book.change(|book| {
+            if book.entries.iter().any(is_rendering) {
+                book.is_cancelled = true;
+            } else {
+                book.entries.retain(|entry| entry.id != id);
+                book.tasks.retain(|(of, ..)| *of != id);
+            }
+        });
     }
 
     /// Removes ended tasks.
     pub fn remove_over(&self) {
-        self.shared.book().entries.retain(|entry| !entry.is_over());
+        self.book.look().entries.retain(|entry| !entry.is_over());
     }
 
     /// Moves a waiting task to the front.
     pub fn put_first(&self, id: u64) {
-        let mut book = self.shared.book();
+        let mut book = self.book.look();
         if let Some(from) = book.tasks.iter().position(|(of, ..)| *of == id) {
             book.tasks[..=from].rotate_right(1);
         }
@@ -277,25 +267,23 @@ impl Queue {
 
     /// Pauses or resumes rendering.
     pub fn pause(&self, is_paused: bool) {
-        self.shared.book().is_paused = is_paused;
-        self.shared.changed.notify_all();
+        self.book.change(|book| book.is_paused = is_paused);
     }
 
     /// Whether it was stopped.
     pub fn is_paused(&self) -> bool {
-        self.shared.book().is_paused
+        self.book.look().is_paused
     }
 
     /// Yields most of the time to the window, or stops yielding.
     pub fn give_way(&self, gives_way: bool) {
-        self.shared.book().gives_way = gives_way;
+        self.book.look().gives_way = gives_way;
     }
 }
 
 impl Drop for Queue {
     fn drop(&mut self) {
-        self.shared.book().quits = true;
-        self.shared.changed.notify_all();
+        self.book.change(|book| book.quits = true);
     }
 }
 

@@ -123,9 +123,8 @@ impl SeenMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compile::{Assets, Compiler};
     use crate::document::Document;
-    use crate::render::assets::Assets;
-    use crate::render::compile::Compiler;
     use crate::scene::ModelSource;
 
     #[test]

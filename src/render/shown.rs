@@ -285,7 +285,7 @@ fn with_clipping(mut rgba: Vec<u8>) -> Vec<u8> {
 
 /// Per-pixel quantities of an image.
 #[derive(Clone, Debug, Default)]
-pub struct Facts {
+pub struct PixelFacts {
     /// Standard error of the shown luminance, relative to the image's mean.
     pub errors: Vec<f32>,
     /// Samples per pixel.
@@ -294,7 +294,7 @@ pub struct Facts {
     pub features: Features,
 }
 
-impl Facts {
+impl PixelFacts {
     /// The quantities of a film; with the denoised image's errors, if given, instead of its own.
     pub fn of(source: &Source<'_>, denoised_errors: Option<&[f32]>) -> Self {
         let film = source.film;

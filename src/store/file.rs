@@ -76,6 +76,17 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
+/// A warning where a file's format is newer than the newest that is known.
+pub(super) fn of_newer(path: &Path, version: u64, known: u64) -> Vec<String> {
+    let path = path.display();
+    let warning = || {
+        format!(
+            "{path}: written by a newer Glossmith (format {version}, this one knows {known}); what is new has no effect"
+        )
+    };
+    (version > known).then(warning).into_iter().collect()
+}
+
 /// The JSON object that a file is.
 pub(super) fn object(path: &Path, bytes: &[u8]) -> Result<Map<String, Json>, FileError> {
     // Some editors put a byte order mark before the text.

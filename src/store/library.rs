@@ -164,12 +164,12 @@ pub fn duplicate(path: &Path) -> Result<PathBuf, FileError> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Removed {
     path: PathBuf,
-    kept: Kept,
+    kept: Remains,
 }
 
 /// What is kept of it.
 #[derive(Clone, Debug, PartialEq)]
-enum Kept {
+enum Remains {
     /// A file's contents.
     Bytes(Vec<u8>),
     /// Its folder, hidden beside the others until the next one is removed.
@@ -202,14 +202,14 @@ pub fn remove(path: &Path) -> Result<Removed, FileError> {
         fs::rename(folder, &kept).map_err(FileError::writing(folder))?;
         return Ok(Removed {
             path: path.to_owned(),
-            kept: Kept::Folder(kept),
+            kept: Remains::Folder(kept),
         });
     }
     let bytes = fs::read(path).map_err(FileError::reading(path))?;
     fs::remove_file(path).map_err(FileError::writing(path))?;
     Ok(Removed {
         path: path.to_owned(),
-        kept: Kept::Bytes(bytes),
+        kept: Remains::Bytes(bytes),
     })
 }
 
@@ -226,13 +226,13 @@ pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
         .into_owned();
     let folder = root(&removed.path);
     match &removed.kept {
-        Kept::Bytes(bytes) => {
+        Remains::Bytes(bytes) => {
             let ending = removed.path.extension().unwrap_or_default().to_string_lossy();
             let path = free_path(folder, &stem, &ending);
             save_atomically(&path, bytes)?;
             Ok(path)
         }
-        Kept::Folder(kept) => {
+        Remains::Folder(kept) => {
             let home = free_path(folder, &stem, HOME);
             moved_home(kept, &removed.path, &home)
         }

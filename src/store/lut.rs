@@ -5,8 +5,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::remembered::Remembered;
 use super::{FileError, file};
+use crate::import::remembered::Remembered;
 use crate::optics::tone::Lut;
 
 /// Most entries along a side, of a cube and of curves.

@@ -1,6 +1,6 @@
 //! What is kept in files: projects, presets and the user's folder of them, images with a document inside, copies of
 //! unsaved documents, pinned states; materials in other programs' formats; examples to begin with;
-//! folders that are watched; tables of colours; light profiles.
+//! folders that are watched; tables of colours.
 
 mod error;
 pub mod examples;
@@ -8,7 +8,6 @@ pub mod exchange;
 pub mod file;
 pub mod file_kind;
 pub mod library;
-pub mod light_profile;
 pub mod lut;
 #[cfg_attr(not(feature = "video"), path = "mp4_not_built.rs")]
 mod mp4;
@@ -18,7 +17,6 @@ pub mod picture;
 pub mod preset;
 pub mod project;
 pub mod recovery;
-mod remembered;
 pub mod replace;
 pub mod shelf;
 pub mod snapshots;

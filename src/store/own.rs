@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use serde_json::Value as Json;
 use siphasher::sip128::{Hasher128 as _, SipHasher24};
 
-use super::{FileError, file};
+use super::{FileError, Loaded, file};
 use crate::import::resource::Reach;
 
 /// The key under which the mark is kept.
@@ -39,12 +39,24 @@ pub(super) fn leads_away(path: &Path, named: &Path) -> bool {
     !file::seen_from(path)(named).is_relative()
 }
 
-/// Refuses a file from elsewhere that names what lies outside of its surroundings; says what of it was allowed. What was saved
-/// by this user is trusted.
+/// What was read from a file, with warnings of what it names that was allowed. A file from elsewhere that names what lies
+/// outside of its surroundings is refused; what was saved by this user is trusted.
 ///
 /// # Errors
 /// [`FileError::Outside`].
-pub(super) fn check_reach(path: &Path, found: Option<&Json>, named: &[PathBuf]) -> Result<Vec<String>, FileError> {
+pub(super) fn within_reach<T>(
+    path: &Path,
+    bytes: &[u8],
+    mut loaded: Loaded<T>,
+    named: impl Fn(&T) -> Vec<PathBuf>,
+) -> Result<Loaded<T>, FileError> {
+    let mark = file::object(path, bytes)?.shift_remove(KEY);
+    let allowed = check_reach(path, mark.as_ref(), &named(&loaded.value))?;
+    loaded.warnings.extend(allowed);
+    Ok(loaded)
+}
+
+fn check_reach(path: &Path, found: Option<&Json>, named: &[PathBuf]) -> Result<Vec<String>, FileError> {
     let reach = Reach::of_folder(file::folder(path));
     let is_own = found.is_some_and(|found| found.as_str() == mark(path, named).as_deref());
     let is_meant = |named: &PathBuf| is_own && leads_away(path, named);

@@ -132,11 +132,7 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
 /// # Errors
 /// As [`parse_material`], and [`FileError::Outside`].
 pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
-    let mut loaded = parse_material(path, bytes)?;
-    let mark = file::object(path, bytes)?.shift_remove(own::KEY);
-    let allowed = own::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
-    loaded.warnings.extend(allowed);
-    Ok(loaded)
+    own::within_reach(path, bytes, parse_material(path, bytes)?, named)
 }
 
 /// The files that a material names.
@@ -163,13 +159,7 @@ pub fn load_material(path: &Path) -> Result<Loaded<MaterialSettings>, FileError>
 pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
     let mut object = file::object(path, bytes)?;
     let version = file::version(path, &object, MARK)?.unwrap_or(0);
-    let mut warnings = Vec::new();
-    if version > VERSION {
-        warnings.push(format!(
-            "{}: written by a newer Glossmith (format {version}, this one knows {VERSION}); what is new has no effect",
-            path.display()
-        ));
-    }
+    let mut warnings = file::of_newer(path, version, VERSION);
     for migrate in MIGRATIONS.iter().skip(version as usize) {
         migrate(&mut object);
     }

@@ -41,11 +41,7 @@ pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
 /// # Errors
 /// As [`parse_document`], and [`FileError::Outside`].
 pub(super) fn open_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
-    let mut loaded = parse_document(path, bytes)?;
-    let mark = file::object(path, bytes)?.shift_remove(own::KEY);
-    let allowed = own::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
-    loaded.warnings.extend(allowed);
-    Ok(loaded)
+    own::within_reach(path, bytes, parse_document(path, bytes)?, named)
 }
 
 /// The files that a document names.
@@ -94,13 +90,7 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
             .set(TextureTarget::BaseColor, Some(texture));
     }
     map_paths(&mut document, file::named_in(path));
-    let mut warnings = Vec::new();
-    if version > VERSION {
-        warnings.push(format!(
-            "{}: written by a newer Glossmith (format {version}, this one knows {VERSION}); what is new has no effect",
-            path.display()
-        ));
-    }
+    let mut warnings = file::of_newer(path, version, VERSION);
     for material in &document.materials {
         let unknown = preset::unknown_keys(material);
         warnings.extend(unknown.map(|warning| format!("{}: {}: {warning}", path.display(), material.name)));

@@ -28,7 +28,7 @@ const REPORTS: usize = 8;
 
 /// A file for an unsaved document. While this lives nobody else takes the file.
 #[derive(Debug)]
-pub struct Slot {
+pub struct RecoveryFile {
     path: PathBuf,
     /// Locked.
     _lock: File,
@@ -56,7 +56,7 @@ pub struct Recovered {
     pub warnings: Vec<String>,
 }
 
-impl Slot {
+impl RecoveryFile {
     /// A new file in the folder, which is made where it is not there; nothing is written to it yet.
     ///
     /// # Errors
@@ -153,7 +153,7 @@ impl Slot {
 ///
 /// # Errors
 /// [`FileError::Write`] where the folder can't be read, written or locked.
-pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
+pub fn leftovers(folder: &Path) -> Result<Vec<RecoveryFile>, FileError> {
     let _guard = guard(folder)?;
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).map_err(FileError::writing(folder))?.flatten() {
@@ -172,7 +172,7 @@ pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
         match modified(&document).or_else(|_| modified(&report_path(&document))) {
             Ok(at) => found.push((
                 at,
-                Slot {
+                RecoveryFile {
                     path: document,
                     _lock: lock,
                 },
@@ -186,7 +186,7 @@ pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
     Ok(found.into_iter().map(|(_, slot)| slot).collect())
 }
 
-/// Writes a document to the file of a [`Slot`]; `project` is the file that it belongs to.
+/// Writes a document to the file of a [`RecoveryFile`]; `project` is the file that it belongs to.
 ///
 /// # Errors
 /// [`FileError`] where it can't be written; what was there is then still there.
@@ -197,7 +197,7 @@ pub fn save_for_recovery(path: &Path, document: &Document, project: Option<&Path
     project::save_document(path, &document)
 }
 
-/// The report that belongs to the file of a [`Slot`].
+/// The report that belongs to the file of a [`RecoveryFile`].
 pub fn report_path(path: &Path) -> PathBuf {
     path.with_extension("txt")
 }
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn what_a_crash_left_comes_back_whole_and_once() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let slot = Slot::open(folder.path()).expect("a slot");
+        let slot = RecoveryFile::open(folder.path()).expect("a slot");
         slot.save(&edited(), Some(Path::new("projects/pot.json")))
             .expect("saved");
         assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "its window lives");
@@ -272,7 +272,7 @@ mod tests {
     #[test]
     fn two_windows_do_not_touch_each_other() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let [a, b] = [0, 1].map(|_| Slot::open(folder.path()).expect("a slot"));
+        let [a, b] = [0, 1].map(|_| RecoveryFile::open(folder.path()).expect("a slot"));
         assert_ne!(a.path(), b.path());
         a.save(&edited(), None).expect("saved");
         b.save(&Document::default(), None).expect("saved");
@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn a_window_with_nothing_unsaved_leaves_nothing_to_offer() {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let slot = Slot::open(folder.path()).expect("a slot");
+        let slot = RecoveryFile::open(folder.path()).expect("a slot");
         slot.save(&edited(), None).expect("saved");
         slot.clear().expect("removed");
         slot.clear().expect("twice is no error");
@@ -297,7 +297,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = folder.path().join("file");
         fs::write(&file, "no folder").expect("a temporary file");
-        let error = Slot::open(&file.join("recovery")).expect_err("a file is no folder");
+        let error = RecoveryFile::open(&file.join("recovery")).expect_err("a file is no folder");
         assert!(error.to_string().contains("recovery"), "{error}");
         assert!(leftovers(&file.join("recovery")).is_err());
     }

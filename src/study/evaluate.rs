@@ -4,8 +4,9 @@
 //! sees the surface from within.
 
 use super::probe::Prober;
+use crate::compile::compile;
 use crate::cpu::probe as cpu;
-use crate::document::{MaterialSettings, compile};
+use crate::document::MaterialSettings;
 use crate::gpu::GpuError;
 use crate::job::probe::{DrawAnswer, DrawQuestion, MaterialQuestion, MaterialView, ProbeScene};
 use crate::optics::material::Material;

@@ -4,13 +4,13 @@
 
 use serde::Serialize;
 
+use crate::compile::slot_materials;
 use crate::cpu::integrator::is_sound;
 use crate::cpu::oracle::PathTracer;
 use crate::cpu::recorder::{Event, Source};
 use crate::document::{Document, Strategy};
 use crate::job::Job;
 use crate::optics::random::Sequence;
-use crate::render::slot_materials;
 use crate::scene::{Geometry, Model};
 
 mod words;

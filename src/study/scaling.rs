@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_target};
 use crate::document::Document;
+use crate::import::environment::EnvironmentError;
 use crate::named::named;
 use crate::optics::vector::Vec3;
 use crate::render::{EngineChoice, Session, SessionError};
@@ -161,8 +162,10 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
             let source = EnvironmentSource::File(format!("{} x {height} texels", 2 * height).into());
             let original = session
                 .assets()
-                .environment(&document.lighting.environment, document.lighting.environment_encoding)?;
-            let resampled = resampled(&original, height).map_err(|error| SessionError::Environment(error.into()))?;
+                .environment(&document.lighting.environment, document.lighting.environment_encoding)
+                .map_err(SessionError::from)?;
+            let resampled = resampled(&original, height)
+                .map_err(|error| SessionError::Asset(EnvironmentError::from(error).into()))?;
             session.assets().keep_environment(source.clone(), resampled);
             grown.lighting.environment = source;
             return Ok((grown, 2 * u64::from(height).pow(2)));

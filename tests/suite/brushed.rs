@@ -1,7 +1,8 @@
 //! Brushed surfaces: the way of an anisotropy's rotation, as a file means it, from either side.
 
+use glossmith::compile::compile;
 use glossmith::document::of_model::materials_of;
-use glossmith::document::{AreaLight, Document, ImportLobe, compile};
+use glossmith::document::{AreaLight, Document, ImportLobe};
 use glossmith::optics::numeric::normalize_or;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;

@@ -1,7 +1,8 @@
 //! The coat and the edge tint: samples against the density of the whole mixture, energy, engines and strategies.
 
 use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use glossmith::document::{MaterialSettings, Strategy, assign, compile};
+use glossmith::compile::compile;
+use glossmith::document::{MaterialSettings, Strategy, assign};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{fresnel_metal, fresnel_schlick};
 use glossmith::optics::layer::{

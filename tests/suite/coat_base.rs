@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use glossmith::document::{Background, CoatLobe, MaterialSettings, assign, compile};
+use glossmith::compile::compile;
+use glossmith::document::{Background, CoatLobe, MaterialSettings, assign};
 use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
 use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;

@@ -1,10 +1,11 @@
 //! Documents: differences, history, compilation.
 
+use glossmith::compile::compile;
 use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
 use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
 use glossmith::document::{
-    AreaLight, Background, Change, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile,
+    AreaLight, Background, Change, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter, Strategy,
 };
 use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};

@@ -2,7 +2,8 @@
 //! sampling competes with, and their weights.
 
 use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use glossmith::document::{MaterialSettings, assign, compile};
+use glossmith::compile::compile;
+use glossmith::document::{MaterialSettings, assign};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::layer::{
     Layers, MaterialNumbers, MaterialSample, material_evaluate, material_layers, material_sample,

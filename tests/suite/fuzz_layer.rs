@@ -1,7 +1,8 @@
 //! The fuzz layer: its albedo by the published fits, samples against their density, the furnace, and both engines.
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
-use glossmith::document::{MaterialSettings, assign, compile};
+use glossmith::compile::compile;
+use glossmith::document::{MaterialSettings, assign};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::layer::{MaterialNumbers, material_density, material_layers, material_sample};
 use glossmith::optics::material::{Material, Surface};

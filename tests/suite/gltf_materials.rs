@@ -1,7 +1,8 @@
 //! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
 
+use glossmith::compile::compile_textured;
 use glossmith::document::of_model::materials_of;
-use glossmith::document::{ImportLobe, MaterialSettings, compile_textured};
+use glossmith::document::{ImportLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
 use glossmith::optics::thin_film::film_path;

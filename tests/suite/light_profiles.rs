@@ -9,11 +9,12 @@ use glam::DVec3;
 use glossmith::app::Options;
 use glossmith::app::actions::Action;
 use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile, Strategy};
+use glossmith::import::light_profile;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::camera::PixelFilter;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::{light_profile, load_document, save_document};
+use glossmith::store::{load_document, save_document};
 
 use super::cli_support::{Workplace, read_exr};
 use super::renders::{assert_same_picture, document, render, with_strategy};

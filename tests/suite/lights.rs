@@ -49,7 +49,7 @@ fn shards() -> (Geometry, Vec<Material<f32>>) {
         slots: vec![Slot::neutral("shard"); 3],
         ..Model::default()
     };
-    let (mut materials, _) = glossmith::document::compile(&vec![Default::default(); 3]);
+    let (mut materials, _) = glossmith::compile::compile(&vec![Default::default(); 3]);
     materials[0].emission = vec3(1.0, 2.0, 3.0);
     materials[1].emission = vec3(0.7, 0.1, 0.0);
     for material in &mut materials {

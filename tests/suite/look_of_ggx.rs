@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
+use glossmith::compile::{compile, compile_textured};
 use glossmith::document::import::geometric_from_ggx;
 use glossmith::document::of_model::{import_report, materials_of};
-use glossmith::document::{Document, ImportLobe, MaterialSettings, compile, compile_textured};
+use glossmith::document::{Document, ImportLobe, MaterialSettings};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::lobe::{Lobe, LobeShape, is_mirror, lobe_sample};
 use glossmith::optics::material::Material;

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use glossmith::document::{Document, PixelFilter, compile_textured, texture_assignments};
+use glossmith::compile::compile_textured;
+use glossmith::document::{Document, PixelFilter, texture_assignments};
 use glossmith::job::effect::EffectId;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;

@@ -158,7 +158,7 @@ fn stretched_metals_keep_all_light_in_the_mean() {
 /// Without facets, without roughness or over a base nothing is to be given back, and no table is made.
 #[test]
 fn what_loses_nothing_does_not_pay() {
-    use glossmith::document::compile;
+    use glossmith::compile::compile;
     use glossmith::optics::material::COMPENSATES;
     let calls = |assignments: &[&str]| {
         let (materials, tables) = compile(&[material(assignments)]);

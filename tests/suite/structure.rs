@@ -19,25 +19,26 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
     ("document", &["named", "panics", "optics", "scene", "import", "job"]),
+    ("compile", &["panics", "optics", "scene", "import", "job", "document"]),
     ("matching", &["optics", "analysis", "plot", "document"]),
     (
         "store",
         &[
-            "named", "panics", "optics", "scene", "import", "analysis", "document", "matching",
+            "named", "panics", "optics", "scene", "import", "analysis", "document", "compile", "matching",
         ],
     ),
     (
         "render",
         &[
-            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
-            "store", "import",
+            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "compile",
+            "matching", "store", "import",
         ],
     ),
     (
         "study",
         &[
-            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "matching",
-            "store", "render",
+            "named", "optics", "scene", "import", "job", "cpu", "gpu", "analysis", "plot", "document", "compile",
+            "matching", "store", "render",
         ],
     ),
     (
@@ -67,6 +68,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
         ],
     ),
 ];
+
+/// The most lines of a file.
+const LINES_MAX: usize = 600;
 
 fn collect(ending: &str, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
@@ -137,6 +141,19 @@ fn every_folder_has_its_place_in_the_order() {
             || ["lib", "main", "book_pages", "engine"].contains(&name);
         assert!(is_known, "src/{name} has no place in the order of the folders");
     }
+}
+
+#[test]
+fn files_stay_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let code = ["src", "tests", "benches", "fuzz/fuzz_targets"].map(|folder| files_with("rs", &root.join(folder)));
+    let files = code
+        .into_iter()
+        .flatten()
+        .chain(files_with("wgsl", &root.join("shaders")));
+    let lines = files.map(|file| (fs::read_to_string(&file).unwrap().lines().count(), file));
+    let long: Vec<_> = lines.filter(|(lines, _)| *lines > LINES_MAX).collect();
+    assert!(long.is_empty(), "files of more than {LINES_MAX} lines: {long:?}");
 }
 
 /// The folders and files of `src/` that are of the engine, which is a package of its own.

@@ -1,8 +1,7 @@
 //! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
 
-use glossmith::document::{
-    Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, TextureUse, compile_textured,
-};
+use glossmith::compile::compile_textured;
+use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, TextureUse};
 use glossmith::job::effect::EffectId;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::random::Sequence;

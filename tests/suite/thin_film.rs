@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
-use glossmith::document::{Document, MaterialSettings, assign, compile};
+use glossmith::compile::compile;
+use glossmith::document::{Document, MaterialSettings, assign};
 use glossmith::job::probe::{DrawQuestion, MaterialView, ProbeScene};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_metal};

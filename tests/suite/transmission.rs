@@ -3,8 +3,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use glossmith::compile::compile;
 use glossmith::cpu::CpuEngine;
-use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, Strategy, compile};
+use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, Strategy};
 use glossmith::job::Job;
 use glossmith::job::film::Film;
 use glossmith::optics::fresnel::Fresnel;

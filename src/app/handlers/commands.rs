@@ -1,9 +1,10 @@
 //! What actions and commands do.
 
 use crate::app::actions::{Action, Command};
-use crate::app::desk::{PICTURE_SIZE, Resolution};
+use crate::app::desk::PICTURE_SIZE;
 use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
+use crate::app::services::viewing::Resolution;
 use crate::app::services::{library, snapshots};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
@@ -70,19 +71,19 @@ impl App {
             }
             Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => {
-                (self.shared.engine, self.shared.kept_engine) = (choice, choice);
+                (self.shared.rendering.engine, self.shared.rendering.kept_engine) = (choice, choice);
                 self.worker.use_engine(choice);
             }
             Action::UseRayQueries(choice) => {
                 choice.choose();
-                self.shared.kept_ray_queries = choice;
+                self.shared.rendering.kept_ray_queries = choice;
                 // Engines find out when they are opened.
-                if self.shared.engine != EngineChoice::Cpu {
-                    self.worker.use_engine(self.shared.engine);
+                if self.shared.rendering.engine != EngineChoice::Cpu {
+                    self.worker.use_engine(self.shared.rendering.engine);
                 }
             }
             Action::Show(shown) => {
-                self.shared.shown = shown;
+                self.shared.viewing.shown = shown;
                 self.worker.show(shown);
             }
         }
@@ -98,7 +99,7 @@ impl App {
         };
         let document = denoised_by(self.document.view.denoise, document());
         self.shared.selection.forget();
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         self.document = document;
         self.edits.note(format!("Open the example {label}"), "");
         if let Some(pane) = Pane::ALL.into_iter().find(|pane| pane.title() == *panel) {
@@ -127,7 +128,7 @@ impl App {
             let mut group = setting.group;
             if group == PICTURE_SIZE {
                 // Rows that are shown where the viewport has the image's size.
-                self.shared.resolution = Resolution::Document;
+                self.shared.viewing.resolution = Resolution::Document;
                 group = "Image";
             }
             keys::focus_row(ctx, group, setting.full_name());
@@ -224,8 +225,8 @@ impl App {
                 self.is_maximised = false;
             }
             Command::Pause => {
-                self.shared.is_paused = !self.shared.is_paused;
-                self.worker.pause(self.shared.is_paused);
+                self.shared.rendering.is_paused = !self.shared.rendering.is_paused;
+                self.worker.pause(self.shared.rendering.is_paused);
             }
             Command::Reload => {
                 self.worker.reload();
@@ -276,8 +277,8 @@ impl App {
 
     fn select_slots(&mut self, slots: &[usize]) {
         let Some(first) = slots.first() else { return };
-        self.shared.slot = *first;
         let selection = &mut self.shared.selection;
+        selection.slot = *first;
         selection.is_made = true;
         selection.also = slots[1..].iter().copied().collect();
         self.edits.seal();
@@ -300,19 +301,15 @@ impl App {
     fn step_to(&mut self, document: Option<Document>) {
         let Some(document) = document else { return };
         if document.model != self.document.model {
-            self.shared.selection.forget();
-            let left = std::mem::replace(&mut self.document.model, document.model.clone());
-            self.shared.slots_of.retain(|(model, _)| *model != left);
-            self.shared.slots_of.push((left, self.shared.slot));
-            let known = self.shared.slots_of.iter().find(|(model, _)| *model == document.model);
-            self.shared.slot = known.map_or(0, |(_, slot)| *slot);
+            let left = self.document.model.clone();
+            self.shared.selection.change_model(left, &document.model);
         }
         self.document = document;
     }
 
     pub(in crate::app) fn use_material(&mut self, material: MaterialSettings) {
         let label = format!("Use {}", material.name);
-        for slot in self.shared.selection.slots(self.shared.slot) {
+        for slot in self.shared.selection.slots() {
             *self.document.material_mut(slot) = material.clone();
         }
         self.edits.note(label, "");
@@ -324,7 +321,7 @@ impl App {
         let Some(scene) = &snapshot.scene else { return };
         let geometry = &scene.job.geometry;
         let selection = &self.shared.selection;
-        let slots = selection.slots(self.shared.slot);
+        let slots = selection.slots();
         let is_chosen = |triangle: usize| match selection.objects.is_empty() {
             true => slots.contains(&(geometry.slot(triangle) as usize)),
             false => selection.objects.contains(&(geometry.object(triangle) as usize)),

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::app::App;
-use crate::app::desk::Shared;
 use crate::app::services::compare::{BEFORE, Renderer, Rival};
 use crate::document::{Change, Document};
 use crate::optics::lobe::Lobe;
@@ -71,8 +70,8 @@ impl App {
     }
 
     fn take_rival(&mut self, label: &'static str) {
-        let Shared { compare, slot, .. } = &self.shared;
-        self.document.materials = compare.rival_document(&self.document, *slot).materials;
+        let slot = self.shared.selection.slot;
+        self.document.materials = self.shared.compare.rival_document(&self.document, slot).materials;
         self.edits.note(label, "");
     }
 
@@ -80,8 +79,8 @@ impl App {
     pub(in crate::app) fn keep_up_rival(&mut self, ctx: &egui::Context, wanted: &Document, pace: Pace) {
         let snapshot = self.worker.snapshot();
         let material = self.desk_material();
-        let slot = self.shared.slot;
-        let is_paused = self.shared.is_paused;
+        let slot = self.shared.selection.slot;
+        let is_paused = self.shared.rendering.is_paused;
         let compare = &mut self.shared.compare;
         let engine = snapshot.engine.as_ref().map(|engine| engine.kind);
         let is_other_engine = compare

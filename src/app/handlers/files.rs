@@ -13,7 +13,7 @@ use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
 use crate::document::{AreaLightShape, Document, MaterialSettings, ProfileFile, Reference};
 use crate::import::endings::ending;
-use crate::import::holds_model;
+use crate::import::{holds_model, light_profile};
 use crate::render::output::format_of;
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
@@ -22,7 +22,7 @@ use crate::scene::{ModelOptions, ModelSource};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file_kind::{FileKind, may_hold_document, what_is_opened};
 use crate::store::opened::Opened;
-use crate::store::{FileError, Loaded, light_profile, lut, preset, save_document, save_material};
+use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
 const KIND: &str = ".glossmith";
@@ -237,7 +237,7 @@ impl App {
         self.report_all(loaded.warnings);
         self.shared.recent.add(&path);
         self.document = loaded.value;
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         self.files.project = Some(path);
         self.edits.note(format!("Open {}", self.files.project_name()), "");
         self.edits.record(&self.document, false);
@@ -249,7 +249,7 @@ impl App {
         self.report_all(loaded.warnings);
         self.shared.recent.add(path);
         self.document = loaded.value;
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         self.edits.note(format!("Open {name}"), "");
     }
@@ -257,7 +257,7 @@ impl App {
     /// Goes on with the document of the start.
     pub(in crate::app) fn start_anew(&mut self) {
         self.document = new_document(self.document.view.denoise, false);
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         self.files.project = None;
         self.edits.note("New", "");
         self.edits.record(&self.document, false);
@@ -332,7 +332,7 @@ impl App {
                 self.edits.note("Choose a reference image", "");
             }
             Purpose::Texture(target) => self.put_textures(&[(target, UserTexture::of(path))]),
-            Purpose::OpenMeasured => self.shared.measured = Some(path),
+            Purpose::OpenMeasured => self.shared.lobe_plots.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: an image has the document inside, too.
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),

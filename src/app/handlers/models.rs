@@ -45,7 +45,7 @@ impl App {
         } else if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         if self.document.model != source || self.document.import.scene != options.scene {
             self.shared.selection.forget();
             self.document.hidden_objects.clear();
@@ -94,7 +94,7 @@ impl App {
         }
         if materials != self.document.materials {
             self.document.materials = materials;
-            self.shared.slot = self.shared.slot.min(model.slots.len().saturating_sub(1));
+            self.shared.selection.slot = self.shared.selection.slot.min(model.slots.len().saturating_sub(1));
             self.edits.note(format!("Read {} again", model.name), "");
         }
     }

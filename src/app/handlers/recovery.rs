@@ -57,7 +57,7 @@ impl App {
         }
         let name = name(&recovered);
         self.document = recovered.document;
-        self.shared.slot = 0;
+        self.shared.selection.slot = 0;
         self.files.project = recovered.project;
         self.edits.note(format!("Restore {name}"), "");
         self.edits.record(&self.document, false);

@@ -99,7 +99,7 @@ impl App {
         if let Some(pinned) = found {
             self.document = pinned.document.clone();
             self.edits.note(format!("Bring back {}", pinned.name), "");
-            self.shared.slot = 0;
+            self.shared.selection.slot = 0;
         }
     }
 }

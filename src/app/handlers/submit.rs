@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::app::desk::Resolution;
+use crate::app::services::viewing::Resolution;
 use crate::app::{App, MOVING, is_dragging};
 use crate::document::{Change, Document};
 use crate::render::worker::{Activity, Pace, Picture};
@@ -16,10 +16,10 @@ impl App {
             return;
         }
         let (mut wanted, is_turning) = self.document_shown(ctx);
-        match self.viewport.fill_size(self.shared.resolution) {
+        match self.viewport.fill_size(self.shared.viewing.resolution) {
             Some(size) => self.set_size(&mut wanted, size),
             // The first frame has not been laid out: the size would be wrong.
-            None if self.shared.resolution != Resolution::Document => return,
+            None if self.shared.viewing.resolution != Resolution::Document => return,
             None => {}
         }
         let change = self
@@ -34,7 +34,7 @@ impl App {
         }
         self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
-        self.submitted_resolution = self.shared.resolution;
+        self.submitted_resolution = self.shared.viewing.resolution;
         self.submitted_at = Instant::now();
     }
 
@@ -44,7 +44,7 @@ impl App {
         (wanted.render.width, wanted.render.height) = (width, height);
         let Some(old) = &self.submitted else { return };
         let old_size = (old.render.width, old.render.height);
-        if old_size == (width, height) || self.submitted_resolution != self.shared.resolution {
+        if old_size == (width, height) || self.submitted_resolution != self.shared.viewing.resolution {
             return;
         }
         let snapshot = self.worker.snapshot();

@@ -19,7 +19,7 @@ impl App {
             1 => format!("Put {name} on the material"),
             count => format!("Put {count} textures on the material"),
         };
-        for slot in self.shared.selection.slots(self.shared.slot) {
+        for slot in self.shared.selection.slots() {
             let material = self.document.material_mut(slot);
             for (target, texture) in textures {
                 // What is in the image's place keeps the way in which it lies there.

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use crate::app::App;
 use crate::app::book::TURNTABLE;
-use crate::app::desk::Resolution;
 use crate::app::kit::theme;
+use crate::app::services::viewing::Resolution;
 use crate::app::sheets::book;
 use crate::app::sheets::turntable::{Preview, SIZE};
 use crate::document::Document;
@@ -32,7 +32,7 @@ impl App {
         let sheet = &mut self.turntable;
         sheet.is_open = true;
         // What fills the viewport has no size of its own.
-        sheet.size = match self.shared.resolution {
+        sheet.size = match self.shared.viewing.resolution {
             Resolution::Document => [render.width, render.height],
             _ => SIZE,
         };

@@ -91,6 +91,16 @@ fn search_id() -> egui::Id {
     egui::Id::unique("search under the pointer")
 }
 
+/// Keeps the arrow keys for a control that has the focus, across or up and down: else they would move the focus.
+pub(in crate::app) fn hold_arrows(ui: &Ui, response: &Response, horizontal_arrows: bool, vertical_arrows: bool) {
+    let filter = egui::EventFilter {
+        horizontal_arrows,
+        vertical_arrows,
+        ..Default::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+}
+
 /// A field to search a panel with. Letters that are typed while the pointer is over the panel and nothing has the keys
 /// are meant for it, see [`take_search`].
 pub(in crate::app) fn search_field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> Response {

@@ -8,7 +8,7 @@ use egui::{
     Ui, UiBuilder, Vec2,
 };
 
-use crate::app::kit::keys::{fulfil_request, note_requested, requested};
+use crate::app::kit::keys::{fulfil_request, hold_arrows, note_requested, requested};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
@@ -420,11 +420,7 @@ fn step_by_keys<T: PartialEq + Clone>(
     if !response.has_focus() {
         return false;
     }
-    let filter = egui::EventFilter {
-        vertical_arrows: true,
-        ..Default::default()
-    };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    hold_arrows(ui, response, false, true);
     let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, key));
     let (down, up) = (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp));
     let at = choices.iter().position(|(choice, ..)| choice == value).unwrap_or(0);

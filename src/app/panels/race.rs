@@ -64,7 +64,11 @@ impl Panel for RacePanel {
         let state = self;
         choices(ui, state);
         let help = "Renders each technique in turn; measures noise and bias.";
-        let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, desk.shared.references.clone());
+        let (chosen, seconds, cache) = (
+            state.chosen.clone(),
+            state.seconds,
+            desk.shared.rendering.references.clone(),
+        );
         let takes = desk.snapshot.scene.as_ref().map(|scene| {
             let most = seconds_at_most(&techniques(&chosen, &scene.job.plan), seconds);
             format!("takes at most {}", about(most))

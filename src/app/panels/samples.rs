@@ -11,6 +11,7 @@ use crate::app::kit::charts::{short, still};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::words::short_number;
+use crate::app::services::beside::started;
 use crate::job::scatter::ScatterRequest;
 use crate::matching::lobe_of_material;
 use crate::optics::lobe::Horizon;
@@ -88,11 +89,7 @@ impl Panel for SamplesPanel {
         };
         controls(ui, desk, self);
         let state = self;
-        if state.worker.is_none() {
-            let ctx = ui.ctx().clone();
-            state.worker = spawn_samples(move || ctx.request_repaint()).ok();
-        }
-        let Some(worker) = &state.worker else {
+        let Some(worker) = started(&mut state.worker, ui.ctx(), spawn_samples) else {
             widgets::note(ui, "Cannot start a thread to draw samples.");
             return;
         };
@@ -134,7 +131,7 @@ fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     }
     let request = ScatterRequest {
         model,
-        view_angle_deg: desk.shared.view_angle_deg,
+        view_angle_deg: desk.shared.lobe_plots.view_angle_deg,
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
     };

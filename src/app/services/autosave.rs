@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use crate::app::services::crash::Witness;
 use crate::document::Document;
 use crate::store::FileError;
-use crate::store::recovery::{self, Recovered, Slot};
+use crate::store::recovery::{self, Recovered, RecoveryFile};
 
 /// Shortest time between two copies of a document that keeps changing.
 pub(in crate::app) const INTERVAL: Duration = Duration::from_secs(5);
@@ -162,8 +162,8 @@ impl Drop for Autosave {
 
 fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
     let begin = || -> Result<_, FileError> {
-        let leftovers: Vec<Option<Slot>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
-        let load = |(index, slot): (usize, &Option<Slot>)| {
+        let leftovers: Vec<Option<RecoveryFile>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
+        let load = |(index, slot): (usize, &Option<RecoveryFile>)| {
             let slot = slot.as_ref()?;
             let load = || slot.load().map_err(|error| error.to_string());
             Some(Leftover {
@@ -176,7 +176,7 @@ fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dy
         if !found.is_empty() {
             report(Report::Found(found));
         }
-        let slot = Slot::open(folder)?;
+        let slot = RecoveryFile::open(folder)?;
         witness.put_copies_at(slot.path());
         Ok((slot, leftovers))
     };
@@ -187,7 +187,12 @@ fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dy
 }
 
 /// Carries out orders until the window is gone.
-fn obey(slot: Slot, mut leftovers: Vec<Option<Slot>>, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
+fn obey(
+    slot: RecoveryFile,
+    mut leftovers: Vec<Option<RecoveryFile>>,
+    ordered: &Receiver<Order>,
+    report: &dyn Fn(Report),
+) {
     let mut is_kept = true;
     let mut is_empty = true;
     let mut has_failed = false;

@@ -4,12 +4,13 @@
 use std::sync::Arc;
 
 use crate::analysis::difference::difference;
+use crate::app::services::beside::started;
 use crate::document::{Document, MaterialSettings};
 use crate::matching::{lobe_of_material, matched_lobe};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::render::EngineKind;
-use crate::render::background::{self, Background};
+use crate::render::background::Background;
 use crate::render::worker::{Picture, Snapshot, Worker};
 
 /// What B is.
@@ -219,16 +220,14 @@ impl Compare {
         if self.asked_match.as_ref() == Some(&query) {
             return;
         }
-        if self.matching.is_none() {
-            let work = |query: MatchQuery, desk: &background::Responder<'_, MatchQuery, Matched>| {
+        let matching = started(&mut self.matching, ctx, |repaint| {
+            Background::spawn("match lobes", repaint, |query: MatchQuery, responder| {
                 let found = matched_lobe(&query.model, query.lobe).map_err(|error| error.to_string());
-                desk.publish(Matched { query, found });
-            };
-            let ctx = ctx.clone();
-            // Without a thread B keeps A's roughness.
-            self.matching = Background::spawn("match lobes", move || ctx.request_repaint(), work).ok();
-        }
-        if let Some(matching) = &self.matching {
+                responder.publish(Matched { query, found });
+            })
+        });
+        // Without a thread B keeps A's roughness.
+        if let Some(matching) = matching {
             matching.ask(query.clone());
         }
         self.asked_match = Some(query);
@@ -246,16 +245,15 @@ impl Compare {
         if self.asked_difference == Some(asked) {
             return;
         }
-        if self.differing.is_none() {
+        let differing = started(&mut self.differing, ctx, |repaint| {
             let mut serial = 0;
-            let work = move |query: DifferenceQuery,
-                             desk: &background::Responder<'_, DifferenceQuery, Arc<Compared>>| {
+            Background::spawn("difference", repaint, move |query: DifferenceQuery, responder| {
                 let Some(found) = difference(&query.a.image, &query.b.image) else {
                     return;
                 };
                 let scale = query.scale.unwrap_or_else(|| found.automatic_scale());
                 serial += 1;
-                desk.publish(Arc::new(Compared {
+                responder.publish(Arc::new(Compared {
                     size: [found.width as usize, found.height as usize],
                     rgba: found.rgba(scale),
                     scale,
@@ -263,11 +261,9 @@ impl Compare {
                     samples: [query.a.samples_per_pixel, query.b.samples_per_pixel],
                     serial,
                 }));
-            };
-            let ctx = ctx.clone();
-            self.differing = Background::spawn("difference", move || ctx.request_repaint(), work).ok();
-        }
-        if let Some(differing) = &self.differing {
+            })
+        });
+        if let Some(differing) = differing {
             differing.ask(DifferenceQuery {
                 a: a.clone(),
                 b,

@@ -155,7 +155,7 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
     }
 }
 
-/// The report; [`recovery::Slot::report`] finds the line of the message.
+/// The report; [`recovery::RecoveryFile::report`] finds the line of the message.
 fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failures: &[String]) -> String {
     let thread = std::thread::current();
     let mut text = String::new();

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
+use crate::app::services::beside::started;
 use crate::render::environment_thumbnails::{
     EnvironmentThumbnailWorker, EnvironmentThumbnails, SIZE, Wanted, spawn_environment_thumbnails,
 };
@@ -73,14 +74,15 @@ impl Environments {
         (shown_by, shown): (&'static str, &[EnvironmentSource]),
         loaded: Option<(&EnvironmentSource, &Arc<Environment>)>,
     ) {
-        if self.worker.is_none() && !self.has_failed {
-            let repainting = ctx.clone();
-            let folder = self.cache.as_ref().map(|cache| cache.join("environments"));
-            let repaint = move || repainting.request_repaint();
-            self.worker = spawn_environment_thumbnails(folder, self.hold.clone(), repaint).ok();
-            self.has_failed = self.worker.is_none();
+        if self.has_failed {
+            return;
         }
-        let Some(worker) = &self.worker else {
+        let worker = started(&mut self.worker, ctx, |repaint| {
+            let folder = self.cache.as_ref().map(|cache| cache.join("environments"));
+            spawn_environment_thumbnails(folder, self.hold.clone(), repaint)
+        });
+        let Some(worker) = worker else {
+            self.has_failed = true;
             return;
         };
         if self.wanted.get(shown_by).is_none_or(|before| before != shown) {

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
+use crate::app::services::beside::started;
 use crate::document::MaterialSettings;
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
 use crate::store::PRESETS;
@@ -36,7 +37,7 @@ pub(in crate::app) struct Listed {
 }
 
 /// A material of the panel, with the key of its image.
-pub(in crate::app) struct Shown {
+pub(in crate::app) struct MaterialCard {
     pub(in crate::app) entry: Entry,
     pub(in crate::app) key: u64,
 }
@@ -46,7 +47,7 @@ pub(in crate::app) struct Shown {
 pub(in crate::app) struct Library {
     /// Where the user's are; `None` where there is no place for them.
     pub(in crate::app) folder: Option<PathBuf>,
-    pub(in crate::app) own: Vec<Shown>,
+    pub(in crate::app) own: Vec<MaterialCard>,
     /// Keys of the shipped ones.
     shipped: Vec<u64>,
     pub(in crate::app) renaming: Option<(PathBuf, String)>,
@@ -105,7 +106,7 @@ impl Library {
     }
 
     pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {
-        let show = |entry: Entry| Shown {
+        let show = |entry: Entry| MaterialCard {
             key: entry.material.as_ref().map_or(0, thumbnails::key),
             entry,
         };
@@ -142,18 +143,12 @@ impl Library {
         if self.shipped.is_empty() {
             self.shipped = PRESETS.iter().map(thumbnails::key).collect();
         }
-        if self.worker.is_none() {
-            let repainting = ctx.clone();
-            let folder = cache.join("thumbnails");
-            let repaint = move || repainting.request_repaint();
-            let worker = thumbnails::spawn_thumbnails(folder, self.hold.clone(), repaint);
-            match worker {
-                Ok(worker) => self.worker = Some(worker),
-                // Colours stand in for images.
-                Err(_) => return self.cache = None,
-            }
-        }
-        let Some(worker) = &self.worker else {
+        let worker = started(&mut self.worker, ctx, |repaint| {
+            thumbnails::spawn_thumbnails(cache.join("thumbnails"), self.hold.clone(), repaint)
+        });
+        let Some(worker) = worker else {
+            // Colours stand in for images.
+            self.cache = None;
             return;
         };
         if !std::mem::replace(&mut self.is_asked, true) {

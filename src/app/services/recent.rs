@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::app::services::beside::started;
 use crate::import::endings::is_picture;
 use crate::render::background::Background;
 use crate::scene::environment::EnvironmentSource;
@@ -74,16 +75,14 @@ impl Recent {
         if self.searched_at.is_some_and(|at| at.elapsed() < FRESH) {
             return;
         }
-        if self.search.is_none() {
-            let ctx = ctx.clone();
-            let work = |paths: Vec<PathBuf>, desk: &crate::render::background::Responder<'_, _, _>| {
+        let search = started(&mut self.search, ctx, |repaint| {
+            Background::spawn("recent files", repaint, |paths: Vec<PathBuf>, responder| {
                 let missing = paths.into_iter().filter(|path| !path.is_file());
-                desk.publish(Arc::new(missing.collect()));
-            };
-            // Without a thread nothing is greyed: opening says then what is missing.
-            self.search = Background::spawn("recent files", move || ctx.request_repaint(), work).ok();
-        }
-        if let Some(search) = &self.search {
+                responder.publish(Arc::new(missing.collect()));
+            })
+        });
+        // Without a thread nothing is greyed: opening says then what is missing.
+        if let Some(search) = search {
             search.ask(self.paths.clone());
         }
         self.searched_at = Some(Instant::now());

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, TextureHandle, TextureOptions};
 
+use crate::app::services::beside::started;
 use crate::import::Budget;
 use crate::import::picture::read_texture;
-use crate::render::background::{Background, Responder};
+use crate::render::background::Background;
 use crate::scene::Texture;
 
 /// Longest side to which it is reduced, pixels.
@@ -31,15 +32,12 @@ pub(in crate::app) struct ReferenceImage {
 impl ReferenceImage {
     /// The image of a file, once it is read. To be called while it is shown.
     pub(in crate::app) fn texture(&mut self, ctx: &egui::Context, file: &Path) -> Option<&TextureHandle> {
-        if self.worker.is_none() {
-            let repainting = ctx.clone();
-            let work = |file: PathBuf, desk: &Responder<'_, PathBuf, Arc<Read>>| {
+        let worker = started(&mut self.worker, ctx, |repaint| {
+            Background::spawn("reference image", repaint, |file: PathBuf, responder| {
                 let image = read_texture(&file, true, SIDE_MAX, &Budget::of_import()).map(|texture| image(&texture));
-                desk.publish(Arc::new(Read { file, image }));
-            };
-            self.worker = Background::spawn("reference image", move || repainting.request_repaint(), work).ok();
-        }
-        let worker = self.worker.as_ref()?;
+                responder.publish(Arc::new(Read { file, image }));
+            })
+        })?;
         if self.asked.as_deref() != Some(file) {
             worker.ask(file.to_owned());
             self.asked = Some(file.to_owned());

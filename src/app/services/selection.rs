@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::document::MaterialSettings;
+use crate::scene::ModelSource;
 use crate::scene::texture::TextureTarget;
 
 /// A part of the scene.
@@ -14,9 +15,13 @@ pub(in crate::app) enum Thing {
     Slot(usize),
 }
 
-/// What is chosen beside the slot that is edited, and what is lit up.
+/// The slot that is edited, what is chosen beside it, and what is lit up.
 #[derive(Clone, Debug, Default)]
 pub(in crate::app) struct Selection {
+    /// The material slot that is edited.
+    pub(in crate::app) slot: usize,
+    /// The slots that were selected of other models, for when undo or redo brings them back.
+    slots_of: Vec<(ModelSource, usize)>,
     /// The tree was shown in this frame, and in the one before: outlines are drawn.
     pub(in crate::app) is_shown: bool,
     pub(in crate::app) was_shown: bool,
@@ -62,10 +67,19 @@ impl Selection {
         self.is_made = false;
     }
 
+    /// Another model takes a model's place: the slot is the one that was selected of it last.
+    pub(in crate::app) fn change_model(&mut self, left: ModelSource, model: &ModelSource) {
+        self.forget();
+        self.slots_of.retain(|(of, _)| *of != left);
+        self.slots_of.push((left, self.slot));
+        let known = self.slots_of.iter().find(|(of, _)| of == model);
+        self.slot = known.map_or(0, |(_, slot)| *slot);
+    }
+
     /// The slots that are edited: the selected one first.
-    pub(in crate::app) fn slots(&self, selected: usize) -> Vec<usize> {
-        let others = self.also.iter().copied().filter(|slot| *slot != selected);
-        std::iter::once(selected).chain(others).collect()
+    pub(in crate::app) fn slots(&self) -> Vec<usize> {
+        let others = self.also.iter().copied().filter(|slot| *slot != self.slot);
+        std::iter::once(self.slot).chain(others).collect()
     }
 
     /// Chooses an object alone, or takes it in or out beside the others.
@@ -106,10 +120,11 @@ mod tests {
             selection.choose_object(object, beside_others);
             assert_eq!(selection.objects.iter().copied().collect::<Vec<_>>(), expected);
         }
+        selection.slot = 3;
         selection.choose_also(3);
         selection.choose_also(0);
-        assert_eq!(selection.slots(3), [3, 0]);
+        assert_eq!(selection.slots(), [3, 0]);
         selection.forget();
-        assert_eq!(selection.slots(3), [3]);
+        assert_eq!(selection.slots(), [3]);
     }
 }

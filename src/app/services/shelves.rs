@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::services::beside::started;
 use crate::app::services::environments::environment_label;
 use crate::app::services::library::Library;
 use crate::document::MaterialSettings;
@@ -127,21 +128,19 @@ impl Shelves {
         if self.kept.folders.is_empty() && self.asked.is_none() || self.has_failed {
             return;
         }
-        if self.worker.is_none() {
-            let repainting = ctx.clone();
+        let worker = started(&mut self.worker, ctx, |repaint| {
             let mut shelf = Shelf::default();
             let mut last = Arc::default();
-            let work = move |folders: Vec<PathBuf>, desk: &crate::render::background::Responder<'_, _, _>| {
+            Background::spawn("folders", repaint, move |folders: Vec<PathBuf>, responder| {
                 let contents = shelf.list(&folders);
                 if contents != *last {
                     last = Arc::new(contents);
-                    desk.publish(last.clone());
+                    responder.publish(last.clone());
                 }
-            };
-            self.worker = Background::spawn("folders", move || repainting.request_repaint(), work).ok();
-            self.has_failed = self.worker.is_none();
-        }
-        let Some(worker) = &self.worker else {
+            })
+        });
+        let Some(worker) = worker else {
+            self.has_failed = true;
             return;
         };
         let is_asked =

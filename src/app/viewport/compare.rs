@@ -4,11 +4,12 @@ use std::time::Duration;
 
 use egui::{Align, Align2, Color32, CursorIcon, Key, Layout, Rect, Response, Sense, Ui, UiBuilder, pos2, vec2};
 
-use super::{Shown, Viewport, placed};
+use super::{ShownTexture, Viewport, placed};
 use crate::analysis::difference::diverging;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::keys::hold_arrows;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, NumberStyle};
 use crate::app::services::compare::{BEFORE, Compared, Rival, View};
@@ -46,7 +47,7 @@ fn halves(area: Rect) -> [Rect; 2] {
 impl Viewport {
     /// Shows A, `a`, and B where there is an image of it; returns where what the pointer is over is shown.
     pub(super) fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
-        let resolution = desk.shared.resolution;
+        let resolution = desk.shared.viewing.resolution;
         let place = placed(area_of_a(area, desk.shared.compare.view), a, resolution);
         let Some(b) = desk.shared.compare.picture() else {
             self.picture.paint(ui, place, place, a, 0);
@@ -140,13 +141,7 @@ fn arrows(ui: &Ui, response: &Response) -> f32 {
     if !response.has_focus() {
         return 0.0;
     }
-    ui.memory_mut(|memory| {
-        let filter = egui::EventFilter {
-            horizontal_arrows: true,
-            ..Default::default()
-        };
-        memory.set_focus_lock_filter(response.id, filter);
-    });
+    hold_arrows(ui, response, true, false);
     let count = |key| ui.input(|input| input.num_presses(key)) as f32;
     count(Key::ArrowRight) - count(Key::ArrowLeft)
 }
@@ -208,7 +203,7 @@ fn legend(ui: &Ui, place: Rect, compared: &Compared) {
     );
 }
 
-impl Shown {
+impl ShownTexture {
     fn paint_difference(&mut self, ui: &Ui, place: Rect, compared: &Compared, generation: u64) {
         let image = || egui::ColorImage::from_rgba_unmultiplied(compared.size, &compared.rgba);
         self.upload(ui, [generation, compared.serial], image);

@@ -5,6 +5,7 @@ use egui::{Rect, Ui, vec2};
 use super::{LOADING_MARGIN, hints};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
+use crate::app::services::beside::started;
 use crate::document::Denoise;
 use crate::render::background::Background;
 use crate::render::denoise::Library;
@@ -29,7 +30,7 @@ impl DenoiserOffer {
     /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         if self.is_declined
-            || !desk.shared.offers_downloads
+            || !desk.shared.offers.offers_downloads
             || !can_fetch()
             || (self.worker.is_none() && !Library::is_missing())
         {
@@ -76,17 +77,12 @@ impl DenoiserOffer {
         if !get.clicked() {
             return;
         }
-        if self.worker.is_none() {
-            let ctx = ui.ctx().clone();
-            let work = |(), responder: &crate::render::background::Responder<'_, (), Result<(), String>>| {
+        let worker = started(&mut self.worker, ui.ctx(), |repaint| {
+            Background::spawn("denoiser", repaint, |(), responder| {
                 responder.publish(fetch().map_err(|error| error.to_string()));
-            };
-            match Background::spawn("denoiser", move || ctx.request_repaint(), work) {
-                Ok(worker) => self.worker = Some(worker),
-                Err(error) => log::error!("cannot start a thread to fetch the denoiser: {error}"),
-            }
-        }
-        if let Some(worker) = &self.worker {
+            })
+        });
+        if let Some(worker) = worker {
             worker.ask(());
         }
     }

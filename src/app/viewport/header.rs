@@ -3,10 +3,11 @@
 use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::actions::{Action, Command, do_and_close};
-use crate::app::desk::{Desk, RESOLUTIONS};
+use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::{theme, widgets};
 use crate::app::services::environments::environment_label;
+use crate::app::services::viewing::RESOLUTIONS;
 use crate::document::{Denoise, LightPaths};
 use crate::optics::tone::ToneCurve;
 use crate::render::shown::Shown;
@@ -163,7 +164,7 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             denoises.accessible_name("Viewport denoise");
         }
         Item::Resolution => {
-            let response = widgets::choice(ui, "header size", &mut desk.shared.resolution, &RESOLUTIONS);
+            let response = widgets::choice(ui, "header size", &mut desk.shared.viewing.resolution, &RESOLUTIONS);
             response
                 .accessible_name("Resolution")
                 .on_hover_text("Size of the image");
@@ -185,7 +186,7 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
                 .on_hover_text("Display: image, light passes, or AOVs");
         }
         Item::Pause => {
-            let (icon, help) = if desk.shared.is_paused {
+            let (icon, help) = if desk.shared.rendering.is_paused {
                 (Icon::Play, "Resume (space)")
             } else {
                 (Icon::Pause, "Pause (space)")
@@ -201,7 +202,7 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
 type Seen = (Shown, LightPaths);
 
 fn seen(desk: &Desk<'_>) -> Seen {
-    (desk.shared.shown, desk.document.render.light_paths)
+    (desk.shared.viewing.shown, desk.document.render.light_paths)
 }
 
 /// What there is to be seen: parts of the light behind the image; maps of the light that is rendered.
@@ -217,8 +218,8 @@ fn all_seen(desk: &Desk<'_>) -> Vec<(Seen, &'static str, &'static str)> {
 }
 
 fn show_seen(desk: &mut Desk<'_>, (shown, paths): Seen) {
-    if desk.shared.shown != shown {
-        desk.shared.shown = shown;
+    if desk.shared.viewing.shown != shown {
+        desk.shared.viewing.shown = shown;
         desk.actions.push(Action::Show(shown));
     }
     if desk.document.render.light_paths != paths {
@@ -254,7 +255,7 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             }
         }
         Item::Resolution => {
-            widgets::choice_menu(ui, "Resolution", &mut desk.shared.resolution, &RESOLUTIONS);
+            widgets::choice_menu(ui, "Resolution", &mut desk.shared.viewing.resolution, &RESOLUTIONS);
         }
         Item::Shown => {
             let mut seen = seen(desk);

@@ -22,7 +22,7 @@ const CORNER: f32 = 270.0;
 
 /// How far what stands in the lower left corner is raised, so that no hint lies over it.
 pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
-    let is_shown = desk.shared.hints_seen < HINTS.len();
+    let is_shown = desk.shared.offers.hints_seen < HINTS.len();
     let is_narrow = area.width() < WIDTH + 2.0 * (CORNER + LOADING_MARGIN);
     if is_shown && is_narrow {
         HEIGHT + LOADING_MARGIN
@@ -33,7 +33,7 @@ pub(super) fn raised(area: Rect, desk: &Desk<'_>) -> f32 {
 
 /// Shows the hint that is next over the lower edge of the image.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
-    let number = desk.shared.hints_seen;
+    let number = desk.shared.offers.hints_seen;
     let Some(hint) = HINTS.get(number) else { return };
     let size = vec2(WIDTH.min(area.width() - 2.0 * LOADING_MARGIN), HEIGHT);
     let at = pos2(area.center().x - 0.5 * size.x, area.bottom() - LOADING_MARGIN - size.y);
@@ -47,10 +47,10 @@ pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         ui.add(egui::Label::new(*hint).wrap());
         ui.horizontal(|ui| {
             if number + 1 < HINTS.len() && ui.button("Next hint").clicked() {
-                desk.shared.hints_seen += 1;
+                desk.shared.offers.hints_seen += 1;
             }
             if ui.button("No more hints").clicked() {
-                desk.shared.hints_seen = HINTS.len();
+                desk.shared.offers.hints_seen = HINTS.len();
             }
             ui.weak(format!("{} of {}", number + 1, HINTS.len()));
         });

@@ -7,6 +7,7 @@ use egui::{
 use glam::{DVec2, DVec3};
 
 use crate::app::desk::Desk;
+use crate::app::kit::keys::hold_arrows;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::srgb_of;
 use crate::app::lights::{LightHandle, Pull, View, handles, nudged, pulled};
@@ -179,14 +180,7 @@ fn interact(ui: &Ui, clip: Rect, index: usize, handle: LightHandle, at: Pos2) ->
 
 /// The light after the arrow keys of this frame: with shift finely, with ctrl in large steps.
 fn keyed(ui: &Ui, response: &Response, light: &AreaLight, handle: LightHandle) -> AreaLight {
-    ui.memory_mut(|memory| {
-        let filter = egui::EventFilter {
-            horizontal_arrows: true,
-            vertical_arrows: true,
-            ..Default::default()
-        };
-        memory.set_focus_lock_filter(response.id, filter);
-    });
+    hold_arrows(ui, response, true, true);
     let keys = [
         (Key::ArrowLeft, DVec2::NEG_X),
         (Key::ArrowRight, DVec2::X),

@@ -17,7 +17,7 @@ mod messages;
 mod orbit;
 mod outline;
 mod picking;
-mod precision;
+mod precision_map;
 mod reference;
 mod region;
 mod seen;
@@ -32,9 +32,11 @@ use orbit::Orbit;
 use seen::{hit_at, pixel_at};
 
 use super::actions::Action;
-use super::desk::{Desk, Resolution};
+use super::desk::Desk;
+use super::kit::keys::hold_arrows;
 use super::kit::theme;
 use super::services::compare::View;
+use super::services::viewing::Resolution;
 use crate::document::ReferencePlace;
 use crate::render::shown;
 use crate::render::worker::{Picture, Scene};
@@ -61,13 +63,13 @@ const SIDE_MAX_PX: u32 = 8192;
 /// The viewport's own state.
 #[derive(Default)]
 pub(super) struct Viewport {
-    picture: Shown,
+    picture: ShownTexture,
     /// B's, where two are compared.
-    rival: Shown,
+    rival: ShownTexture,
     /// How B differs from A.
-    difference: Shown,
+    difference: ShownTexture,
     /// What of the numbers is not to be trusted.
-    precision: precision::Precision,
+    precision: precision_map::PrecisionView,
     /// Where the image may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
@@ -84,7 +86,7 @@ pub(super) struct Viewport {
 
 /// A texture, and what it shows.
 #[derive(Default)]
-struct Shown {
+struct ShownTexture {
     texture: Option<TextureHandle>,
     /// What it stands for, and whether its pixels have edges.
     key: Option<([u64; 2], bool)>,
@@ -95,7 +97,7 @@ struct Shown {
     over_plate: bool,
 }
 
-impl Shown {
+impl ShownTexture {
     /// Makes the texture show what the key stands for.
     fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
         let options = if self.shows_pixels {
@@ -200,12 +202,12 @@ impl Viewport {
             let place = if is_compared {
                 self.compared(ui, area, picture, desk)
             } else {
-                let place = self.magnified(ui, &response, area, picture, desk.shared.resolution);
+                let place = self.magnified(ui, &response, area, picture, desk.shared.viewing.resolution);
                 self.picture.over_plate = reference::within(ui, area, place, ReferencePlace::Under, desk);
                 self.picture.paint(ui, area.intersect(place), place, picture, 0);
                 reference::within(ui, area, place, ReferencePlace::Over, desk);
                 if let Some(scene) = &desk.snapshot.scene
-                    && desk.shared.shown == shown::Shown::Precision
+                    && desk.shared.viewing.shown == shown::Shown::Precision
                 {
                     self.precision.show(ui, area, place, &scene.job);
                 }
@@ -214,7 +216,7 @@ impl Viewport {
             if is_compared && desk.shared.compare.view == View::Wipe {
                 Self::divider(ui, place, desk);
             }
-            if desk.shared.shows_safe_frames && !is_compared {
+            if desk.shared.viewing.shows_safe_frames && !is_compared {
                 safe_frames(&ui.painter().with_clip_rect(area), place);
             }
             if let Some((shown, scale)) = picture.map {
@@ -374,7 +376,7 @@ impl Viewport {
         if picking::is_picked(&hit, modifiers.command, desk) {
             return;
         }
-        desk.shared.view_angle_deg = hit.view_angle_deg;
+        desk.shared.lobe_plots.view_angle_deg = hit.view_angle_deg;
         picking::choose(&hit, modifiers.shift, desk);
     }
 
@@ -383,14 +385,7 @@ impl Viewport {
         if !response.has_focus() {
             return;
         }
-        ui.memory_mut(|memory| {
-            let filter = egui::EventFilter {
-                horizontal_arrows: true,
-                vertical_arrows: true,
-                ..Default::default()
-            };
-            memory.set_focus_lock_filter(response.id, filter);
-        });
+        hold_arrows(ui, response, true, true);
         let arrows = [
             (Key::ArrowLeft, [-KEY_POINTS, 0.0]),
             (Key::ArrowRight, [KEY_POINTS, 0.0]),

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Rect, Ui};
 
-use super::Shown;
+use super::ShownTexture;
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
+use crate::app::services::beside::started;
 use crate::app::services::selection::Thing;
 use crate::job::Job;
 use crate::render::seen_map::{self, SeenMap, SeenMaps};
@@ -18,7 +19,7 @@ pub(super) struct Outline {
     maps: Option<SeenMaps>,
     /// What the latest map was asked of, and in what size.
     asked: Option<(Arc<Job>, [u32; 2])>,
-    shown: Shown,
+    shown: ShownTexture,
 }
 
 impl Outline {
@@ -29,11 +30,9 @@ impl Outline {
         if chosen.is_empty() && lit.is_none() {
             return;
         }
-        if self.maps.is_none() {
-            let ctx = ui.ctx().clone();
-            self.maps = seen_map::spawn(move || ctx.request_repaint()).ok();
-        }
-        let Some(maps) = &self.maps else { return };
+        let Some(maps) = started(&mut self.maps, ui.ctx(), seen_map::spawn) else {
+            return;
+        };
         // In the screen's pixels, at any size of the image.
         let pixels = place.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));
@@ -54,7 +53,7 @@ impl Outline {
         let Some(map) = latest.filter(|map| map.is_of(job)) else {
             return;
         };
-        let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.slot);
+        let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.selection.slot);
         let mut hasher = DefaultHasher::new();
         let of_map = (Arc::as_ptr(&map) as usize, ui.visuals().dark_mode);
         (&chosen, surface, lit, of_map).hash(&mut hasher);
@@ -77,7 +76,7 @@ fn chosen(desk: &Desk<'_>) -> Vec<Thing> {
         return selection.objects.iter().copied().map(Thing::Object).collect();
     }
     let count = desk.scene().map_or(0, |scene| scene.model.slots.len());
-    let slots = selection.slots(desk.shared.slot);
+    let slots = selection.slots();
     slots.into_iter().filter(|_| count > 1).map(Thing::Slot).collect()
 }
 

@@ -4,9 +4,10 @@ use egui::{DragAndDrop, Rect, Response, Ui};
 
 use super::seen::{hit_at, pixel_at};
 use crate::app::actions::Action;
-use crate::app::desk::{Desk, Pick};
+use crate::app::desk::Desk;
 use crate::app::services::look::SeenSurface;
 use crate::app::services::selection::Thing;
+use crate::app::services::viewing::Pick;
 use crate::document::MaterialSettings;
 use crate::render::worker::Scene;
 
@@ -37,7 +38,11 @@ pub(super) fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, de
 
 /// Whether a click was for more than choosing: ctrl stands for the focus.
 pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> bool {
-    let picks = if is_focus { Some(Pick::Focus) } else { desk.shared.picks };
+    let picks = if is_focus {
+        Some(Pick::Focus)
+    } else {
+        desk.shared.viewing.picks
+    };
     match picks {
         Some(Pick::Focus) if desk.document.camera.aperture > 0.0 => {
             desk.document.camera.focus_distance = Some(seen.depth);
@@ -45,7 +50,7 @@ pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>)
         }
         Some(Pick::Highlight(number)) => {
             let Some(light) = desk.document.lighting.area_lights.get_mut(number) else {
-                desk.shared.picks = None;
+                desk.shared.viewing.picks = None;
                 return false;
             };
             light.put_highlight(seen.place, seen.mirrored);
@@ -53,7 +58,7 @@ pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>)
         }
         _ => return false,
     }
-    desk.shared.picks = None;
+    desk.shared.viewing.picks = None;
     true
 }
 
@@ -64,7 +69,7 @@ pub(super) fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk<'_
         selection.choose_object(object, beside_others);
     }
     let Some(slot) = seen.slot else { return };
-    if beside_others && slot != desk.shared.slot {
+    if beside_others && slot != selection.slot {
         selection.choose_also(slot);
     } else if !beside_others {
         desk.actions.push(Action::SelectSlot(slot));

@@ -273,7 +273,7 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
 }
 
 /// A number or list of an extension, and the key under which a material keeps it.
-struct Kept {
+struct KeptExtension {
     extension: &'static str,
     /// Weight parameter of the extension.
     weight: &'static str,
@@ -283,14 +283,14 @@ struct Kept {
 }
 
 /// Extensions that are not supported yet.
-const KEPT: [Kept; 2] = [
-    Kept {
+const KEPT: [KeptExtension; 2] = [
+    KeptExtension {
         extension: "KHR_materials_dispersion",
         weight: "dispersion",
         values: &[("dispersion", "transmission.dispersion")],
         what: "dispersion",
     },
-    Kept {
+    KeptExtension {
         extension: "KHR_materials_diffuse_transmission",
         weight: "diffuseTransmissionFactor",
         values: &[

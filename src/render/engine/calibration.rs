@@ -11,11 +11,10 @@ use std::time::{Duration, Instant};
 
 use super::ray_queries::RayQueries;
 use super::{Engine, EngineInfo, Precision, cpu, gpu};
+use crate::compile::{Assets, Compiler};
 use crate::document::Document;
 use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
 use crate::job::Job;
-use crate::render::assets::Assets;
-use crate::render::compile::Compiler;
 use crate::render::quiet::{self, Quiet};
 
 /// Side of the measured image, in pixels.

@@ -6,8 +6,6 @@ mod recovery;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::assets::{Assets, Reloaded};
-use super::compile::{self, Compiler};
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, calibration, choice};
 use super::error::SessionError;
@@ -15,6 +13,7 @@ use super::memory;
 use super::progress::{Progress, StopReason};
 use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
+use crate::compile::{self, Assets, Compiler, Reloaded};
 use crate::document::change::Change;
 use crate::document::{Denoise, Document};
 use crate::gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal};
@@ -200,7 +199,7 @@ impl Session {
     ///
     /// A model that cannot be loaded.
     pub fn user_texture_files(&self, document: &Document) -> Result<Vec<UserTextureFile>, SessionError> {
-        compile::user_texture_files(document, &self.assets)
+        Ok(compile::user_texture_files(document, &self.assets)?)
     }
 
     /// Discards the render: the next submission starts over even with the same document.

@@ -1,13 +1,13 @@
 //! The denoiser's thread. It takes the latest render to denoise and returns the result to the worker.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use std::sync::{Arc, Condvar, Mutex};
 
 use crate::document::{Denoise, DenoiseWhen, Document};
-use crate::panics::{caught, lock};
+use crate::panics::caught;
+use crate::render::background::{Background, Responder};
 use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
 use crate::render::progress::Progress;
-use crate::render::quiet::at_work;
 
 /// Factor by which samples grow from one denoised image to the next.
 const GROWTH: u32 = 2;
@@ -39,16 +39,10 @@ pub(super) struct Outcome {
     is_early: bool,
 }
 
-#[derive(Default)]
-struct Mailbox {
-    request: Option<Request>,
-    outcome: Option<Outcome>,
-    quit: bool,
-}
-
 /// The worker's handle of the denoiser's thread: sends requests and collects results.
 pub(super) struct Denoising {
-    mailbox: Arc<(Mutex<Mailbox>, Condvar)>,
+    /// `None` if no thread could be started.
+    thread: Option<Background<Request, Outcome>>,
     /// Number of the current render. Results of earlier ones are discarded.
     stage: u64,
     /// Samples per pixel of the latest request without a result.
@@ -68,19 +62,23 @@ pub(super) struct Denoising {
 impl Denoising {
     /// Starts the thread, which calls `wake` after each result.
     pub(super) fn spawn(wake: impl Fn() + Send + 'static) -> Self {
-        let mailbox = Arc::new((Mutex::new(Mailbox::default()), Condvar::new()));
-        let of_thread = mailbox.clone();
-        let thread = std::thread::Builder::new().name("denoise".to_owned());
-        let spawned = thread.spawn(move || work(&of_thread, &wake));
+        let mut denoiser = None;
+        let spawned = Background::spawn("denoise", wake, move |request, responder| {
+            answer(&mut denoiser, request, responder);
+        });
+        let (thread, failure) = match spawned {
+            Ok(thread) => (Some(thread), None),
+            Err(error) => (None, Some(error.to_string())),
+        };
         Self {
-            mailbox,
+            thread,
             stage: 0,
             pending_samples: None,
             requested_samples: 0,
             cancel: Arc::default(),
             late_seconds: 0.0,
             latest_seconds: 0.0,
-            failure: spawned.err().map(|error| error.to_string()),
+            failure,
         }
     }
 
@@ -91,7 +89,9 @@ impl Denoising {
         self.pending_samples = None;
         self.requested_samples = 0;
         self.late_seconds = 0.0;
-        lock(&self.mailbox.0).request = None;
+        if let Some(thread) = &self.thread {
+            thread.withdraw();
+        }
     }
 
     /// Whether the document's render is shown denoised at this progress.
@@ -128,7 +128,7 @@ impl Denoising {
 
     /// Whether there is a result to collect.
     pub(super) fn has_outcome(&self) -> bool {
-        lock(&self.mailbox.0).outcome.is_some()
+        self.thread.as_ref().is_some_and(Background::has_answer)
     }
 
     /// Requests a denoised image. Replaces a request that has not been started.
@@ -137,20 +137,22 @@ impl Denoising {
         let is_early = self.is_early(progress);
         self.pending_samples = Some(samples_per_pixel);
         self.requested_samples = samples_per_pixel;
-        lock(&self.mailbox.0).request = Some(Request {
+        let request = Request {
             noisy,
             mode,
             stage: self.stage,
             samples_per_pixel,
             is_early,
             cancel: self.cancel.clone(),
-        });
-        self.mailbox.1.notify_one();
+        };
+        if let Some(thread) = &self.thread {
+            thread.ask(request);
+        }
     }
 
     /// Takes the latest result, if it is of the current render. After a failure nothing is denoised any more.
     pub(super) fn collect(&mut self) -> Option<Outcome> {
-        let outcome = lock(&self.mailbox.0).outcome.take()?;
+        let outcome = self.thread.as_ref()?.take()?;
         if let Err(why) = &outcome.denoised {
             self.failure = Some(why.clone());
         }
@@ -174,43 +176,22 @@ impl Drop for Denoising {
     /// Ends the thread without waiting for it, as it may be in the middle of a request.
     fn drop(&mut self) {
         self.cancel.store(true, Relaxed);
-        lock(&self.mailbox.0).quit = true;
-        self.mailbox.1.notify_one();
     }
 }
 
-/// The thread's body.
-fn work((mailbox, asked): &(Mutex<Mailbox>, Condvar), wake: &dyn Fn()) {
-    let mut denoiser = None;
-    loop {
-        let mut contents = lock(mailbox);
-        let request = loop {
-            if contents.quit {
-                return;
-            }
-            match contents.request.take() {
-                Some(request) => break request,
-                None => {
-                    contents = asked.wait(contents).unwrap_or_else(std::sync::PoisonError::into_inner);
-                }
-            }
-        };
-        drop(contents);
-        let _at_work = at_work();
-        let denoised = match caught(|| denoise(&mut denoiser, &request)) {
-            Ok(Err(LibraryError::Cancelled)) => continue,
-            Ok(done) => done.map_err(|error| error.to_string()),
-            Err(panic) => Err(panic),
-        };
-        lock(mailbox).outcome = Some(Outcome {
-            denoised,
-            noisy: request.noisy,
-            samples_per_pixel: request.samples_per_pixel,
-            stage: request.stage,
-            is_early: request.is_early,
-        });
-        wake();
-    }
+fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Responder<'_, Request, Outcome>) {
+    let denoised = match caught(|| denoise(denoiser, &request)) {
+        Ok(Err(LibraryError::Cancelled)) => return,
+        Ok(done) => done.map_err(|error| error.to_string()),
+        Err(panic) => Err(panic),
+    };
+    responder.publish(Outcome {
+        denoised,
+        noisy: request.noisy,
+        samples_per_pixel: request.samples_per_pixel,
+        stage: request.stage,
+        is_early: request.is_early,
+    });
 }
 
 fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoised, LibraryError> {

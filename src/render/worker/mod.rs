@@ -10,19 +10,20 @@ mod thread;
 use std::io;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Arc, Condvar, Mutex};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::assets::Assets;
 use super::convergence::Measurement;
 use super::engine::{EngineChoice, EngineInfo};
+use super::mailbox::Mailbox;
 use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
 use super::progress::Progress;
 use super::session::Session;
-use super::shown::{Facts, Scale, Shown};
+use super::shown::{PixelFacts, Scale, Shown};
 use crate::analysis::halves::Distance;
+use crate::compile::Assets;
 use crate::document::Document;
 use crate::gpu::Moment;
 use crate::job::Job;
@@ -115,7 +116,7 @@ pub struct Picture {
     /// The map that `rgba` shows, with its colour scale if it has one; `None` for the image itself.
     pub map: Option<(Shown, Option<Scale>)>,
     /// Per-pixel quantities while the inspector is open.
-    pub facts: Option<Arc<Facts>>,
+    pub facts: Option<Arc<PixelFacts>>,
     /// The document, with the size at full resolution.
     pub document: Arc<Document>,
 }
@@ -265,8 +266,7 @@ struct Submission {
 
 #[derive(Default)]
 struct Shared {
-    commands: Mutex<CommandQueue>,
-    command_arrived: Condvar,
+    commands: Mailbox<CommandQueue>,
     snapshot: Mutex<Arc<Snapshot>>,
     events: Mutex<Vec<Event>>,
 }
@@ -276,14 +276,6 @@ struct CommandQueue {
     commands: Commands,
     is_paused: bool,
     last_revision: u64,
-}
-
-impl Shared {
-    /// Wakes the thread. Takes the lock, because the thread holds it while it decides to wait: so no wake-up is lost.
-    fn wake(&self) {
-        let _commands = lock(&self.commands);
-        self.command_arrived.notify_one();
-    }
 }
 
 impl Worker {
@@ -325,23 +317,21 @@ impl Worker {
 
     /// Submits a document to render instead of the last one. Returns its revision, which its images carry.
     pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
-        let mut queue = lock(&self.shared.commands);
-        queue.last_revision += 1;
-        let revision = queue.last_revision;
-        queue.commands.submission = Some(Submission {
-            document: Arc::new(document.clone()),
-            pace,
-            revision,
-            at: Instant::now(),
-        });
-        self.shared.command_arrived.notify_one();
-        revision
+        self.shared.commands.change(|queue| {
+            queue.last_revision += 1;
+            queue.commands.submission = Some(Submission {
+                document: Arc::new(document.clone()),
+                pace,
+                revision: queue.last_revision,
+                at: Instant::now(),
+            });
+            queue.last_revision
+        })
     }
 
     /// Pauses or resumes rendering. Submissions are still shown with their first sample while paused.
     pub fn pause(&self, is_paused: bool) {
-        lock(&self.shared.commands).is_paused = is_paused;
-        self.shared.command_arrived.notify_one();
+        self.shared.commands.change(|queue| queue.is_paused = is_paused);
     }
 
     /// Loads a model in the background; an [`Event`] reports the result.
@@ -409,8 +399,7 @@ impl Worker {
     }
 
     fn send(&self, change: impl FnOnce(&mut Commands)) {
-        change(&mut lock(&self.shared.commands).commands);
-        self.shared.command_arrived.notify_one();
+        self.shared.commands.change(|queue| change(&mut queue.commands));
     }
 
     /// The latest snapshot.

@@ -1,6 +1,8 @@
 //! Thumbnails of environments for the panels.
 
 use super::{Environment, environment_direction, environment_radiance};
+use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::vector::Vec3;
 
 /// Samples along each side of a thumbnail's pixel.
 const TAPS: u32 = 4;
@@ -33,7 +35,7 @@ pub fn brightened(pixels: &[u8], factor: f32) -> Vec<u8> {
     let codes: Vec<u8> = (0..=255_u8)
         .map(|code| {
             // The inverse of the curve, which white at 4 ends.
-            let shown = linear_from_code(code);
+            let shown: f32 = linear_from_srgb(Vec3::splat(f32::from(code) / 255.0)).x;
             let radiance = 8.0 * (shown - 1.0 + ((1.0 - shown).powi(2) + 0.25 * shown).sqrt());
             let bright = factor * radiance;
             srgb_u8(bright * (1.0 + bright / 16.0) / (1.0 + bright))
@@ -80,23 +82,8 @@ fn geometric_mean_luminance(pixels: &[[f32; 3]]) -> f32 {
 
 /// The sRGB code of a linear value.
 fn srgb_u8(linear: f32) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let encoded = if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    };
+    let encoded = srgb_from_linear(Vec3::splat(linear.clamp(0.0, 1.0))).x;
     (encoded * 255.0 + 0.5) as u8
-}
-
-/// The inverse of [`srgb_u8`].
-fn linear_from_code(code: u8) -> f32 {
-    let encoded = f32::from(code) / 255.0;
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use super::report::EngineReport;
 use super::scene::Scene;
-use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, Slot, default_scene};
+use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, StepTime, default_scene};
 use crate::analysis::error::relative_mean_squared_error;
 use crate::document::{Denoise, Document};
 use crate::job::film::Image;
@@ -80,7 +80,7 @@ fn colors(image: &Image) -> Vec<f32> {
 }
 
 /// Measures the times of all scenes with a reference.
-pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let mut session = place.open()?;
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 use super::report::EngineReport;
-use super::{Done, Place, Run, Slot, default_scene};
+use super::{Done, Place, Run, StepTime, default_scene};
 use crate::gpu::{GpuAdapter, Traversal};
 use crate::render::Session;
 use crate::study::StudyError;
@@ -25,7 +25,7 @@ const SIZE: u32 = 16;
 const FOLDERS: [&str; 3] = ["XDG_CACHE_HOME", "MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"];
 
 /// Measures the compile times in child processes.
-pub(super) fn kernels(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn kernels(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let Place::Adapter(adapter) = place else {
         return Ok(());
     };

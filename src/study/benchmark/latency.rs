@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::report::EngineReport;
-use super::{Done, Place, Run, Slot};
+use super::{Done, Place, Run, StepTime};
 use crate::document::Document;
 use crate::render::worker::{Activity, Pace, Worker};
 use crate::scene::environment::EnvironmentSource;
@@ -61,7 +61,7 @@ fn awaited<A>(patience: Duration, look: impl Fn() -> Option<A>) -> Option<A> {
 }
 
 /// Measures a drag of the roughness.
-pub(super) fn edits(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn edits(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let name = "roughness dragged";
     let mut document = viewport(run.extent.viewport);
     let worker = match Worker::spawn(place.choice(), || {}) {

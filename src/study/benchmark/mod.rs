@@ -91,11 +91,11 @@ const QUICK: Extent = Extent {
 
 /// Time of a step: it begins no turn after its end.
 #[derive(Clone, Copy, Debug)]
-struct Slot {
+struct StepTime {
     end: Instant,
 }
 
-impl Slot {
+impl StepTime {
     fn is_over(self) -> bool {
         Instant::now() >= self.end
     }
@@ -165,7 +165,7 @@ struct Run<'a, 'b> {
 }
 
 /// Steps of an engine, with their weights in its time.
-type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, Slot) -> Result<(), StudyError>;
+type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, StepTime) -> Result<(), StudyError>;
 const STEPS: [(&str, f64, Step); 7] = [
     ("rate", 0.32, rate::rates),
     ("to clean", 0.20, goal::goals),
@@ -280,7 +280,7 @@ impl Run<'_, '_> {
             share += weight;
             let end = begun + time.mul_f64(share);
             self.report(&format!("{}, {name}", report.name()))?;
-            match step(self, place, &mut report, Slot { end }) {
+            match step(self, place, &mut report, StepTime { end }) {
                 Err(StudyError::Stopped) => return Err(StudyError::Stopped),
                 Err(error) => report.leave_out(name, "", error.to_string()),
                 Ok(()) => {}
@@ -353,7 +353,7 @@ fn peak_memory_mib() -> Option<f64> {
 type Done = Result<(), StudyError>;
 
 /// Times of the paper's Fig. 8, without whole frames.
-fn sampling_times(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+fn sampling_times(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let mut options = SamplingOptions {
         size: run.extent.sampling_size,
         turns: 5,

@@ -5,7 +5,7 @@ use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
 use super::report::{EngineReport, Proof};
-use super::{Done, Place, Run, Slot};
+use super::{Done, Place, Run, StepTime};
 use crate::study::StudyError;
 use crate::study::check::{self, CheckOptions};
 use crate::study::hard::{HardError, Stage, catalogue};
@@ -15,7 +15,7 @@ const CHECK: &str = "check";
 const HARD: &str = "hard cases";
 
 /// Runs the hard cases, then the checks.
-pub(super) fn proofs(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn proofs(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     run.report(&format!("{}, hard cases", report.name()))?;
     let proof = until(slot.left().div_f64(2.0), |stop| hard_cases(place, stop))?;
     report.proofs.push(proof);

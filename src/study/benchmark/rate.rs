@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::report::EngineReport;
-use super::{Case, Done, Place, Run, Slot};
+use super::{Case, Done, Place, Run, StepTime};
 use crate::gpu::Traversal;
 use crate::render::Session;
 use crate::study::{StudyError, UNLIMITED};
@@ -22,7 +22,7 @@ struct Rates {
 }
 
 /// Measures the rates of all scenes.
-pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let mut session = place.open()?;
     let mut found: Vec<Rates> = run.cases.iter().map(|_| Rates::default()).collect();
     for (turn, number) in slot.turns(run.extent.turns, found.len()) {
@@ -77,7 +77,7 @@ fn measured(
 }
 
 /// Measures ray queries and our own traversal in turn.
-pub(super) fn ray_queries(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: Slot) -> Done {
+pub(super) fn ray_queries(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
     let Place::Adapter(adapter) = place else {
         return Ok(());
     };

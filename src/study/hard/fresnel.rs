@@ -231,8 +231,8 @@ fn naive_dielectric(cosine: f32, ior: f32) -> f32 {
     0.5 * (perpendicular * perpendicular + parallel * parallel)
 }
 
-/// The textbook form without guards.
-fn naive_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
+/// Reflectance of a conductor in the textbook form, without guards.
+pub fn naive_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let (cos2, sin2) = (cosine * cosine, 1.0 - cosine * cosine);
     let t0 = eta * eta - k * k - sin2;
     let size = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();

@@ -1,8 +1,9 @@
 //! Layers at the ends of their parameters, in f32 against f64.
 
 use super::{HardCase, HardError, Stage};
+use crate::compile::compile;
 use crate::cpu::probe::probe_material;
-use crate::document::{CoatLobe, MaterialSettings, compile};
+use crate::document::{CoatLobe, MaterialSettings};
 use crate::job::precision::{ERROR_BOUND, relative_error};
 use crate::job::probe::{MaterialQuestion, MaterialView, ProbeScene};
 use crate::optics::vector::{Vec3, vec3};

@@ -1,6 +1,7 @@
 //! Hard cases: situations where naive code fails, as data. Each states the failure, the set-up and the requirement.
 //! `glossmith check --hard`, the editor and the tests run them.
 
+mod against_f64;
 mod film;
 mod fresnel;
 mod geometry;
@@ -9,7 +10,6 @@ mod layer;
 mod light;
 mod lobe;
 mod meshes;
-mod precision;
 mod rays;
 mod stage;
 mod sums;
@@ -20,6 +20,7 @@ use std::time::Instant;
 use super::check::Check;
 use crate::job::film::Image;
 use crate::render::{EngineChoice, EngineInfo};
+pub use fresnel::naive_conductor;
 pub use stage::{HardError, Stage};
 
 /// A situation where naive code fails.
@@ -50,7 +51,7 @@ pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
     [
         lobe::CASES,
         layer::CASES,
-        precision::CASES,
+        against_f64::CASES,
         film::CASES,
         fresnel::CASES,
         geometry::CASES,

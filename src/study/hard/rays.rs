@@ -120,7 +120,7 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
         }
         let geometry = Geometry::build(&model(mesh), false);
         let materials = [Default::default(), Default::default()];
-        let (materials, _) = crate::document::compile(&materials);
+        let (materials, _) = crate::compile::compile(&materials);
         let textures = Textures::default();
         let mut rays = Vec::new();
         let mut is_outward = Vec::new();

@@ -187,7 +187,7 @@ impl Stage {
     ///
     /// If it cannot be read.
     pub fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, HardError> {
-        Ok(environment::load(source).map_err(SessionError::from)?)
+        Ok(environment::load(source).map_err(|error| SessionError::Asset(error.into()))?)
     }
 }
 

@@ -10,9 +10,10 @@ use photographic::Photographic;
 
 use super::Panel;
 use crate::app::actions::{Action, Command};
-use crate::app::desk::{Desk, PICTURE_SIZE, Pick, RESOLUTIONS, Resolution};
+use crate::app::desk::{Desk, PICTURE_SIZE};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::app::services::viewing::{Pick, RESOLUTIONS, Resolution};
 use crate::document::{Bookmark, range};
 
 /// Camera, view and render settings.
@@ -87,7 +88,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
 /// The focus distance: until it is given, that of the target, which only the scene knows.
 fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
     if desk.document.camera.aperture == 0.0 {
-        desk.shared.picks.take_if(|pick| *pick == Pick::Focus);
+        desk.shared.viewing.picks.take_if(|pick| *pick == Pick::Focus);
         return;
     }
     let at_target = desk.scene().map_or(1.0, |scene| {
@@ -172,13 +173,13 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     let name = Name::new("Image size", "Size", "What the viewport renders, and what is saved.");
     let response = widgets::row(ui, name, |ui| {
-        widgets::choice(ui, "size", &mut desk.shared.resolution, &RESOLUTIONS)
+        widgets::choice(ui, "size", &mut desk.shared.viewing.resolution, &RESOLUTIONS)
     });
     if response.reset {
-        desk.shared.resolution = Resolution::default();
+        desk.shared.viewing.resolution = Resolution::default();
     }
     widgets::comes_and_goes(ui, |ui| {
-        if desk.shared.resolution == Resolution::Document {
+        if desk.shared.viewing.resolution == Resolution::Document {
             desk.settings(ui, PICTURE_SIZE);
             photographic::aspect(ui, desk);
         }

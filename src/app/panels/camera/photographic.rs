@@ -55,7 +55,7 @@ impl Photographic {
         }
         self.focal_length(ui, desk);
         widgets::comes_and_goes(ui, |ui| self.f_number(ui, desk));
-        let frames = ui.checkbox(&mut desk.shared.shows_safe_frames, "Safe frames");
+        let frames = ui.checkbox(&mut desk.shared.viewing.shows_safe_frames, "Safe frames");
         frames.on_hover_text(
             "Marks what every screen shows: actions within 93 %, titles within 90 % of the image (EBU R 95).",
         );

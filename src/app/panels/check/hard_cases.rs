@@ -1,5 +1,6 @@
 //! The hard cases, a line each with its verdict and, where it renders one, its image.
 
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -9,6 +10,7 @@ use egui::{ColorImage, TextureHandle, TextureOptions, Ui, vec2};
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::app::kit::words::time_left;
+use crate::app::services::beside::{Repaint, started};
 use crate::document::ViewSettings;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
@@ -72,10 +74,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         ui,
         "Places where naive code breaks, each with what it does here: measured against its limit.",
     );
-    if state.worker.is_none() {
-        state.worker = spawn(ui, &state.stop);
-    }
-    let Some(worker) = &state.worker else {
+    let Some(worker) = started(&mut state.worker, ui.ctx(), |repaint| spawn(repaint, &state.stop)) else {
         widgets::note(ui, "Cannot start a thread to check.");
         return;
     };
@@ -119,13 +118,12 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
 }
 
 /// The thread that runs the cases, apart from those that render.
-fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Status>> {
-    let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options: HardOptions, desk: &crate::render::background::Responder<'_, HardOptions, Status>| {
+fn spawn(repaint: Repaint, stop: &Arc<AtomicBool>) -> io::Result<Background<HardOptions, Status>> {
+    let stop = stop.clone();
+    Background::spawn("hard cases", repaint, move |options, responder| {
         work_apart();
-        run(&options, &stop, &|standing| desk.publish(standing));
-    };
-    Background::spawn("hard cases", move || ctx.request_repaint(), work).ok()
+        run(&options, &stop, &|standing| responder.publish(standing));
+    })
 }
 
 /// Runs case after case, publishing after each, until it is stopped.

@@ -3,6 +3,7 @@
 mod benchmark;
 mod hard_cases;
 
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -17,6 +18,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::app::kit::words::time_left;
+use crate::app::services::beside::{Repaint, started};
 use crate::app::study::engine;
 use crate::render::background::Background;
 use crate::render::priority::work_apart;
@@ -59,10 +61,7 @@ impl Panel for CheckPanel {
             "Proves on this machine that the image is right: samples against densities, energy, engines and strategies \
              against each other. The viewport goes on meanwhile.",
         );
-        if state.worker.is_none() {
-            state.worker = spawn(ui, &state.stop);
-        }
-        let Some(worker) = &state.worker else {
+        let Some(worker) = started(&mut state.worker, ui.ctx(), |repaint| spawn(repaint, &state.stop)) else {
             widgets::note(ui, "Cannot start a thread to check.");
             return;
         };
@@ -113,18 +112,17 @@ impl Panel for CheckPanel {
 }
 
 /// The thread that checks, apart from those that render.
-fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Status>> {
-    let (ctx, stop) = (ui.ctx().clone(), stop.clone());
-    let work = move |options, desk: &crate::render::background::Responder<'_, CheckOptions, Status>| {
+fn spawn(repaint: Repaint, stop: &Arc<AtomicBool>) -> io::Result<Background<CheckOptions, Status>> {
+    let stop = stop.clone();
+    Background::spawn("check", repaint, move |options, responder| {
         work_apart();
-        let progress = |group: &str, share: f64| desk.publish(Status::Checking(group.to_owned(), share));
-        desk.publish(match run(options, &stop, progress) {
+        let progress = |group: &str, share: f64| responder.publish(Status::Checking(group.to_owned(), share));
+        responder.publish(match run(options, &stop, progress) {
             Ok(Some(checks)) => Status::Done(checks),
             Ok(None) => Status::Stopped,
             Err(error) => Status::Failed(error.to_string()),
         });
-    };
-    Background::spawn("check", move || ctx.request_repaint(), work).ok()
+    })
 }
 
 fn table(ui: &mut Ui, checks: &[Check]) {

@@ -15,7 +15,7 @@ use crate::app::kit::widgets;
 use crate::app::kit::words::percent;
 use crate::app::services::look::middle;
 use crate::render::display::exposure;
-use crate::render::shown::{Facts, luminance, stops_of};
+use crate::render::shown::{PixelFacts, luminance, stops_of};
 use crate::render::worker::Picture;
 
 /// The inspector.
@@ -131,7 +131,7 @@ fn values(ui: &mut Ui, desk: &Desk<'_>, picture: &Picture, [x, y]: [u32; 2]) {
 }
 
 /// Samples, error and what is seen first.
-fn of_facts(line: &mut impl FnMut(&str, String), facts: Option<&Arc<Facts>>, index: usize) {
+fn of_facts(line: &mut impl FnMut(&str, String), facts: Option<&Arc<PixelFacts>>, index: usize) {
     let Some(facts) = facts else { return };
     if let Some(samples) = facts.samples.get(index) {
         line("Samples", samples.to_string());

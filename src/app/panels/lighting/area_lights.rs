@@ -3,11 +3,12 @@
 use egui::{Align, Button, Layout, Ui};
 
 use crate::app::actions::Action;
-use crate::app::desk::{Desk, Pick};
+use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::app::lights::{View, put_in_view};
+use crate::app::services::viewing::Pick;
 use crate::document::{AreaLight, GroupName, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
@@ -73,7 +74,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         Some((Asked::Remove, index)) => {
             lights.remove(index);
             // What another light was to be picked for would become its neighbour's.
-            desk.shared.picks = None;
+            desk.shared.viewing.picks = None;
             desk.shared.selection.light = None;
             desk.edits.note("Remove area light", "");
         }

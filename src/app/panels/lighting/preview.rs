@@ -6,6 +6,7 @@ use egui::{
 };
 
 use crate::app::desk::Desk;
+use crate::app::kit::keys::hold_arrows;
 use crate::render::environment_thumbnails::SIZE;
 use crate::render::worker::Scene;
 use crate::scene::environment::{EnvironmentSource, brightened};
@@ -153,13 +154,7 @@ impl Preview {
 
 /// The rotation after the arrow keys of this frame.
 fn keyed(ui: &Ui, response: &Response, rotation_deg: f32) -> f32 {
-    ui.memory_mut(|memory| {
-        let filter = egui::EventFilter {
-            horizontal_arrows: true,
-            ..Default::default()
-        };
-        memory.set_focus_lock_filter(response.id, filter);
-    });
+    hold_arrows(ui, response, true, false);
     let mut by = 0.0;
     for (modifiers, size) in [
         (Modifiers::COMMAND, SNAP_DEG),

@@ -10,6 +10,7 @@ use crate::analysis::fit::Merl;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::widgets;
+use crate::app::services::beside::started;
 use crate::matching::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
@@ -64,15 +65,12 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
         } else {
             Lobe::Geometric
         },
-        view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
+        view_angle_deg: f64::from(desk.shared.lobe_plots.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
     };
-    if state.worker.is_none() {
-        let ctx = ui.ctx().clone();
-        let work =
-            |query: Query, desk: &crate::render::background::Responder<'_, Query, Answer>| desk.publish(find(query));
-        state.worker = Background::spawn("match look", move || ctx.request_repaint(), work).ok();
-    }
-    let Some(worker) = &state.worker else {
+    let worker = started(&mut state.worker, ui.ctx(), |repaint| {
+        Background::spawn("match look", repaint, |query, responder| responder.publish(find(query)))
+    });
+    let Some(worker) = worker else {
         widgets::note(ui, "Cannot start a thread to compute.");
         return;
     };

@@ -14,6 +14,7 @@ use matching::MatchState;
 use super::Panel;
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::app::services::beside::started;
 use crate::matching::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
@@ -62,7 +63,7 @@ struct Query {
 /// What came of a query.
 struct Answer {
     query: Query,
-    shown: Shown,
+    shown: Drawn,
 }
 
 impl Query {
@@ -74,7 +75,7 @@ impl Query {
     }
 }
 
-enum Shown {
+enum Drawn {
     Lines(LinePlot),
     Pictures(Vec<ColorImage>),
 }
@@ -96,7 +97,7 @@ impl Panel for LobePanel {
             return;
         }
         let other = other_lobe(self, desk);
-        let view_angle_deg = f64::from(desk.shared.view_angle_deg);
+        let view_angle_deg = f64::from(desk.shared.lobe_plots.view_angle_deg);
         let query = Query {
             kind,
             lobes: [Some(material), other.clone()].into_iter().flatten().collect(),
@@ -107,7 +108,7 @@ impl Panel for LobePanel {
         if self.other != Other::Nothing {
             ui.add_space(crate::app::kit::theme::GAP);
             let target = match self.other {
-                Other::Measured => desk.shared.measured.clone().map(matching::Source::File),
+                Other::Measured => desk.shared.lobe_plots.measured.clone().map(matching::Source::File),
                 _ => other.map(matching::Source::Lobe),
             };
             matching::show(ui, desk, &mut self.matching, target);
@@ -174,16 +175,13 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: V
 }
 
 fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
-    if state.worker.is_none() {
-        let ctx = ui.ctx().clone();
-        let repaint = move || ctx.request_repaint();
-        state.worker = Background::spawn("lobe view", repaint, |query, desk| {
+    let worker = started(&mut state.worker, ui.ctx(), |repaint| {
+        Background::spawn("lobe view", repaint, |query, responder| {
             let shown = compute(&query);
-            desk.publish(Arc::new(Answer { query, shown }))
+            responder.publish(Arc::new(Answer { query, shown }))
         })
-        .ok();
-    }
-    let Some(worker) = &state.worker else {
+    });
+    let Some(worker) = worker else {
         widgets::note(ui, "Cannot start a thread to compute.");
         return;
     };
@@ -204,7 +202,7 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
         ui.multiply_opacity(OLD_OPACITY);
     }
     match &answer.shown {
-        Shown::Lines(plot) => {
+        Drawn::Lines(plot) => {
             line_plot(ui, "lobe view", plot, &state.radii);
             widgets::comes_and_goes(ui, |ui| {
                 if plot.is_polar {
@@ -212,7 +210,7 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
                 }
             });
         }
-        Shown::Pictures(images) => {
+        Drawn::Pictures(images) => {
             if !state
                 .pictured
                 .as_ref()
@@ -241,7 +239,7 @@ fn computing(ui: &mut Ui) {
     egui::Spinner::new().paint_at(ui, spinner);
 }
 
-fn compute(query: &Query) -> Shown {
+fn compute(query: &Query) -> Drawn {
     let angles_deg = if query.kind.is_against_angle() {
         query.kind.view_angles_deg()
     } else {
@@ -249,7 +247,7 @@ fn compute(query: &Query) -> Shown {
     };
     // One figure a lobe, under each other, on a common scale: the panel is narrow.
     let figures: Vec<LobeView> = match lobe_view(query.kind, &query.lobes, &angles_deg) {
-        LobeView::Lines(plot) => return Shown::Lines(plot),
+        LobeView::Lines(plot) => return Drawn::Lines(plot),
         LobeView::Maps(MapPlot { title, range, maps }) => maps
             .into_iter()
             .map(|map| {
@@ -277,5 +275,5 @@ fn compute(query: &Query) -> Shown {
         let size = [picture.width() as usize, picture.height() as usize];
         ColorImage::from_rgb(size, picture.as_raw())
     };
-    Shown::Pictures(pictures.map(image).collect())
+    Drawn::Pictures(pictures.map(image).collect())
 }

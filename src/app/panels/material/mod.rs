@@ -44,7 +44,7 @@ impl MaterialPanel {
     /// Whether another material is shown than in the last frame.
     fn is_another(&mut self, desk: &Desk<'_>, material: &MaterialSettings) -> bool {
         let model = desk.scene().map_or(0, |scene| Arc::as_ptr(&scene.model) as usize);
-        let slot = (desk.shared.slot, model);
+        let slot = (desk.shared.selection.slot, model);
         let is_another = match &self.shown {
             Some((last, before)) if *last == slot => {
                 let is_changed = |parameter: &&Parameter| parameter.get(before) != parameter.get(material);
@@ -123,8 +123,8 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
     let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
         return;
     };
-    if desk.shared.slot >= count.max(1) {
-        desk.shared.slot = 0;
+    if desk.shared.selection.slot >= count.max(1) {
+        desk.shared.selection.slot = 0;
     }
     if count < 2 {
         return;
@@ -168,7 +168,7 @@ fn slot_entry(
         (own, of_model) => format!("{own}  ({of_model})"),
     };
     let [r, g, b] = widgets::srgb_of(material.base_color);
-    let is_selected = slot == desk.shared.slot;
+    let is_selected = slot == desk.shared.selection.slot;
     let row = widgets::PictureRow {
         name: &label,
         full_name: &format!("Slot {}: {label}", slot + 1),
@@ -266,7 +266,7 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
     }
     let is_other = row.inner;
     if is_other && parameter.set(material, value).is_ok() {
-        let key = format!("{}/{}", desk.shared.slot, parameter.key);
+        let key = format!("{}/{}", desk.shared.selection.slot, parameter.key);
         desk.edits.note(parameter.full_name(), key);
     }
 }

@@ -146,8 +146,10 @@ fn row(
     if response.changed
         && let Some(parameter) = switch
     {
-        desk.edits
-            .note(parameter.full_name(), format!("{}/{}", desk.shared.slot, parameter.key));
+        desk.edits.note(
+            parameter.full_name(),
+            format!("{}/{}", desk.shared.selection.slot, parameter.key),
+        );
     }
     match asked {
         Some(Asked::Remove) => {
@@ -204,7 +206,7 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                 let mut value = parameter.get(&texture);
                 let is_other = parameter_row::show_as(ui, parameter, &full, &mut value);
                 if is_other && parameter.set(&mut texture, value).is_ok() {
-                    let key = format!("{}/{}/{}", desk.shared.slot, target.name(), parameter.key);
+                    let key = format!("{}/{}/{}", desk.shared.selection.slot, target.name(), parameter.key);
                     desk.edits.note(full, key);
                     material.user_textures.set(target, Some(texture.clone()));
                 }
@@ -232,7 +234,7 @@ fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
         ));
     }
     let scene = scene?;
-    let slot = scene.model.slots.get(desk.shared.slot)?;
+    let slot = scene.model.slots.get(desk.shared.selection.slot)?;
     let reference = slot.texture(target)?;
     Some(Picture::OfModel(scene.model.clone(), reference.texture))
 }

@@ -306,7 +306,7 @@ fn shipped(desk: &Desk<'_>) -> Vec<Group> {
 
 fn own(desk: &Desk<'_>) -> Vec<Entry> {
     let library = &desk.shared.library;
-    let entry = |shown: &crate::app::services::library::Shown| {
+    let entry = |shown: &crate::app::services::library::MaterialCard| {
         let path = &shown.entry.path;
         let entry = match &shown.entry.material {
             Ok(material) => Entry::material(path.display().to_string(), material, library.picture(shown.key)),

@@ -23,7 +23,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel) {
                 ui.push_id(("material", slot), |ui| entry(ui, desk, panel, slot, &material));
             }
         }
-        let chosen = desk.shared.selection.slots(desk.shared.slot).len();
+        let chosen = desk.shared.selection.slots().len();
         if chosen > 1 {
             widgets::note(ui, format!("{chosen} materials are edited together."));
         }
@@ -52,11 +52,12 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel, slot: usize, 
             stroke,
             egui::StrokeKind::Inside,
         );
-        let is_chosen = desk.shared.selection.slots(desk.shared.slot).contains(&slot);
+        let is_chosen = desk.shared.selection.slots().contains(&slot);
         let shown = line(ui, "Material", &material.name, is_chosen, false);
         light_up(ui, desk, &shown, Thing::Slot(slot));
         if shown.clicked() {
-            if ui.input(|input| input.modifiers.command || input.modifiers.shift) && slot != desk.shared.slot {
+            if ui.input(|input| input.modifiers.command || input.modifiers.shift) && slot != desk.shared.selection.slot
+            {
                 desk.shared.selection.choose_also(slot);
             } else {
                 desk.shared.selection.objects.clear();

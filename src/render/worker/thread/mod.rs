@@ -11,11 +11,11 @@ use std::time::{Duration, Instant};
 use super::denoising::Denoising;
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission};
+use crate::compile::Assets;
 use crate::document::{Change, Document, ViewSettings};
 use crate::gpu::GpuError;
 use crate::job::plan::Specialisation;
 use crate::panics::{caught, lock};
-use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
 use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::error::SessionError;
@@ -101,7 +101,7 @@ impl<'a> State<'a> {
             is_inspected: false,
             denoising: Denoising::spawn({
                 let shared = shared.clone();
-                move || shared.wake()
+                move || shared.commands.change(|_| ())
             }),
             denoised: None,
             at_work: None,
@@ -538,7 +538,7 @@ mod tests {
         });
         for _ in 0..5 {
             // Something to do, so that no turn waits.
-            *lock(&shared.commands) = CommandQueue {
+            *shared.commands.look() = CommandQueue {
                 commands: Commands {
                     environments: vec![EnvironmentSource::Furnace],
                     ..Commands::default()

@@ -8,7 +8,7 @@ use crate::document::{Denoise, ViewSettings};
 use crate::job::film::Image;
 use crate::render::display::display;
 use crate::render::error::SessionError;
-use crate::render::shown::{Facts, Shown, map, map_of_errors};
+use crate::render::shown::{PixelFacts, Shown, map, map_of_errors};
 use crate::render::worker::{Activity, Level, Picture};
 
 impl State<'_> {
@@ -92,7 +92,7 @@ impl State<'_> {
                 (Shown::Error, Some(errors)) => Some(map_of_errors(errors)),
                 _ => map(&source, wanted),
             };
-            facts = is_inspected.then(|| Arc::new(Facts::of(&source, denoised_errors.as_deref())));
+            facts = is_inspected.then(|| Arc::new(PixelFacts::of(&source, denoised_errors.as_deref())));
         }
         let Some(stage) = &mut self.stage else { return Ok(()) };
         self.serial += 1;

@@ -1,40 +1,35 @@
 //! Scheduling: when the thread works, and what it waits for.
 
+use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::State;
-use crate::panics::lock;
+use crate::render::mailbox::IDLE;
 use crate::render::quiet::at_work;
 use crate::render::session::Session;
 use crate::render::worker::stage::Stage;
 use crate::render::worker::{Activity, CommandQueue, Commands};
-
-/// Longest sleep without a wake-up.
-const IDLE: Duration = Duration::from_secs(3600);
 
 impl State<'_> {
     /// Takes the commands, after waiting for some if there is nothing to render. A submission stays pending while the one
     /// before it must still be shown.
     pub(super) fn await_commands(&mut self) -> (Commands, bool) {
         let shared = self.shared;
-        let mut queue = lock(&shared.commands);
-        loop {
+        shared.commands.wait(|queue| {
             let is_busy = self.should_render(queue.is_paused);
             let wait = self.longest_wait();
             let has_news = self.activity(queue.is_paused) != self.snapshot.activity || self.denoising.has_outcome();
-            if is_busy || has_news || self.has_commands(&queue) || wait.is_zero() {
-                break;
+            if !(is_busy || has_news || self.has_commands(queue) || wait.is_zero()) {
+                self.at_work = None;
+                return ControlFlow::Continue(wait);
             }
-            self.at_work = None;
-            let waited = shared.command_arrived.wait_timeout(queue, wait);
-            queue = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
-        }
-        self.at_work.get_or_insert_with(at_work);
-        let mut commands = std::mem::take(&mut queue.commands);
-        if self.keeps_stage(queue.is_paused) {
-            queue.commands.submission = commands.submission.take();
-        }
-        (commands, queue.is_paused)
+            self.at_work.get_or_insert_with(at_work);
+            let mut commands = std::mem::take(&mut queue.commands);
+            if self.keeps_stage(queue.is_paused) {
+                queue.commands.submission = commands.submission.take();
+            }
+            ControlFlow::Break((commands, queue.is_paused))
+        })
     }
 
     /// Whether the stage must be shown before another submission is taken.

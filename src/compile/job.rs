@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use super::assets::Assets;
-use super::error::SessionError;
+use super::error::AssetError;
+use super::materials::compile_textured;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::light_groups::emission_group;
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, GroupName, MaterialSettings, RenderSettings, Shine,
-    compile_textured, texture_assignments,
+    texture_assignments,
 };
+use crate::import::light_profile;
 use crate::job::effect::EffectId;
 use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{BackgroundKind, Catcher, Job, Settings, Strategy};
@@ -24,7 +26,6 @@ use crate::scene::light_profile::LightProfile;
 use crate::scene::medium::medium_at;
 use crate::scene::texture::{Textures, UserTextureFile};
 use crate::scene::{AreaFrame, Geometry};
-use crate::store::light_profile;
 
 /// How far from its target parallel rays start at least, bounding radii of the model, and how far behind the camera.
 const PARALLEL_REACH: f64 = 4.0;
@@ -107,16 +108,12 @@ impl CatcherKey {
 }
 
 /// Textures of a document with the materials of the model's slots.
-fn textures_of(
-    document: &Document,
-    slots: &[MaterialSettings],
-    assets: &Assets,
-) -> Result<Arc<Textures>, SessionError> {
+fn textures_of(document: &Document, slots: &[MaterialSettings], assets: &Assets) -> Result<Arc<Textures>, AssetError> {
     assets.textures(&document.model, &document.import, &texture_assignments(slots))
 }
 
 /// Users' texture maps of a document's materials, readable or not.
-pub(super) fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, SessionError> {
+pub(crate) fn user_texture_files(document: &Document, assets: &Assets) -> Result<Vec<UserTextureFile>, AssetError> {
     let document = &*without_what_is_off(document);
     let model = assets.model(&document.model, &document.import)?;
     let slots = slot_materials(document, model.slots.len());
@@ -127,14 +124,14 @@ pub(super) fn user_texture_files(document: &Document, assets: &Assets) -> Result
 
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
-pub(super) struct Compiler {
+pub(crate) struct Compiler {
     catcher: Option<(CatcherKey, WithCatcher)>,
     materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
 
 impl Compiler {
-    pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
+    pub(crate) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, AssetError> {
         let document = &*without_what_is_off(document);
         let (source, options) = (&document.model, &document.import);
         let model = assets.model(source, options)?;

@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
-use super::{CoatLobe, MaterialSettings};
+use super::absent::absent;
+use crate::document::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
+use crate::document::{CoatLobe, MaterialSettings};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::{coat_shape, inner_reflection};
@@ -102,23 +103,18 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         anisotropy: settings.anisotropy,
         transmission_tint: color,
         transmission_weight: settings.transmission_weight,
-        absorption: Vec3::zero(),
         transmission_roughness: roughness + settings.transmission_roughness,
         rotation_rad: settings.rotation_deg.to_radians(),
         lobe: settings.lobe as u32,
         curve: settings.curve as u32,
         horizon: settings.horizon as u32,
         fresnel: settings.fresnel as u32,
-        lobe_table: 0,
-        albedo_table: 0,
-        inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
         opacity: settings.opacity * factor(On::Opacity),
         coat_color: Vec3::from_f32(settings.coat_color),
         coat_weight: settings.coat_weight * factor(On::Coat),
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
-        coat_table: 0,
         light_luminance: mean_emission.luminance(),
         textures: [
             looked_up(On::BaseColor),
@@ -129,12 +125,8 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         opacity_texture: looked_up(On::Opacity),
         alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
-        has_rough_tables: 0,
         texture_roughness: roughness,
-        roughness_table: NO_TEXTURE,
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
-        spot_scale: 0.0,
-        spot_offset: 1.0,
         metalness_texture: looked_up(On::Metalness),
         coat_texture: if settings.coat_weight > 0.0 {
             looked_up(On::Coat)
@@ -151,21 +143,11 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
         film_weight: settings.film_weight * factor(On::Film),
         film_ior: settings.film_ior,
-        has_film: 0,
-        film_texture: NO_TEXTURE,
-        film_path_texture: NO_TEXTURE,
         reflecting_ior: settings.ior,
         bare_ior: settings.ior,
         coated_ior: settings.ior,
-        coat_blur: 0.0,
         ggx_roughness: settings.ggx_roughness(roughness),
-        coat_darkening: 0.0,
-        coat_inner: 0.0,
-        coat_anisotropy: 0.0,
-        coat_roughness_texture: NO_TEXTURE,
-        coat_color_texture: NO_TEXTURE,
-        coat_normal_texture: NO_TEXTURE,
-        coat_normal_strength: 0.0,
+        ..absent()
     };
     if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
         material.has_film = 1;
@@ -458,71 +440,74 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
 fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> TableKey {
     // A table over the roughness serves every roughness, metalness and colour; any other is a dielectric's.
     let is_rough = material.has_rough_tables == 1;
-    let white = Vec3::splat(1.0);
     let transmits = material.least_metallic().transmits();
     let is_measured = material.fresnel == Fresnel::Conductor as u32;
-    let has_filmed = material.has_film == 1 && (!is_rough || is_measured);
-    let material = Material {
-        metalness: 0.0,
-        roughness: if is_rough { 0.0 } else { material.roughness },
-        edge_tint: white,
-        opacity: 0.0,
-        coat_color: white,
-        coat_weight: 0.0,
-        coat_roughness: 0.0,
-        coat_ior: 1.0,
-        coat_table: 0,
-        light_luminance: 0.0,
-        textures: [NO_TEXTURE; 4],
-        metalness_texture: NO_TEXTURE,
-        coat_texture: NO_TEXTURE,
-        diffuse_roughness: 0.0,
-        fuzz_color: white,
-        fuzz_weight: 0.0,
-        fuzz_roughness: 0.0,
-        fuzz_middle: 0.0,
-        fuzz_width: 0.0,
-        fuzz_floor: 0.0,
+    let film = match material.has_film == 1 && (!is_rough || is_measured) {
+        true => *material,
         // One over the roughness has no film in it, but for that on a measured metal.
-        has_film: if has_filmed { 1 } else { 0 },
-        film_weight: if has_filmed { material.film_weight } else { 0.0 },
-        film_path: if has_filmed { material.film_path } else { Vec3::zero() },
-        film_ior: if has_filmed { material.film_ior } else { 1.0 },
-        film_texture: NO_TEXTURE,
-        film_path_texture: NO_TEXTURE,
-        bare_ior: 1.0,
-        coated_ior: 1.0,
-        coat_blur: 0.0,
-        ggx_roughness: 0.0,
-        coat_darkening: 0.0,
-        coat_inner: 0.0,
-        coat_anisotropy: 0.0,
-        coat_roughness_texture: NO_TEXTURE,
-        coat_color_texture: NO_TEXTURE,
-        coat_normal_texture: NO_TEXTURE,
-        coat_normal_strength: 0.0,
-        opacity_texture: NO_TEXTURE,
-        alpha_cutoff: 0.0,
-        normal_strength: 0.0,
-        texture_roughness: 0.0,
-        roughness_table: NO_TEXTURE,
+        false => absent(),
+    };
+    let material = Material {
+        specular_color: material.specular_color,
+        specular_weight: material.specular_weight,
+        eta: material.eta,
+        ior: material.ior,
+        reflecting_ior: material.reflecting_ior,
+        k: material.k,
+        roughness: if is_rough { 0.0 } else { material.roughness },
+        anisotropy: material.anisotropy,
+        lobe: material.lobe,
+        curve: material.curve,
+        horizon: material.horizon,
+        fresnel: material.fresnel,
+        has_rough_tables: material.has_rough_tables,
+        has_film: film.has_film,
+        film_weight: film.film_weight,
+        film_path: film.film_path,
+        film_ior: film.film_ior,
         // A dielectric without vertices.
         flags: material.flags & WEIGHS_INDEX,
-        base_color: Vec3::zero(),
-        emission: Vec3::zero(),
-        rotation_rad: 0.0,
-        lobe_table: 0,
-        albedo_table: 0,
-        inner_albedo_table: 0,
-        transmission_tint: Vec3::zero(),
         transmission_weight: if transmits { 1.0 } else { 0.0 },
-        absorption: Vec3::zero(),
-        transmission_roughness: 0.0,
-        ..*material
+        ..absent()
     };
     TableKey {
         material,
         curve_table: curve_table.to_vec(),
         holds: if is_inside { Holds::InnerAlbedo } else { Holds::Albedo },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::document::AreaLight;
+    use crate::scene::light::spot_share;
+
+    /// The flux of a spot against the integral of what it sends in each direction.
+    #[test]
+    fn the_power_of_a_spot_is_what_its_cone_holds() {
+        for (cone_deg, softness) in [(40.0, 0.2), (120.0, 1.0), (5.0, 0.0)] {
+            let light = AreaLight {
+                cone_deg,
+                softness,
+                ..AreaLight::spot()
+            };
+            let mut material = compile(&[light.material()]).0[0];
+            light.shine().finish(&mut material);
+            let steps = 200_000;
+            let shares = (0..steps).map(|step| {
+                let cosine = (f64::from(step) + 0.5) / f64::from(steps);
+                2.0 * PI * cosine * spot_share(&material.cast::<f64>(), cosine)
+            });
+            let projected = shares.sum::<f64>() / f64::from(steps);
+            let expected = projected * light.radiance() * 0.25 * PI * 0.09 * 4.0;
+            let power = light.power(2.0);
+            assert!(
+                (power / expected - 1.0).abs() < 5e-3,
+                "{cone_deg} {softness}: {power} for {expected}"
+            );
+        }
     }
 }

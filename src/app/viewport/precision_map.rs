@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use egui::{Align, Color32, ColorImage, Layout, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 
-use super::Shown;
+use super::ShownTexture;
+use crate::app::services::beside::started;
 use crate::job::Job;
 use crate::job::precision::{Fault, PrecisionMap};
-use crate::render::precision::{self, PrecisionMaps};
+use crate::render::precision_maps::{self, PrecisionMaps};
 
 /// Height of the legend, and its distance from the viewport's edges, points.
 const HEIGHT: f32 = 26.0;
@@ -19,23 +20,21 @@ const SQUARE: f32 = 10.0;
 
 /// The map as far as it has come.
 #[derive(Default)]
-pub(super) struct Precision {
+pub(super) struct PrecisionView {
     maps: Option<PrecisionMaps>,
     /// What the latest map was asked of.
     asked: Option<Arc<Job>>,
     /// What the texture shows; kept so that no other map has its address.
     map: Option<Arc<PrecisionMap>>,
-    shown: Shown,
+    shown: ShownTexture,
 }
 
-impl Precision {
+impl PrecisionView {
     /// Paints the map of a job over `place` once it is there, and the legend into a corner of `area`.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
-        if self.maps.is_none() {
-            let ctx = ui.ctx().clone();
-            self.maps = precision::spawn(move || ctx.request_repaint()).ok();
-        }
-        let Some(maps) = &self.maps else { return };
+        let Some(maps) = started(&mut self.maps, ui.ctx(), precision_maps::spawn) else {
+            return;
+        };
         if !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, job)) {
             maps.ask(job.clone());
             self.asked = Some(job.clone());

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use super::error::SessionError;
+use super::error::AssetError;
 use crate::import;
 use crate::import::picture::read_texture;
 use crate::import::{Budget, ModelError};
@@ -43,7 +43,7 @@ const TEXTURES: usize = 8;
 /// the same scene load it once.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    kept: Arc<Mutex<Kept>>,
+    kept: Arc<Mutex<Cache>>,
     loading: Loading,
 }
 
@@ -59,7 +59,7 @@ pub struct Reloaded {
 }
 
 #[derive(Debug)]
-struct Kept {
+struct Cache {
     models: Shelf<ModelKey, Model>,
     pictures: Shelf<PictureKey, Texture>,
     packs: Shelf<PackKey, Pack>,
@@ -71,7 +71,7 @@ struct Kept {
     memory: usize,
 }
 
-impl Default for Kept {
+impl Default for Cache {
     fn default() -> Self {
         Self {
             models: Shelf::new(Model::bytes),
@@ -89,9 +89,9 @@ impl Default for Kept {
 impl Assets {
     /// Keeps within another memory, in bytes.
     pub fn within(memory: usize) -> Self {
-        let kept = Kept {
+        let kept = Cache {
             memory,
-            ..Kept::default()
+            ..Cache::default()
         };
         Self {
             kept: Arc::new(Mutex::new(kept)),
@@ -105,7 +105,7 @@ impl Assets {
     }
 
     /// A panic leaves consistent state behind: every change is a single assignment.
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept(&self) -> MutexGuard<'_, Cache> {
         lock(&self.kept)
     }
 
@@ -114,7 +114,7 @@ impl Assets {
     /// # Errors
     ///
     /// One line with the file, the fault and the remedy.
-    pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, SessionError> {
+    pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, AssetError> {
         let mut kept = self.kept();
         let model = kept.model(&(source.clone(), options.clone()), &self.loading)?;
         kept.tidy();
@@ -131,7 +131,7 @@ impl Assets {
         source: &ModelSource,
         options: &ModelOptions,
         assigned: &[TextureAssignment],
-    ) -> Result<Arc<Textures>, SessionError> {
+    ) -> Result<Arc<Textures>, AssetError> {
         let mut kept = self.kept();
         let textures = kept.textures((source.clone(), options.clone()), assigned, &self.loading)?;
         kept.tidy();
@@ -149,7 +149,7 @@ impl Assets {
         ground: Ground,
         area_lights: Vec<AreaShape>,
         hidden: Vec<usize>,
-    ) -> Result<Arc<Geometry>, SessionError> {
+    ) -> Result<Arc<Geometry>, AssetError> {
         let mut kept = self.kept();
         let key = ((source.clone(), options.clone()), ground, area_lights, hidden);
         let geometry = kept.geometry(key, &self.loading)?;
@@ -166,7 +166,7 @@ impl Assets {
         &self,
         source: &EnvironmentSource,
         encoding: EnvironmentEncoding,
-    ) -> Result<Arc<Environment>, SessionError> {
+    ) -> Result<Arc<Environment>, AssetError> {
         let mut kept = self.kept();
         let environment = kept.environment(&(source.clone(), encoding), &self.loading)?;
         kept.tidy();
@@ -204,8 +204,8 @@ impl Assets {
         options: &ModelOptions,
         environment: &EnvironmentSource,
         encoding: EnvironmentEncoding,
-    ) -> Result<Reloaded, SessionError> {
-        let mut fresh = Kept::default();
+    ) -> Result<Reloaded, AssetError> {
+        let mut fresh = Cache::default();
         let (of_model, of_environment) = ((source.clone(), options.clone()), (environment.clone(), encoding));
         let model = fresh.model(&of_model, &self.loading)?;
         let environment = fresh.environment(&of_environment, &self.loading)?;
@@ -221,13 +221,13 @@ impl Assets {
     }
 }
 
-impl Kept {
+impl Cache {
     fn now(&mut self) -> u64 {
         self.clock += 1;
         self.clock
     }
 
-    fn model(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Model>, SessionError> {
+    fn model(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Model>, AssetError> {
         let now = self.now();
         if let Some(model) = self.models.get(key, now) {
             return Ok(model);
@@ -246,7 +246,7 @@ impl Kept {
         of: ModelKey,
         assigned: &[TextureAssignment],
         loading: &Loading,
-    ) -> Result<Arc<Textures>, SessionError> {
+    ) -> Result<Arc<Textures>, AssetError> {
         let now = self.now();
         let key = (of, assigned.to_vec());
         if let Some(textures) = self.textures.get(&key, now) {
@@ -292,7 +292,7 @@ impl Kept {
         pack
     }
 
-    fn geometry(&mut self, key: GeometryKey, loading: &Loading) -> Result<Arc<Geometry>, SessionError> {
+    fn geometry(&mut self, key: GeometryKey, loading: &Loading) -> Result<Arc<Geometry>, AssetError> {
         let now = self.now();
         if let Some(geometry) = self.geometries.get(&key, now) {
             return Ok(geometry);
@@ -315,7 +315,7 @@ impl Kept {
         Ok(geometry)
     }
 
-    fn environment(&mut self, key: &EnvironmentKey, loading: &Loading) -> Result<Arc<Environment>, SessionError> {
+    fn environment(&mut self, key: &EnvironmentKey, loading: &Loading) -> Result<Arc<Environment>, AssetError> {
         let now = self.now();
         if let Some(environment) = self.environments.get(key, now) {
             return Ok(environment);

@@ -3,25 +3,41 @@
 //! Of the crates that read them, `eulumdat` has a licence that this program can't take, and `lidrs` brings five crates, for
 //! a list of numbers behind a line.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::remembered::Remembered;
-use super::{FileError, file};
+use super::resource;
 use crate::scene::light_profile::{ANGLES_MAX, LightProfile};
 
 /// Profiles that are remembered.
 const REMEMBERED: usize = 64;
 
+/// The most bytes of a file.
+const BYTES_MAX: u64 = 16 << 20;
+
+/// Why a light profile can't be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {reason}", path.display())]
+pub struct LightProfileError {
+    path: PathBuf,
+    reason: String,
+}
+
 /// The profile in a file.
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn load(path: &Path) -> Result<LightProfile, FileError> {
-    let bytes = file::read(path)?;
-    parse(&String::from_utf8_lossy(&bytes)).map_err(|reason| FileError::Content {
+pub fn load(path: &Path) -> Result<LightProfile, LightProfileError> {
+    let read = || {
+        let bytes = resource::read(path, BYTES_MAX)
+            .map_err(|error| format!("cannot be read: {error}; check the path and its permissions"))?;
+        parse(&String::from_utf8_lossy(&bytes))
+            .map_err(|reason| format!("not a light profile: {reason}; choose an .ies file of type C photometry"))
+    };
+    read().map_err(|reason| LightProfileError {
         path: path.to_owned(),
-        reason: format!("not a light profile: {reason}; choose an .ies file of type C photometry"),
+        reason,
     })
 }
 

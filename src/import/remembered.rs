@@ -1,10 +1,10 @@
 //! Files that are read where they are needed, and again once they were saved since.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::SystemTime;
 
-use super::FileError;
 use crate::panics::lock;
 
 /// A file, when it was saved, and what it holds.
@@ -12,14 +12,14 @@ type Entry<T> = (PathBuf, Option<SystemTime>, Option<Arc<T>>);
 
 /// The contents of the files that were asked for last, the latest at the end.
 #[derive(Debug)]
-pub(super) struct Remembered<T> {
+pub struct Remembered<T> {
     entries: Mutex<Vec<Entry<T>>>,
     most: usize,
 }
 
 impl<T> Remembered<T> {
     /// Nothing yet, and never more than this many files.
-    pub(super) const fn new(most: usize) -> Self {
+    pub const fn new(most: usize) -> Self {
         Self {
             entries: Mutex::new(Vec::new()),
             most,
@@ -28,10 +28,10 @@ impl<T> Remembered<T> {
 
     /// What a file holds, read again if the file was saved since. `None`, logged once with its consequence, if it can't be
     /// read.
-    pub(super) fn get(
+    pub fn get<E: Display>(
         &self,
         path: &Path,
-        load: impl Fn(&Path) -> Result<T, FileError>,
+        load: impl Fn(&Path) -> Result<T, E>,
         consequence: &str,
     ) -> Option<Arc<T>> {
         let saved = std::fs::metadata(path).and_then(|file| file.modified()).ok();

@@ -5,8 +5,9 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 
 use super::{HardCase, HardError, Stage};
+use crate::compile::compile;
 use crate::cpu::probe::probe_material;
-use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
+use crate::document::{Kind, MaterialSettings, PARAMETERS, Value};
 use crate::job::precision::{ERROR_BOUND, relative_error};
 use crate::job::probe::{MaterialQuestion, MaterialView, ProbeScene};
 use crate::optics::frame::{frame_from_normal, world_from_local};
