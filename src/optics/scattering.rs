@@ -162,6 +162,11 @@ fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor:
     })
 }
 
+/// The energy that single scattering of a reflecting lobe keeps with F = 1, for a view of this cosine to the normal.
+pub fn kept_energy(shape: &LobeShape<'_, f64>, cosine: f64, samples: u32) -> f64 {
+    mean_weight(shape, cosine, samples, |_, _| 1.0)
+}
+
 /// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
 const STRETCHED_SAMPLES: u32 = 4;
 
