@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
 use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::curve::{curve_density, curve_distance_max};
+use crate::optics::lobe::microfacet_alpha;
 use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::scattering::kept_energy;
 use crate::optics::vector::{Vec3, vec3};
@@ -157,7 +158,7 @@ fn albedo_with_scattering(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
     if !lobe.lobe.traits().loses_light || lobe.eta != 0.0 {
         return [single; 2];
     }
-    let kept = kept_energy(&lobe.shape(), view_angle_rad.cos(), ENERGY_SAMPLES);
+    let kept = kept_energy(microfacet_alpha(&lobe.shape()), view_angle_rad.cos(), ENERGY_SAMPLES);
     [single, single * (1.0 + (1.0 - kept) / kept)]
 }
 
