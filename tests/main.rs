@@ -315,6 +315,8 @@ mod gpu_pictures;
 mod hard;
 #[path = "suite/layouts.rs"]
 mod layouts;
+#[path = "suite/material_samples.rs"]
+mod material_samples;
 #[path = "suite/shaders.rs"]
 mod shaders;
 #[path = "suite/thin_film.rs"]

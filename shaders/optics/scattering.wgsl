@@ -8,12 +8,21 @@ fn compensates(material: Material) -> bool {
     return PLAN_MULTIPLE_SCATTERING == 1u && has_flag(material, COMPENSATES);
 }
 
-fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> f32 {
+fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> vec3f {
     if !compensates(material) {
-        return 1.0;
+        return vec3f(1.0);
     }
-    let kept = kept_energies(material, surface, shape);
-    return 1.0 / select(kept.y, kept.z, is_within(material, surface));
+    let is_inside = is_within(material, surface);
+    let first = kept_energies(material, surface, shape, 0u);
+    var kept = vec3f(select(first.y, first.z, is_inside));
+    if PLAN_THIN_FILM == 1u && material.has_film == 1u && material_transmits(material) {
+        // A film shares the light otherwise in each channel.
+        for (var channel = 1u; channel < 3u; channel++) {
+            let other = kept_energies(material, surface, shape, channel);
+            kept = select(kept, vec3f(select(other.y, other.z, is_inside)), vec3u(0u, 1u, 2u) == vec3u(channel));
+        }
+    }
+    return 1.0 / kept;
 }
 
 fn scattered_again(
@@ -28,7 +37,7 @@ fn scattered_again(
 fn compensated(
     material: Material, surface: Surface, shape: LobeShape, terms: FresnelTerms, cosine: f32,
 ) -> vec3f {
-    let kept = kept_energies(material, surface, shape).x;
+    let kept = kept_energies(material, surface, shape, 0u).x;
     let again = (1.0 - kept) / kept;
     if terms.model == FRESNEL_NONE || terms.model == FRESNEL_CONDUCTOR {
         let head_on = fresnel(terms, 1.0);
@@ -42,14 +51,14 @@ fn compensated(
     let metal = parts.metal * (vec3f(1.0) + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = select(0.0, material.transmission_weight, material_transmits(material));
-    let gain = 1.0 + (interface_gain(material, surface, shape) - 1.0) * share;
+    let gain = vec3f(1.0) + (interface_gain(material, surface, shape) - vec3f(1.0)) * share;
     return mix(parts.dielectric * gain, metal, terms.metalness);
 }
 
-fn kept_energies(material: Material, surface: Surface, shape: LobeShape) -> vec3f {
+fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec3f {
     let place = safe_sqrt(dot(surface.frame.normal, surface.wo));
     if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
-        return rough_albedo_lookup(shape.table, place, material.roughness).xyz;
+        return rough_albedo_lookup(shape.table + channel * ROUGH_ALBEDO_LENGTH, place, material.roughness).xyz;
     }
-    return albedo_lookup(shape.table, place);
+    return albedo_lookup(shape.table + channel * 4u * ALBEDO_NODES, place);
 }

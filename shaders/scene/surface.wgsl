@@ -156,7 +156,8 @@ fn vertex_side(vertex: Vertex) -> f32 {
 
 fn looks_up_textures() -> bool {
     return PLAN_COLOR_TEXTURES == 1u || PLAN_ROUGHNESS_TEXTURES == 1u || PLAN_EMISSION_TEXTURES == 1u ||
-        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u || PLAN_COAT_NORMALS == 1u || PLAN_FILM_TEXTURES == 1u;
+        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u || PLAN_COAT_NORMALS == 1u || PLAN_FILM_TEXTURES == 1u ||
+        PLAN_FUZZ_TEXTURES == 1u;
 }
 
 fn hit_uvs(hit: Hit, material: Material) -> Uvs {

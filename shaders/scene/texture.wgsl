@@ -16,6 +16,8 @@ const IS_BOX: u32 = 16u;
 const TURNS_NORMALS: u32 = 32u;
 const CHANNEL_SHIFT: u32 = 8u;
 const WRAP_SHIFT: u32 = 16u;
+// The least roughness of fuzz.
+const FUZZ_ROUGHNESS_MIN: f32 = 0.01;
 
 // One use of a texture map.
 struct TextureRecord {
@@ -147,7 +149,7 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
     let pictures = PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES;
-    if pictures + PLAN_FILM_TEXTURES + PLAN_VERTEX_COLORS == 0u {
+    if pictures + PLAN_FILM_TEXTURES + PLAN_FUZZ_TEXTURES + PLAN_VERTEX_COLORS == 0u {
         return material;
     }
     // A map with both roughness and metalness is looked up once.
@@ -225,6 +227,20 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         if material.film_path_texture != NO_TEXTURE {
             at_point.film_path = material.film_path * texture_lookup(material.film_path_texture, uvs).x;
         }
+    }
+    if PLAN_FUZZ_TEXTURES == 1u {
+        let places = vec3u(material.fuzz_texture, material.fuzz_color_texture, material.fuzz_roughness_texture);
+        let is_there = places != vec3u(NO_TEXTURE);
+        var left = dot(select(vec3u(0u), vec3u(1u, 2u, 4u), is_there), vec3u(1u));
+        while left != 0u {
+            let kind = firstTrailingBit(left);
+            left &= left - 1u;
+            let value = texture_lookup(select(select(places.z, places.y, kind == 1u), places.x, kind == 0u), uvs);
+            at_point.fuzz_weight *= select(1.0, value.x, kind == 0u);
+            at_point.fuzz_color *= select(vec3f(1.0), value.xyz, kind == 1u);
+            at_point.fuzz_roughness *= select(1.0, value.w, kind == 2u);
+        }
+        at_point.fuzz_roughness = max(at_point.fuzz_roughness, FUZZ_ROUGHNESS_MIN);
     }
     return at_point;
 }

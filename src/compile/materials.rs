@@ -8,7 +8,7 @@ use crate::document::{CoatLobe, MaterialSettings};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::fresnel::{Fresnel, fresnel_f0, weighted_ior};
 use crate::optics::layer::coat::{coat_shape, inner_reflection};
-use crate::optics::layer::fuzz::{FUZZ_ROUGHNESS_MIN, fuzz_bell};
+use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::lobe::{Lobe, Width, is_mirror};
 use crate::optics::material::{
     COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, HAS_BOX, MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL,
@@ -89,7 +89,6 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     }
     let has_box = |target: &TextureTarget| slot.on_box[*target as usize] && settings.uses_texture(*target);
     let is_on_box = TextureTarget::ALL.iter().any(has_box);
-    let bell = fuzz_bell(settings.fuzz_roughness.into()).map(|x| x as f32);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
         metalness,
@@ -134,12 +133,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
             NO_TEXTURE
         },
         diffuse_roughness: settings.diffuse_roughness,
-        fuzz_color: Vec3::from_f32(settings.fuzz_color),
-        fuzz_weight: settings.fuzz_weight,
-        fuzz_roughness: settings.fuzz_roughness.max(FUZZ_ROUGHNESS_MIN as f32),
-        fuzz_middle: bell[0],
-        fuzz_width: bell[1],
-        fuzz_floor: bell[2],
+        fuzz_color: Vec3::from_f32(settings.fuzz_color)
+            * constant(On::FuzzColor).map_or(Vec3::splat(1.0), Vec3::from_f32),
+        fuzz_weight: settings.fuzz_weight * factor(On::Fuzz),
+        fuzz_roughness: (settings.fuzz_roughness * factor(On::FuzzRoughness)).max(FUZZ_ROUGHNESS_MIN as f32),
         film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
         film_weight: settings.film_weight * factor(On::Film),
         film_ior: settings.film_ior,
@@ -153,6 +150,11 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         material.has_film = 1;
         material.film_texture = looked_up(On::Film);
         material.film_path_texture = looked_up(On::FilmThickness);
+    }
+    if material.fuzz_weight > 0.0 {
+        material.fuzz_texture = looked_up(On::Fuzz);
+        material.fuzz_color_texture = looked_up(On::FuzzColor);
+        material.fuzz_roughness_texture = looked_up(On::FuzzRoughness);
     }
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.

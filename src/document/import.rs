@@ -110,6 +110,9 @@ impl MaterialSettings {
             coat_normal: slot.texture(TextureTarget::CoatNormal).is_some(),
             film: slot.texture(TextureTarget::Film).is_some(),
             film_thickness: slot.texture(TextureTarget::FilmThickness).is_some(),
+            fuzz: slot.texture(TextureTarget::Fuzz).is_some(),
+            fuzz_color: slot.texture(TextureTarget::FuzzColor).is_some(),
+            fuzz_roughness: slot.texture(TextureTarget::FuzzRoughness).is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {

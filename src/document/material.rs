@@ -294,6 +294,12 @@ pub struct TextureUse {
     pub film: bool,
     /// The thickness of the thin film is multiplied by its texture.
     pub film_thickness: bool,
+    /// The weight of the fuzz is multiplied by its texture.
+    pub fuzz: bool,
+    /// The colour of the fuzz is multiplied by its texture.
+    pub fuzz_color: bool,
+    /// The roughness of the fuzz is multiplied by its texture.
+    pub fuzz_roughness: bool,
 }
 
 /// Where the conductor's η and k come from.

@@ -35,6 +35,13 @@ fn show_coat(material: &mut MaterialSettings) {
     }
 }
 
+/// Gives a material fuzz if it has none.
+fn show_fuzz(material: &mut MaterialSettings) {
+    if material.fuzz_weight == 0.0 {
+        material.fuzz_weight = 1.0;
+    }
+}
+
 /// The places of all targets, in their order.
 const PLACES: &[Place; TextureTarget::ALL.len()] = &[
     Place::new(
@@ -95,6 +102,23 @@ const PLACES: &[Place; TextureTarget::ALL.len()] = &[
         },
     ),
     Place::new("thin_film.thickness_map", |uses| &mut uses.film_thickness, |_| {}),
+    Place::new("fuzz.weight_map", |uses| &mut uses.fuzz, show_fuzz),
+    Place::new(
+        "fuzz.color_map",
+        |uses| &mut uses.fuzz_color,
+        |material| {
+            show_fuzz(material);
+            material.fuzz_color = [1.0; 3];
+        },
+    ),
+    Place::new(
+        "fuzz.roughness_map",
+        |uses| &mut uses.fuzz_roughness,
+        |material| {
+            show_fuzz(material);
+            material.fuzz_roughness = 1.0;
+        },
+    ),
 ];
 
 /// The key of a target's image in a material's file, and on the command line before that of a parameter:

@@ -96,6 +96,7 @@ effects! {
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
     CoatNormalMap "coat-normal-map" flag "PLAN_COAT_NORMALS";
     FilmTexture "film-texture" flag "PLAN_FILM_TEXTURES";
+    FuzzTexture "fuzz-texture" flag "PLAN_FUZZ_TEXTURES";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";
     DepthOfField "depth-of-field" flag "PLAN_LENS";

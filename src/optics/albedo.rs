@@ -4,6 +4,8 @@
 //! too. It then holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]), for the whole
 //! and for the dielectric alone, which covers the base.
 
+use rayon::prelude::*;
+
 use super::frame::frame_from_normal;
 use super::fresnel::{
     Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
@@ -89,7 +91,8 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
         });
         [r, g, b, 0.0]
     };
-    (0..ALBEDO_NODES).flat_map(means).map(|x| x as f32).collect()
+    let nodes = (0..ALBEDO_NODES).into_par_iter().flat_map_iter(means);
+    nodes.map(|x| x as f32).collect()
 }
 
 /// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine.
@@ -122,19 +125,16 @@ fn node_means<const N: usize>(
 /// Table of a material with varying roughness, metalness or base colour, for [`rough_albedo_lookup`]; `samples` per node.
 pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
     let terms = material.fresnel_terms(is_inside);
-    let mut table = Vec::with_capacity(ROUGH_ALBEDO_LENGTH);
-    for step in 0..ROUGHNESS_NODES {
+    let means = |index: usize| {
         let shape = LobeShape {
-            roughness: step as f64 / (ROUGHNESS_NODES - 1) as f64,
+            roughness: (index / ALBEDO_NODES) as f64 / (ROUGHNESS_NODES - 1) as f64,
             ..material.shape(tables)
         };
-        for node in 0..ALBEDO_NODES {
-            let factors = |cosine: f64| fresnel_basis(&terms, cosine);
-            let means = node_means(node, is_inside, material, &shape, samples, factors);
-            table.extend(means.map(|x| x as f32));
-        }
-    }
-    table
+        let factors = |cosine: f64| fresnel_basis(&terms, cosine);
+        node_means(index % ALBEDO_NODES, is_inside, material, &shape, samples, factors)
+    };
+    let nodes = (0..ROUGHNESS_NODES * ALBEDO_NODES).into_par_iter();
+    nodes.flat_map_iter(means).map(|x| x as f32).collect()
 }
 
 /// Basis of the Fresnel factor for any metalness and base colour: the exact dielectric, Schlick's two terms and the

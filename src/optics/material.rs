@@ -219,12 +219,12 @@ material! {
         fuzz_weight: T,
         /// Roughness of the fuzz in [0, 1].
         fuzz_roughness: T,
-        /// The cosine of the view at which fuzz reflects most ([`fuzz_bell`](super::layer::fuzz::fuzz_bell)).
-        fuzz_middle: T,
-        /// The width of that bell.
-        fuzz_width: T,
-        /// What fuzz reflects of every view.
-        fuzz_floor: T,
+        /// The texture that multiplies the weight of the fuzz, or [`NO_TEXTURE`].
+        fuzz_texture: u32,
+        /// The texture that multiplies the tint of the fuzz, or [`NO_TEXTURE`].
+        fuzz_color_texture: u32,
+        /// The texture that multiplies the roughness of the fuzz, or [`NO_TEXTURE`].
+        fuzz_roughness_texture: u32,
         /// The dielectric's index for what it reflects, seen from outside: relative to the coat over it.
         reflecting_ior: T,
         /// The dielectric's index without a coat, and its weight not in it.
@@ -411,7 +411,7 @@ impl<T: Real> Material<T> {
     pub fn is_textured(&self) -> bool {
         let others = [self.opacity_texture, self.metalness_texture, self.coat_normal_texture];
         let is_plain = others == [NO_TEXTURE; 3] && self.textures == [NO_TEXTURE; 4];
-        !is_plain || self.has_textured_coat() || self.has_film_texture()
+        !is_plain || self.has_textured_coat() || self.has_film_texture() || self.has_fuzz_texture()
     }
 
     /// True if textures vary weight, roughness or colour of the coat.
@@ -424,6 +424,12 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn has_film_texture(&self) -> bool {
         [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
+    }
+
+    /// True if a texture varies the fuzz.
+    #[inline(always)]
+    pub fn has_fuzz_texture(&self) -> bool {
+        [self.fuzz_texture, self.fuzz_color_texture, self.fuzz_roughness_texture] != [NO_TEXTURE; 3]
     }
 
     /// True if some light may pass straight through the surface.

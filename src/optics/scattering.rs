@@ -8,28 +8,39 @@
 
 use rayon::prelude::*;
 
-use super::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup};
-use super::frame::frame_from_normal;
-use super::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted, half_vector_cosine,
+use super::albedo::{
+    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup,
 };
-use super::lobe::{LobeShape, lobe_sample};
+use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
+use super::lanes::{InLanes, in_lanes};
+use super::lobe::ggx::visible_normal;
+use super::lobe::{LobeShape, microfacet_alpha};
 use super::material::{COMPENSATES, Material, Surface};
+use super::microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine};
 use super::random::even_point;
-use super::real::Real;
-use super::refraction::{refracted_square, refracting_cosines};
+use super::real::{Mask, Real};
+use super::refraction::{refracted, refracted_square};
 use super::thin_film::film_passed;
 use super::vector::{Vec3, vec3};
+use crate::instructions::level;
 
-/// Factor that keeps a clear interface's light: one over the energy of reflection and refraction together.
+/// Factor that keeps a clear interface's light, linear RGB: one over the energy of reflection and refraction together. A
+/// film shares the light otherwise in each channel.
 #[inline(always)]
-pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> T {
+pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> Vec3<T> {
     if !material.has_flag(COMPENSATES) {
-        return T::one();
+        return Vec3::splat(T::one());
     }
-    let [_, outside, inside] = kept_energies(material, surface, shape);
     let is_within = surface.is_within(material);
-    T::one() / T::select(is_within, inside, outside)
+    let gain = |channel: usize| {
+        let [_, outside, inside] = kept_energies(material, surface, shape, channel);
+        T::one() / T::select(is_within, inside, outside)
+    };
+    let first = gain(0);
+    if material.has_film == 0 || !material.transmits().any() {
+        return Vec3::splat(first);
+    }
+    vec3(first, gain(1), gain(2))
 }
 
 /// The share that the specular lobe reflects at a half vector, linear RGB, with what its facets scatter more than once;
@@ -62,7 +73,7 @@ fn compensated<T: Real>(
     cosine: T,
 ) -> Vec3<T> {
     let (white, one) = (Vec3::splat(T::one()), T::one());
-    let kept = kept_energies(material, surface, shape)[0];
+    let [kept, ..] = kept_energies(material, surface, shape, 0);
     let again = (one - kept) / kept;
     if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
         let head_on = fresnel(terms, one);
@@ -76,28 +87,42 @@ fn compensated<T: Real>(
     let metal = metal * (white + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = T::select(material.transmits(), material.transmission_weight, T::zero());
-    let gain = one + (interface_gain(material, surface, shape) - one) * share;
+    let gain = white + (interface_gain(material, surface, shape) - white) * share;
     (dielectric * gain).mix(metal, terms.metalness)
 }
 
-/// Energies that single scattering keeps for a view: of a white metal, and of a clear interface from outside and within.
+/// Energies that single scattering keeps for a view, by a channel's table: of a white metal, and of a clear interface from
+/// outside and within.
 #[inline(always)]
-fn kept_energies<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> [T; 3] {
+fn kept_energies<T: Real>(
+    material: &Material<T>,
+    surface: &Surface<T>,
+    shape: &LobeShape<'_, T>,
+    channel: usize,
+) -> [T; 3] {
     let place = surface.frame.normal.dot(surface.wo).safe_sqrt();
     if material.has_rough_tables == 1 {
-        let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, 0, place, material.roughness);
+        let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
+        let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, material.roughness);
         return [metal, outside, inside];
     }
-    let kept = albedo_lookup(shape.table, 0, place);
+    let kept = albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place);
     [kept.x, kept.y, kept.z]
 }
 
 /// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness if its
-/// albedo tables are: of a white metal, of a clear interface from outside and from within, 0. `samples` per node.
+/// albedo tables are: of a white metal, of a clear interface from outside and from within, 0. One for each channel follows
+/// the other where a film shares the light of an interface. `samples` per node.
 pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
     let is_rough = material.has_rough_tables == 1;
     let steps = if is_rough { ROUGHNESS_NODES } else { 1 };
     let offset = material.transmission_roughness - material.roughness;
+    let is_stretched = material.anisotropy != 0.0;
+    let points = Points::new(if is_stretched {
+        STRETCHED_SAMPLES * samples
+    } else {
+        samples
+    });
     let energies = |index: usize| {
         let (step, node) = (index / ALBEDO_NODES, index % ALBEDO_NODES);
         let roughness = match is_rough {
@@ -112,89 +137,217 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
         let place = node as f64 / (ALBEDO_NODES - 1) as f64;
         // At exactly grazing the microfacet lobes are 0/0.
         let cosine = (place * place).max(1e-4);
-        let mut energies = [reflected_energy(&material, cosine, samples, |_| 1.0), 1.0, 1.0, 0.0];
-        if material.transmits() {
-            for (energy, is_inside) in energies[1..].iter_mut().zip([false, true]) {
-                *energy = interface_energy(&material, is_inside, cosine, samples);
-            }
-        }
-        energies.map(|energy| energy as f32)
+        in_lanes(
+            level(),
+            Kept {
+                alpha: microfacet_alpha(&material.shape(&[])),
+                clear: material.transmits().then_some(&material),
+                cosine,
+                points: &points,
+            },
+        )
     };
-    (0..steps * ALBEDO_NODES)
-        .into_par_iter()
-        .flat_map_iter(energies)
-        .collect()
+    let energies: Vec<_> = (0..steps * ALBEDO_NODES).into_par_iter().map(energies).collect();
+    let channels = if material.has_film == 1 && material.transmits() {
+        3
+    } else {
+        1
+    };
+    let table = |channel: usize| {
+        let of_node = move |[metal, outside, inside]: &[Vec3<f64>; 3]| {
+            let numbers = [metal, outside, inside].map(|energy| energy.to_f64()[channel] as f32);
+            [numbers[0], numbers[1], numbers[2], 0.0]
+        };
+        energies.iter().flat_map(of_node)
+    };
+    (0..channels).flat_map(table).collect()
 }
 
-/// Energy that reflection and refraction of a clear interface keep together.
-fn interface_energy(material: &Material<f64>, is_inside: bool, cosine: f64, samples: u32) -> f64 {
-    let eta = material.ior_ahead(is_inside);
-    // Under a coat the reflection has another index than the refraction.
-    let terms = FresnelTerms {
-        tint: Vec3::splat(1.0),
-        ..material.fresnel_terms(is_inside)
+/// The energy that single scattering of GGX keeps with F = 1, for a view of this cosine to the normal.
+pub fn kept_energy(alpha: Alpha<f64>, cosine: f64, samples: u32) -> f64 {
+    let points = &Points::new(samples);
+    let kept = Kept {
+        alpha,
+        clear: None,
+        cosine,
+        points,
     };
-    // A film shares the light otherwise, by its mean over the channels.
-    let film = |cosine: f64| match terms.has_film {
-        true => {
-            film_passed(&terms, cosine, refracted_square(cosine, terms.ior).safe_sqrt()).dot(Vec3::splat(1.0 / 3.0))
-        }
-        false => 0.0,
-    };
-    let reflects = |cosine: f64| fresnel_dielectric(cosine, terms.ior) - film(cosine);
-    let reflected = reflected_energy(material, cosine, samples, reflects);
-    let shape = material.transmission_shape(&[], is_inside);
-    let refracted = mean_weight(&shape, cosine, samples, |wo, wi| {
-        let [before, behind] = refracting_cosines(wo, wi, eta);
-        if terms.ior == eta {
-            fresnel_transmitted(before, behind, eta) + film(before)
-        } else {
-            1.0 - reflects(before)
-        }
-    });
-    reflected + refracted
-}
-
-/// Energy of the reflecting lobe under a Fresnel factor of the half vector's cosine.
-fn reflected_energy(material: &Material<f64>, cosine: f64, samples: u32, factor: impl Fn(f64) -> f64) -> f64 {
-    mean_weight(&material.shape(&[]), cosine, samples, |wo, wi| {
-        factor(half_vector_cosine(wo, wi))
-    })
+    in_lanes(level(), kept)[0].x
 }
 
 /// Samples of a stretched lobe for each of another's: its mean is over all azimuths of the view, too.
 const STRETCHED_SAMPLES: u32 = 4;
 
-/// Mean of a lobe's weights times a factor of both directions; of a stretched one over all azimuths of the view.
-fn mean_weight(
-    shape: &LobeShape<'_, f64>,
+/// Points of the unit cube, coordinate by coordinate, in f32 as lanes load them.
+struct Points([Vec<f32>; 3]);
+
+impl Points {
+    /// As many as asked for, filled up to whole lanes: two for the facets, one for the view's azimuth.
+    fn new(samples: u32) -> Self {
+        const LANES_MAX: u32 = 16;
+        let count = samples.next_multiple_of(LANES_MAX);
+        let of = |number: usize| (0..count).map(|index| even_point(index)[number] as f32).collect();
+        Self([of(0), of(1), of(3)])
+    }
+}
+
+/// Energies that single scattering of GGX keeps for a view of this cosine, linear RGB: of a white metal, of a clear
+/// interface from outside and from within. A stretched lobe's are means over all azimuths of the view.
+struct Kept<'a> {
+    alpha: Alpha<f64>,
+    /// The material of the clear interface, where there is one.
+    clear: Option<&'a Material<f64>>,
     cosine: f64,
-    samples: u32,
-    factor: impl Fn(Vec3<f64>, Vec3<f64>) -> f64,
-) -> f64 {
-    let normal = vec3(0.0, 0.0, 1.0);
-    let frame = frame_from_normal(normal);
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let is_stretched = shape.anisotropy != 0.0;
-    let samples = if is_stretched {
-        STRETCHED_SAMPLES * samples
-    } else {
-        samples
-    };
-    let mut sum = 0.0;
-    for sample in 0..samples {
-        let [a, b, c, turn] = even_point(sample);
-        let azimuth = if is_stretched {
-            std::f64::consts::TAU * turn
-        } else {
-            0.0
-        };
-        let (across, along) = azimuth.sin_cos();
-        let wo = vec3(sine * along, sine * across, cosine);
-        let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
-        if drawn.weight > 0.0 {
-            sum += drawn.weight * factor(wo, drawn.wi);
+    points: &'a Points,
+}
+
+impl InLanes for Kept<'_> {
+    type Output = [Vec3<f64>; 3];
+
+    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
+        T::vectorize(
+            #[inline(always)]
+            || self.means::<T>(),
+        )
+    }
+}
+
+impl Kept<'_> {
+    #[inline(always)]
+    fn means<T: Real<Scalar = f32>>(&self) -> [Vec3<f64>; 3] {
+        let Points([across, up, azimuths]) = self.points;
+        let count = across.len();
+        let alpha = cast::<T>(self.alpha);
+        let is_stretched = self.alpha.x != self.alpha.y;
+        let interface = self.clear.map(Interface::<T>::of);
+        let cosine = T::from_f64(self.cosine);
+        let sine = (T::one() - cosine * cosine).safe_sqrt();
+        let mut sums = [Vec3::zero(); 3];
+        let mut first = 0;
+        while first < count {
+            let xi = [T::load(&across[first..]), T::load(&up[first..]), T::zero()];
+            let mut wo = vec3(sine, T::zero(), cosine);
+            if is_stretched {
+                let azimuth = T::from_f64(std::f64::consts::TAU) * T::load(&azimuths[first..]);
+                wo = vec3(sine * azimuth.cos(), sine * azimuth.sin(), cosine);
+            }
+            let h = visible_normal(alpha, wo, xi);
+            let wi = wo.mirrored_about(h);
+            let mirrored = smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);
+            add(&mut sums[0], Vec3::splat(mirrored));
+            if let Some(Interface {
+                through,
+                sides,
+                is_apart,
+            }) = &interface
+            {
+                let refracting = if *is_apart { visible_normal(*through, wo, xi) } else { h };
+                for (sum, side) in sums[1..].iter_mut().zip(sides) {
+                    let reflected = side.reflected(wo.dot(h)) * mirrored;
+                    add(sum, reflected + side.let_through(*through, wo, refracting));
+                }
+            }
+            first += T::LANES;
+        }
+        let [metal, outside, inside] = sums.map(|sum| sum * (1.0 / count as f64));
+        let white = Vec3::splat(1.0);
+        match self.clear {
+            Some(_) => [metal, outside, inside],
+            None => [metal, white, white],
         }
     }
-    sum / f64::from(samples)
+}
+
+/// Widths in another precision.
+#[inline(always)]
+fn cast<T: Real>(alpha: Alpha<f64>) -> Alpha<T> {
+    Alpha {
+        x: T::from_f64(alpha.x),
+        y: T::from_f64(alpha.y),
+    }
+}
+
+/// Adds lanes one by one in f64: what is summed does not depend on their number.
+#[inline(always)]
+fn add<T: Real<Scalar = f32>>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
+    let [r, g, b] = [energy.x.to_each(), energy.y.to_each(), energy.z.to_each()];
+    for lane in 0..T::LANES {
+        *sum = *sum + Vec3::from_f32([r.as_ref()[lane], g.as_ref()[lane], b.as_ref()[lane]]);
+    }
+}
+
+/// A clear interface.
+struct Interface<T> {
+    /// The widths of what it refracts, …
+    through: Alpha<T>,
+    /// … and whether they differ from those of what it reflects.
+    is_apart: bool,
+    /// From outside, and from within.
+    sides: [Side<T>; 2],
+}
+
+impl<T: Real> Interface<T> {
+    #[inline(always)]
+    fn of(material: &Material<f64>) -> Self {
+        Self {
+            through: cast(microfacet_alpha(&material.transmission_shape(&[], false))),
+            is_apart: material.transmission_roughness != material.roughness,
+            sides: [Side::of(material, false), Side::of(material, true)],
+        }
+    }
+}
+
+/// A clear interface, seen from one side.
+struct Side<T> {
+    terms: FresnelTerms<T>,
+    eta: T,
+    /// Under a coat the reflection has another index than the refraction.
+    has_one_index: bool,
+}
+
+impl<T: Real> Side<T> {
+    #[inline(always)]
+    fn of(material: &Material<f64>, is_inside: bool) -> Self {
+        let has_one_index = material.fresnel_terms(is_inside).ior == material.ior_ahead(is_inside);
+        let (material, is_inside) = (material.cast::<T>(), T::Mask::splat(is_inside));
+        Self {
+            terms: FresnelTerms {
+                tint: Vec3::splat(T::one()),
+                ..material.fresnel_terms(is_inside)
+            },
+            eta: material.ior_ahead(is_inside),
+            has_one_index,
+        }
+    }
+
+    /// What a film lets through more, by channel.
+    #[inline(always)]
+    fn film(&self, cosine: T) -> Vec3<T> {
+        if !self.terms.has_film {
+            return Vec3::zero();
+        }
+        let height = refracted_square(cosine, self.terms.ior).safe_sqrt();
+        film_passed(&self.terms, cosine, height)
+    }
+
+    /// The share that a facet reflects.
+    #[inline(always)]
+    fn reflected(&self, cosine: T) -> Vec3<T> {
+        Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - self.film(cosine)
+    }
+
+    /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
+    #[inline(always)]
+    fn let_through(&self, through: Alpha<T>, wo: Vec3<T>, h: Vec3<T>) -> Vec3<T> {
+        let refracted = refracted(wo, h, self.eta);
+        let (zero, one) = (T::zero(), T::one());
+        let [before, behind] = [wo.dot(h).clamp(zero, one), (-refracted.wi.dot(h)).clamp(zero, one)];
+        let share = match self.has_one_index {
+            true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + self.film(before),
+            false => Vec3::splat(one) - self.reflected(before),
+        };
+        let seen = smith_g1_over_cosine(through, refracted.wi) * refracted.wi.z.abs();
+        let is_lost = refracted.is_total | !refracted.wi.z.less(zero);
+        share * T::select(is_lost, zero, seen)
+    }
 }

@@ -44,6 +44,9 @@ targets! {
     CoatNormal, "coat-normal", "Coat normal", Vector, CoatNormal, "Bends the normal of the coat.";
     Film, "film", "Thin film", Number(0), Film, "Multiplies the weight of the thin film.";
     FilmThickness, "film-thickness", "Film thickness", Number(1), FilmThickness, "Multiplies the thickness of the thin film.";
+    Fuzz, "fuzz", "Fuzz", Number(0), Fuzz, "Multiplies the weight of the fuzz.";
+    FuzzColor, "fuzz-color", "Fuzz colour", Color, FuzzColor, "Multiplies the colour of the fuzz.";
+    FuzzRoughness, "fuzz-roughness", "Fuzz roughness", Number(3), FuzzRoughness, "Multiplies the roughness of the fuzz.";
 }
 
 impl TextureTarget {

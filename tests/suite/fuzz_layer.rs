@@ -2,14 +2,23 @@
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
 use glossmith::compile::compile;
-use glossmith::document::{MaterialSettings, assign};
+use glossmith::document::{Document, MaterialSettings, Strategy, TextureUse, assign};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::layer::{MaterialNumbers, material_density, material_layers, material_sample};
 use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Precision};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::study::evaluate::Evaluator;
+use image::{Rgba, RgbaImage};
+use serde_json::json;
+
+use crate::gltf_builder::Folder;
+use crate::own_textures::coated_on_a_box;
+use crate::renders::{assert_same_picture, render, with_strategy};
+use crate::textures::{head_on, textured_square};
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
@@ -41,6 +50,60 @@ fn fuzzy(base: f64, roughness: f64, more: &[&str]) -> MaterialSettings {
         assign(&mut material, assignment).unwrap();
     }
     material
+}
+
+/// A ball whose fuzz has the weight that a picture on a box gives it.
+pub fn fuzzy_on_a_box(folder: &Folder) -> Document {
+    let mut document = coated_on_a_box(folder);
+    let picture = document.materials[0].user_textures.get(TextureTarget::Coat).cloned();
+    document.materials[0] = fuzzy(0.1, 0.5, &[]);
+    document.materials[0].put_texture(TextureTarget::Fuzz, picture.unwrap());
+    document
+}
+
+/// Textures of the fuzz alone: both engines and all strategies draw the same, and each of the three shows.
+#[test]
+fn strategies_and_engines_agree_on_textured_fuzz() {
+    let folder = Folder::new();
+    let material = json!({
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5, "baseColorFactor": [0.06, 0.03, 0.01, 1]},
+        "extensions": {"KHR_materials_fuzz": {
+            "fuzzFactor": 1, "fuzzTexture": {"index": 0}, "fuzzColorTexture": {"index": 0},
+            "fuzzRoughnessFactor": 1, "fuzzRoughnessTexture": {"index": 0},
+        }},
+    });
+    let texels = [
+        [255, 200, 40, 255],
+        [200, 20, 120, 60],
+        [120, 250, 250, 160],
+        [60, 160, 255, 255],
+    ];
+    let picture = RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(x + 2 * y) as usize]));
+    let (buffer, json) = textured_square(&material, &[picture], &json!({}));
+    let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Studio);
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
+    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
+    document.render.samples = 512;
+    let uses = document.materials[0].textures;
+    assert!(uses.fuzz && uses.fuzz_color && uses.fuzz_roughness);
+    let cpu = render(EngineChoice::Cpu, &document);
+    assert_eq!(cpu.dropped(), 0);
+    for strategy in [Strategy::Lobe, Strategy::Light] {
+        let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
+        assert_same_picture(&cpu, &other, &format!("{strategy:?}"));
+    }
+    let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
+    assert_same_picture(&cpu, &gpu, "on the GPU");
+    for leave_out in [
+        (|uses| uses.fuzz = false) as fn(&mut TextureUse),
+        |uses| uses.fuzz_color = false,
+        |uses| uses.fuzz_roughness = false,
+    ] {
+        let mut without = with_strategy(&document, Strategy::Mis, 9);
+        leave_out(&mut without.materials[0].textures);
+        let plain = render(EngineChoice::Cpu, &without);
+        assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without")).is_err());
+    }
 }
 
 #[test]

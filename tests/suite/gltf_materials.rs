@@ -6,7 +6,9 @@ use glossmith::document::{ImportLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
 use glossmith::optics::thin_film::film_path;
-use glossmith::scene::texture::{TextureTarget, Textures};
+use glossmith::optics::tone::linear_from_srgb;
+use glossmith::optics::vector::Vec3;
+use glossmith::scene::texture::{TextureTarget, Textures, textured_material};
 use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
@@ -235,6 +237,43 @@ fn sheens_are_fuzz() {
     let model = slot_of(&json!({"extensions": {"KHR_materials_sheen": sheen, "KHR_materials_fuzz": draft}}));
     let material = materials_of(&model, ImportLobe::Geometric).remove(0);
     assert_eq!(fuzz(&material), (0.25, [1.0, 0.0, 1.0], 0.75));
+}
+
+/// Textures of a sheen are turned into those of fuzz texel by texel: its weight is the brightest channel's.
+#[test]
+fn textures_of_sheens_and_fuzz_are_looked_up() {
+    let fuzz_at = |material: MaterialSettings, model: &Model| {
+        let (compiled, tables) = compile_textured(&[material], &Textures::new(model).slots);
+        let textures = Textures::new(model);
+        // In the middle of the left texel.
+        let at = textured_material(&textures, &tables, &compiled[0], [[0.25, 0.5]; 3], Vec3::splat(1.0));
+        let [r, g, b] = at.fuzz_color.to_f64();
+        [f64::from(at.fuzz_weight), r, g, b, f64::from(at.fuzz_roughness)]
+    };
+    let near = |found: [f64; 5], expected: [f64; 5]| {
+        let is_near = found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 3e-3);
+        assert!(is_near, "{found:?} for {expected:?}");
+    };
+    let linear = [10.0, 20.0, 30.0].map(|code: f64| linear_from_srgb(Vec3::splat(code / 255.0)).x);
+    let texture = json!({"index": 0});
+    let read = |extension: &str, numbers: Value| {
+        let model = slot_of(&json!({"extensions": {extension: numbers}}));
+        let told = &model.report.entries;
+        assert!(told.iter().all(|entry| !entry.what.contains("texture")), "{told:?}");
+        let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+        let uses = material.textures;
+        assert!(uses.fuzz && uses.fuzz_color && uses.fuzz_roughness);
+        fuzz_at(material, &model)
+    };
+    let draft = json!({"fuzzFactor": 0.5, "fuzzTexture": texture, "fuzzColorFactor": [1, 0.5, 1],
+        "fuzzColorTexture": texture, "fuzzRoughnessFactor": 0.75, "fuzzRoughnessTexture": texture});
+    let expected = [0.5 * 10.0 / 255.0, linear[0], 0.5 * linear[1], linear[2], 0.75];
+    near(read("KHR_materials_fuzz", draft), expected);
+    let sheen = json!({"sheenColorFactor": [0.5, 1, 0.5], "sheenColorTexture": texture,
+        "sheenRoughnessFactor": 0.5, "sheenRoughnessTexture": texture});
+    let weight = linear[1];
+    let expected = [weight, 0.5 * linear[0] / weight, 1.0, 0.5 * linear[2] / weight, 0.55];
+    near(read("KHR_materials_sheen", sheen), expected);
 }
 
 #[test]

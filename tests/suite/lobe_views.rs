@@ -40,6 +40,18 @@ fn geometric_lobe_with_mirror_policy_loses_nothing() {
     }
 }
 
+/// GGX loses light at high roughness, and gets it back as renders have it; what loses none has one line.
+#[test]
+fn the_albedo_shows_what_multiple_scattering_brings() {
+    let lobe = LobeModel::new(Lobe::Ggx, 1.0, Curve::Smooth);
+    let plot = lines(ViewKind::Albedo, &lobe, &[0.0, 45.0, 80.0]);
+    let [single, whole] = ["albedo", "compensated"].map(|quantity| values(&plot, quantity));
+    assert!((single[0] - 0.3069).abs() < 3e-3, "{single:?}");
+    assert!(whole.iter().all(|albedo| (albedo - 1.0).abs() < 5e-3), "{whole:?}");
+    let geometric = LobeModel::new(Lobe::Geometric, 1.0, Curve::Smooth);
+    assert_eq!(lines(ViewKind::Albedo, &geometric, &[45.0]).series.len(), 1);
+}
+
 #[test]
 fn albedo_is_the_mean_weight_of_samples() {
     let absorbing = LobeModel {

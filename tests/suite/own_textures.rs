@@ -558,6 +558,9 @@ fn pictures_of_ones_own_travel_in_gltf() {
         (TextureTarget::Roughness, TextureChannel::Green),
         (TextureTarget::Metalness, TextureChannel::Red),
         (TextureTarget::Emission, TextureChannel::Auto),
+        (TextureTarget::Fuzz, TextureChannel::Auto),
+        (TextureTarget::FuzzColor, TextureChannel::Auto),
+        (TextureTarget::FuzzRoughness, TextureChannel::Green),
     ] {
         let texture = UserTexture {
             channel,
@@ -584,7 +587,7 @@ fn pictures_of_ones_own_travel_in_gltf() {
     let mut there = document.clone();
     there.model = ModelSource::File(place.path("scene.glb"));
     let model = glossmith::import::load(&there.model).unwrap();
-    assert_eq!(model.textures.len(), 3, "{:?}", model.slots[0]);
+    assert_eq!(model.textures.len(), 6, "{:?}", model.slots[0]);
     there.materials = glossmith::document::of_model::materials_of(&model, glossmith::document::ImportLobe::Ggx);
     there.materials[0].fresnel = document.materials[0].fresnel;
     let [here, there] = [&document, &there].map(|document| render(EngineChoice::Cpu, document));

@@ -17,6 +17,7 @@ use glossmith::scene::ModelSource;
 use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
+use crate::fuzz_layer::fuzzy_on_a_box;
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
 use crate::own_textures::coated_on_a_box;
@@ -223,6 +224,8 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             small(coated_all_over(&folder))
         } else if effect.id == EffectId::FilmTexture {
             filmed_on_a_box(&folder)
+        } else if effect.id == EffectId::FuzzTexture {
+            fuzzy_on_a_box(&folder)
         } else if is_of_texture {
             small(all_at_once(&folder))
         } else if effect.id == EffectId::ShadowTerminator {

@@ -103,6 +103,9 @@ fn textured(folder: &Folder) -> Document {
         TextureTarget::CoatNormal,
         TextureTarget::Film,
         TextureTarget::FilmThickness,
+        TextureTarget::Fuzz,
+        TextureTarget::FuzzColor,
+        TextureTarget::FuzzRoughness,
     ] {
         material.user_textures.set(target, Some(coat.clone()));
     }
@@ -332,6 +335,14 @@ fn calls_for(effect: &str) -> Calls {
             &[
                 |d, _| (d.materials[0].textures.film, d.materials[0].film_weight) = (true, LEAST),
                 |d, _| (d.materials[0].textures.film_thickness, d.materials[0].film_weight) = (true, LEAST),
+            ],
+        ),
+        "fuzz-texture" => (
+            metal,
+            &[
+                |d, _| (d.materials[0].textures.fuzz, d.materials[0].fuzz_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.fuzz_color, d.materials[0].fuzz_weight) = (true, LEAST),
+                |d, _| (d.materials[0].textures.fuzz_roughness, d.materials[0].fuzz_weight) = (true, LEAST),
             ],
         ),
         "box-projection" => (

@@ -21,6 +21,7 @@ use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::store::PRESETS;
 
+use crate::fuzz_layer::fuzzy_on_a_box;
 use crate::gltf_builder::Folder;
 use crate::gltf_meaning::shining_by_vertices;
 use crate::own_textures::coated_on_a_box;
@@ -88,6 +89,10 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "coat-normal-map" => |material, _| material.coat_normal_texture = NO_TEXTURE,
         "film-texture" => |material, _| {
             (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
+        },
+        "fuzz-texture" => |material, _| {
+            (material.fuzz_texture, material.fuzz_color_texture) = (NO_TEXTURE, NO_TEXTURE);
+            material.fuzz_roughness_texture = NO_TEXTURE;
         },
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
@@ -296,6 +301,7 @@ fn weak_documents([folder, of_coat]: [&Folder; 2]) -> Vec<Document> {
         small(all_at_once(folder)),
         coated_on_a_box(folder),
         filmed_on_a_box(folder),
+        fuzzy_on_a_box(folder),
         small(coarse(folder)),
         small(shining_by_vertices(folder)),
     ]

@@ -95,7 +95,7 @@ pub fn random_document(random: &mut Random) -> Document {
         .iter()
         // Switches that do nothing without a texture.
         .filter(|parameter| {
-            let is_of_layer = ["coat.", "thin_film."]
+            let is_of_layer = ["coat.", "thin_film.", "fuzz."]
                 .iter()
                 .any(|group| parameter.key.starts_with(group));
             !(is_of_layer && parameter.key.ends_with("_texture"))

@@ -109,6 +109,25 @@ fn a_race_tells_noise_from_bias() {
     }
 }
 
+/// What single scattering loses is a bias that multiple scattering has not.
+#[test]
+fn a_race_shows_what_multiple_scattering_brings() {
+    let mut document = sphere(16);
+    let material = &mut document.materials[0];
+    (material.lobe, material.roughness, material.base_color) = (Lobe::Ggx, 0.9, [1.0; 3]);
+    let techniques = ["scattering=multiple", "scattering=single"];
+    let race = run(&document, &quick(&techniques, ReferenceCache::none()));
+    let single = &runner(&race, "scattering=single").bias;
+    assert!(single.is_resolved() && single.value > 0.1, "{single:?}");
+    // The document scatters so already: with it the other takes part under its own name alone.
+    let multiple = race
+        .runners
+        .iter()
+        .filter(|runner| !runner.technique.to_string().contains("single"));
+    let most = multiple.map(|runner| runner.bias.low).fold(0.0, f64::max);
+    assert!(most < 0.5 * single.value, "{most}, {single:?}");
+}
+
 #[test]
 fn a_race_is_stopped_when_it_is_no_longer_wanted() {
     let mut told = 0;

@@ -250,7 +250,7 @@ fn pictures_that_are_too_large_are_halved() {
 }
 
 /// The square seen head-on, filling the picture.
-fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
+pub fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
     let path = folder.path("square.glb");
     std::fs::write(&path, glb(json, &buffer.bytes)).unwrap();
     let model = glossmith::import::load(&ModelSource::File(path.clone())).unwrap();

@@ -1,17 +1,11 @@
-//! Thin films: closed values of Airy's sum, joins with what has no film, the furnace, samples against their density, and
-//! both engines.
+//! Thin films: closed values of Airy's sum, joins with what has no film, the furnace, and both engines.
 
 use std::f64::consts::TAU;
 
-use glossmith::analysis::chi_square::{PolarGrid, test_samples};
 use glossmith::compile::compile;
 use glossmith::document::{Document, MaterialSettings, assign};
-use glossmith::job::probe::{DrawQuestion, MaterialView, ProbeScene};
-use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_metal};
-use glossmith::optics::layer::{material_density, material_layers};
-use glossmith::optics::material::{Material, Surface};
-use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::material::Material;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::thin_film::{FilmTerms, WAVELENGTHS_NM, film_path, index_of_colors};
 use glossmith::optics::vector::{Vec3, vec3};
@@ -20,7 +14,6 @@ use glossmith::scene::texture::TextureTarget;
 use glossmith::store::preset::{load_material, material_by_name};
 use glossmith::store::save_material;
 use glossmith::study::evaluate::Evaluator;
-use glossmith::study::probe::Prober;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
@@ -30,8 +23,6 @@ const CPU: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Single);
 const EXACT: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Double);
 /// The GPU, which compiles a kernel for each material that is asked about: for few of them.
 const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
-/// Samples of a case.
-const SAMPLES: u32 = 40_000;
 
 /// Fresnel terms without tints.
 fn terms<T: Scalar>(model: Fresnel, ior: f64, [eta, k]: [f64; 2], film: FilmTerms<T>) -> FresnelTerms<T> {
@@ -251,13 +242,10 @@ fn films_keep_all_light() {
     for (base, cosines) in [(&DIFFUSE[..], &above[..]), (&METAL, &above), (&GLASS, &both)] {
         for shape in &shapes {
             let material = filmed(base, &[&["specular.lobe=ggx"], &shape[..]].concat());
-            // What facets of glass scatter more than once has one factor for all channels.
-            let is_rough_glass = material.transmits() && material.roughness > 0.3;
-            let tolerance = if is_rough_glass { 6e-3 } else { 2e-3 };
             for engine in [CPU, EXACT] {
                 for (found, cosine) in sums(&material, engine, cosines, 1 << 15).iter().zip(cosines) {
                     let off = found.map(|x| (x - 1.0).abs()).into_iter().fold(0.0, f64::max);
-                    assert!(off < tolerance, "{base:?}, {shape:?} at {cosine}: {found:?}");
+                    assert!(off < 2e-3, "{base:?}, {shape:?} at {cosine}: {found:?}");
                     worst = worst.max(off);
                 }
             }
@@ -370,79 +358,6 @@ fn both_engines_have_the_same_film() {
             }
         }
     }
-}
-
-/// The p-value of an engine's samples under the density of a material.
-fn p_value(prober: &Prober, scene: &ProbeScene<'_>, supposed: (&Material<f64>, &[f32]), angle_deg: f64) -> f64 {
-    let (sine, cosine) = angle_deg.to_radians().sin_cos();
-    let normal = vec3(0.0, 0.0, 1.0);
-    let view = MaterialView {
-        material: 0,
-        is_inside: 0,
-        shading: normal,
-        tangent: vec3(1.0, 0.0, 0.0),
-        normal,
-        wo: vec3(sine as f32, 0.0, cosine as f32),
-    };
-    let questions: Vec<_> = (0..SAMPLES)
-        .map(|i| {
-            let state = random_state(5, 0, 0, i, Sequence::Independent);
-            let ([a, b], [c, facet], [d, e]) = (random_pair(state, 0), random_pair(state, 1), random_pair(state, 2));
-            DrawQuestion {
-                view,
-                lobe: [a, b, c],
-                facet,
-                below: [d, e, facet],
-            }
-        })
-        .collect();
-    let drawn = prober.draws(scene, &questions).unwrap();
-    let samples: Vec<Option<Vec3<f64>>> = drawn
-        .iter()
-        .map(|drawn| (drawn.throughput.max_component() > 0.0).then(|| Vec3::from_f64(drawn.wi.to_f64())))
-        .collect();
-    let surface = Surface::upwards(vec3(sine, 0.0, cosine));
-    let (material, tables) = supposed;
-    let layers = material_layers(material, tables, &surface);
-    let middle = frame_from_normal(surface.wo.mirrored_about(surface.normal));
-    let grid = PolarGrid::following(middle, 12, 12, samples.iter().flatten().take(4000).copied());
-    let density = |wi| material_density(material, tables, &surface, &layers, wi);
-    test_samples(&grid, &samples, &[surface.normal], density).p_value
-}
-
-#[test]
-fn samples_follow_their_density_on_both_engines() {
-    let rough = ["specular.lobe=ggx", "specular.roughness=0.5"];
-    let mut worst: f64 = 1.0;
-    for (base, others) in [
-        (&DIFFUSE[..], &["thin_film.thickness=0.15", "base.color=0.02,0.02,0.02"]),
-        (&GLASS, &["thin_film.thickness=0.15", "thin_film.weight=1"]),
-    ] {
-        let of = |more: &[&str]| {
-            let settings = filmed(base, &[&rough[..], others, more].concat());
-            let (materials, tables) = compile(&[settings]);
-            (materials, tables)
-        };
-        let ((materials, tables), (wrong, wrong_tables)) = (of(&[]), of(&["thin_film.thickness=0.07"]));
-        let scene = ProbeScene {
-            tables: &tables,
-            materials: &materials,
-            geometry: None,
-        };
-        for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
-            let prober = Prober::open(engine).unwrap();
-            let mut found = false;
-            for angle_deg in [10.0, 55.0] {
-                let (right, wrong) = (materials[0].cast::<f64>(), wrong[0].cast::<f64>());
-                let p = p_value(&prober, &scene, (&right, &tables), angle_deg);
-                worst = worst.min(p);
-                assert!(p > 1e-4, "{engine:?}, {base:?} at {angle_deg} degrees: p = {p:.1e}");
-                found |= p_value(&prober, &scene, (&wrong, &wrong_tables), angle_deg) < 1e-4;
-            }
-            assert!(found, "{engine:?}, {base:?}: another film is not seen");
-        }
-    }
-    println!("least p {worst:.3}");
 }
 
 /// Without weight or thickness there is no film to the bit; at both ends of index, thickness and view all is finite.

@@ -5,6 +5,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
+use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 
 use super::ui::{Editor, editor_of, options, request, see, see_label, settle, undo, wait};
@@ -19,9 +20,14 @@ fn sphere() -> Document {
 
 /// Has the strategies alone race, for so many seconds each.
 pub(super) fn race_strategies(harness: &mut Editor, seconds_each: f64) {
+    race_kinds(harness, &["Bounces", "Fresnel term"], seconds_each);
+}
+
+/// Has the kinds race that are chosen, for so many seconds each, these chosen or not any more.
+fn race_kinds(harness: &mut Editor, changed: &[&str], seconds_each: f64) {
     harness.state_mut().reveal(Pane::Race);
     harness.run_steps(2);
-    for kind in ["Bounces", "Fresnel term"] {
+    for kind in changed {
         harness.get_by_role_and_label(Role::CheckBox, kind).click_accesskit();
         harness.run_steps(2);
     }
@@ -54,6 +60,25 @@ fn a_race_is_run_and_its_winner_taken() {
     assert_eq!(harness.state().document().render.strategy, Strategy::Light);
     undo(&mut harness);
     assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
+}
+
+#[test]
+fn multiple_scattering_is_raced_in_the_window() {
+    let mut harness = editor_of(glossmith::app::Options {
+        document: Some(sphere()),
+        ..options()
+    });
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Race);
+    harness.run_steps(2);
+    let scattering = harness.get_by_role_and_label(Role::CheckBox, "Scattering between facets");
+    scattering.click_accesskit();
+    race_kinds(&mut harness, &["Light sampling", "Bounces", "Fresnel term"], 0.05);
+    see_label(&mut harness, "Use GGX, single scattering");
+    harness.get_by_label("Use GGX, single scattering").click_accesskit();
+    settle(&mut harness);
+    let material = &harness.state().document().materials[0];
+    assert!(material.lobe == Lobe::Ggx && !material.multiple_scattering);
 }
 
 /// A window in which a race runs, so many seconds for each technique.

@@ -59,7 +59,11 @@ fn fuzz_density(bent_by: vec2f, wi: vec3f) -> f32 {
 }
 
 fn fuzz_reflectance(material: Material, cosine: f32) -> f32 {
-    let off = (clamp(cosine, 0.0, 1.0) - material.fuzz_middle) / material.fuzz_width;
-    let bell = exp(-0.5 * off * off) / (material.fuzz_width * sqrt(2.0 * PI));
-    return clamp(bell + material.fuzz_floor, 0.0, 1.0);
+    let y = material.fuzz_roughness;
+    let middle = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
+    let width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
+    let floor_y = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y));
+    let off = (clamp(cosine, 0.0, 1.0) - middle) / width;
+    let bell = exp(-0.5 * off * off) / (width * sqrt(2.0 * PI));
+    return clamp(bell + floor_y, 0.0, 1.0);
 }

@@ -33,8 +33,8 @@ const SHEET_SIDE: u32 = 256;
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArguments {
     /// Who takes part, besides the scene as it is: settings such as strategy=lobe,bounces=4, or all of a kind: strategy,
-    /// sequence, adaptive, denoise, bounces, fresnel, lobe, curve, effect, numbers. May be repeated [default: strategy, sequence,
-    /// adaptive, bounces, fresnel and lobe].
+    /// sequence, adaptive, denoise, bounces, fresnel, lobe, curve, scattering, effect, numbers. May be repeated [default: strategy,
+    /// sequence, adaptive, bounces, fresnel and lobe].
     #[arg(long = "technique", value_name = "SETTINGS|KIND", value_parser = parse_techniques)]
     techniques: Vec<String>,
     #[command(flatten)]

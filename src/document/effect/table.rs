@@ -461,6 +461,18 @@ pub static EFFECTS: &[Effect] = &[
         }),
     },
     Effect {
+        id: EffectId::FuzzTexture,
+        label: "Fuzz textures",
+        help: "Weight, colour and roughness of fuzz from textures.",
+        decide: |facts| facts.needed_by(Material::has_fuzz_texture, "has a texture of its fuzz"),
+        remove: Some(|document| {
+            each_material(document, |material| {
+                let uses = &mut material.textures;
+                (uses.fuzz, uses.fuzz_color, uses.fuzz_roughness) = (false, false, false);
+            });
+        }),
+    },
+    Effect {
         id: EffectId::BoxProjection,
         label: "Box projection",
         help: "Images that lie on a surface as on a box, without texture coordinates.",

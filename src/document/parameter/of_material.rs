@@ -95,9 +95,12 @@ fn fuzz() -> Vec<Parameter> {
     vec![
         of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
             .applies(|_| true),
+        of("fuzz.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.fuzz)),
         of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
+        of("fuzz.color_texture", "Colour texture", "Multiplies the colour by a texture.", Kind::Toggle, field!(Toggle textures.fuzz_color)),
         of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
             .symbol("R"),
+        of("fuzz.roughness_texture", "Roughness texture", "Multiplies the roughness by a texture.", Kind::Toggle, field!(Toggle textures.fuzz_roughness)),
     ]
 }
 

@@ -152,16 +152,22 @@ pub(super) struct Sheen {
 #[serde(rename_all = "camelCase", default)]
 pub(super) struct Fuzz {
     pub fuzz_factor: f32,
+    pub fuzz_texture: Option<TextureInfo>,
     pub fuzz_color_factor: [f32; 3],
+    pub fuzz_color_texture: Option<TextureInfo>,
     pub fuzz_roughness_factor: f32,
+    pub fuzz_roughness_texture: Option<TextureInfo>,
 }
 
 impl Default for Fuzz {
     fn default() -> Self {
         Self {
             fuzz_factor: 0.0,
+            fuzz_texture: None,
             fuzz_color_factor: [1.0; 3],
+            fuzz_color_texture: None,
             fuzz_roughness_factor: 0.5,
+            fuzz_roughness_texture: None,
         }
     }
 }

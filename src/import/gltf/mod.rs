@@ -18,6 +18,7 @@ mod nodes;
 mod numbers;
 mod pose;
 mod primitive;
+mod sheen;
 mod specular_glossiness;
 
 use std::path::Path;

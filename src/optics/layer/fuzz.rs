@@ -146,17 +146,20 @@ fn fuzz_density<T: Real>([stretch, lean]: [T; 2], wi: Vec3<T>) -> T {
 /// Albedo R of fuzz of weight 1 for a view.
 #[inline(always)]
 fn fuzz_reflectance<T: Real>(material: &Material<T>, cosine: T) -> T {
-    let cosine = cosine.clamp(T::zero(), T::one());
-    let off = (cosine - material.fuzz_middle) / material.fuzz_width;
-    let bell = (T::from_f64(-0.5) * off * off).exp() / (material.fuzz_width * T::from_f64(TAU.sqrt()));
-    (bell + material.fuzz_floor).clamp(T::zero(), T::one())
+    let [middle, width, floor] = fuzz_bell(material.fuzz_roughness);
+    let off = (cosine.clamp(T::zero(), T::one()) - middle) / width;
+    let bell = (T::from_f64(-0.5) * off * off).exp() / (width * T::from_f64(TAU.sqrt()));
+    (bell + floor).clamp(T::zero(), T::one())
 }
 
 /// Middle, width and floor of the albedo's bell over the view's cosine, by the roughness.
-pub fn fuzz_bell(roughness: f64) -> [f64; 3] {
-    let y = roughness.max(FUZZ_ROUGHNESS_MIN);
-    let middle = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
-    let width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
-    let floor = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y));
+#[inline(always)]
+fn fuzz_bell<T: Real>(y: T) -> [T; 3] {
+    let number = T::from_f64;
+    let square = number(1.7932) - number(0.95943) * y * y;
+    let middle = y * (number(-0.193854) + y * (number(-1.14885) + y * square)) / (number(0.046391) + y);
+    let width = y * (number(0.0206607) + number(1.58491) * y) / (number(0.0379424) + y * (number(1.32227) + y));
+    let floor = y * (number(0.000654023) + (number(-0.0207818) + number(0.119681) * y) * y)
+        / (number(1.26264) + y * (number(-1.92021) + y));
     [middle, width, floor]
 }

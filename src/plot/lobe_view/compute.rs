@@ -5,7 +5,9 @@ use rayon::prelude::*;
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
 use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::curve::{curve_density, curve_distance_max};
+use crate::optics::lobe::microfacet_alpha;
 use crate::optics::lobe::model::{LobeModel, view_direction};
+use crate::optics::scattering::kept_energy;
 use crate::optics::vector::{Vec3, vec3};
 
 /// Pixels along a side of a map.
@@ -18,6 +20,9 @@ const SOLID_AZIMUTHS: usize = 48;
 const RECIPROCITY_FLOOR: f64 = 0.01;
 /// Closest that a slice comes to the mirror direction, degrees.
 const SLICE_GAP_DEG: f64 = 0.02;
+
+/// Samples of the energy that a lobe keeps, for a view.
+const ENERGY_SAMPLES: u32 = 8192;
 
 /// Points of a line over the distance, and how much of a long tail it shows.
 const DISTANCE_POINTS: usize = 200;
@@ -39,14 +44,20 @@ pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -
             title,
             solids: each().map(|(lobe, angle)| solid(lobe, angle)).collect(),
         }),
-        ViewKind::Albedo => LobeView::Lines(against_angle(
-            title,
-            "Albedo",
-            ["albedo"],
-            lobes,
-            view_angles_deg,
-            albedo,
-        )),
+        ViewKind::Albedo => {
+            let (label, loses) = ("Albedo", lobes.iter().any(|lobe| lobe.lobe.traits().loses_light));
+            LobeView::Lines(match loses {
+                true => against_angle(
+                    title,
+                    label,
+                    ["albedo", "compensated"],
+                    lobes,
+                    view_angles_deg,
+                    albedo_with_scattering,
+                ),
+                false => against_angle(title, label, ["albedo"], lobes, view_angles_deg, albedo),
+            })
+        }
         ViewKind::Horizon => {
             let label = "Share below the horizon";
             LobeView::Lines(against_angle(
@@ -139,6 +150,16 @@ fn albedo(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 1] {
     let profile = |wi| lobe.evaluate(wo, wi)[0];
     let grid = SphereGrid::adapted(view_angle_rad, Side::Above, lobe.is_symmetric(), &[&profile]);
     [grid.integral(&grid.values(&profile))]
+}
+
+/// The same, and with the light that a white metal's facets scatter more than once, as renders have it.
+fn albedo_with_scattering(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
+    let [single] = albedo(lobe, view_angle_rad);
+    if !lobe.lobe.traits().loses_light || lobe.eta != 0.0 {
+        return [single; 2];
+    }
+    let kept = kept_energy(microfacet_alpha(&lobe.shape()), view_angle_rad.cos(), ENERGY_SAMPLES);
+    [single, single * (1.0 + (1.0 - kept) / kept)]
 }
 
 /// ∫ density over the lower hemisphere, before the policy.

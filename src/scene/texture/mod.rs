@@ -17,6 +17,7 @@ use super::geometry::Geometry;
 use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
+use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
 use crate::optics::material::{
     COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
 };
@@ -292,6 +293,9 @@ pub fn textured_material<T: Scalar>(
     if material.film_path_texture != NO_TEXTURE {
         at_point.film_path = material.film_path * texture_lookup(textures, material.film_path_texture, uvs).0.x;
     }
+    if material.has_fuzz_texture() {
+        put_fuzz(&mut at_point, textures, uvs);
+    }
     at_point
 }
 
@@ -314,6 +318,7 @@ pub fn textured_materials<T: Real>(
                 at.emission,
                 at.coat_color,
                 at.film_path,
+                at.fuzz_color,
             ],
             numbers: [
                 at.metalness,
@@ -324,6 +329,8 @@ pub fn textured_materials<T: Real>(
                 at.ggx_roughness,
                 at.coat_roughness,
                 at.film_weight,
+                at.fuzz_weight,
+                at.fuzz_roughness,
             ],
         }
     });
@@ -342,6 +349,9 @@ pub fn textured_materials<T: Real>(
         coat_roughness: T::from_lanes(|lane| at[lane].numbers[6]),
         film_path: Vec3::from_lanes(|lane| at[lane].colors[4]),
         film_weight: T::from_lanes(|lane| at[lane].numbers[7]),
+        fuzz_color: Vec3::from_lanes(|lane| at[lane].colors[5]),
+        fuzz_weight: T::from_lanes(|lane| at[lane].numbers[8]),
+        fuzz_roughness: T::from_lanes(|lane| at[lane].numbers[9]),
         ..*material
     }
 }
@@ -349,11 +359,11 @@ pub fn textured_materials<T: Real>(
 /// Parameters that [`textured_material`] changes.
 #[derive(Clone, Copy, Default)]
 struct TexturedNumbers<T> {
-    /// Base colour, tint of the transmission, emission, colour of the coat, phase of the thin film.
-    colors: [Vec3<T>; 5],
+    /// Base colour, tint of the transmission, emission, colour of the coat, phase of the thin film, tint of the fuzz.
+    colors: [Vec3<T>; 6],
     /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
-    /// the coat, roughness of the coat, weight of the thin film.
-    numbers: [T; 8],
+    /// the coat, roughness of the coat, weight of the thin film, weight and roughness of the fuzz.
+    numbers: [T; 10],
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -418,6 +428,20 @@ pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs:
     if material.coat_color_texture != NO_TEXTURE {
         let (color, _) = texture_lookup(textures, material.coat_color_texture, uvs);
         material.coat_color = material.coat_color * color;
+    }
+}
+
+/// Varies the fuzz of a material by its textures.
+fn put_fuzz<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
+    if material.fuzz_texture != NO_TEXTURE {
+        material.fuzz_weight = material.fuzz_weight * texture_lookup(textures, material.fuzz_texture, uvs).0.x;
+    }
+    if material.fuzz_color_texture != NO_TEXTURE {
+        material.fuzz_color = material.fuzz_color * texture_lookup(textures, material.fuzz_color_texture, uvs).0;
+    }
+    if material.fuzz_roughness_texture != NO_TEXTURE {
+        let (_, share) = texture_lookup(textures, material.fuzz_roughness_texture, uvs);
+        material.fuzz_roughness = (material.fuzz_roughness * share).max(T::from_f64(FUZZ_ROUGHNESS_MIN));
     }
 }
 

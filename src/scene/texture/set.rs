@@ -45,6 +45,8 @@ const WORDS: &[(&str, Meaning)] = &[
     ("clearcoatroughness", Is(To::CoatRoughness)), ("coatroughness", Is(To::CoatRoughness)),
     ("clearcoatnormal", Is(To::CoatNormal)), ("coatnormal", Is(To::CoatNormal)),
     ("coatcolor", Is(To::CoatColor)), ("coatcolour", Is(To::CoatColor)),
+    ("fuzz", Is(To::Fuzz)), ("fuzzroughness", Is(To::FuzzRoughness)),
+    ("fuzzcolor", Is(To::FuzzColor)), ("fuzzcolour", Is(To::FuzzColor)),
     ("ao", Other), ("ambientocclusion", Other), ("occlusion", Other), ("displacement", Other), ("disp", Other),
     ("height", Other), ("bump", Other), ("specular", Other), ("spec", Other), ("preview", Other), ("thumbnail", Other),
     ("sheen", Other), ("anisotropy", Other), ("thickness", Other), ("curvature", Other), ("id", Other),

@@ -35,6 +35,8 @@ pub enum Setting {
     Lobe(Lobe),
     /// The geometric lobe with another curve, its roughness such that the look is nearest.
     Curve(Curve),
+    /// GGX with or without the light that its facets scatter more than once, the looks of other lobes matched.
+    Scattering(bool),
     /// How light is found.
     Strategy(Strategy),
     /// Which random numbers are drawn.
@@ -132,6 +134,12 @@ pub static GROUPS: &[Group] = &[
         members: |_| Curve::with_formulas().map(Setting::Curve).collect(),
     },
     Group {
+        name: "scattering",
+        label: "Scattering between facets",
+        help: "GGX with the light that meets more than one facet, or without, which loses it. Other lobes become GGX first.",
+        members: |_| [true, false].map(Setting::Scattering).to_vec(),
+    },
+    Group {
         name: "effect",
         label: "Effects disabled",
         help: "The scene without one of the effects that it calls for.",
@@ -159,6 +167,13 @@ impl Setting {
         match self {
             Setting::Lobe(lobe) => change_lobes(document, lobe, Curve::Smooth),
             Setting::Curve(curve) => change_lobes(document, Lobe::Geometric, curve),
+            Setting::Scattering(is_on) => {
+                change_lobes(document, Lobe::Ggx, Curve::Smooth);
+                document
+                    .materials
+                    .iter_mut()
+                    .for_each(|material| material.multiple_scattering = is_on);
+            }
             Setting::Strategy(strategy) => document.render.strategy = strategy,
             Setting::Sequence(sequence) => document.render.sequence = sequence,
             Setting::ExactFresnel(true) => document.materials.iter_mut().for_each(with_exact_fresnel),
@@ -175,6 +190,8 @@ impl Setting {
         match self {
             Setting::Lobe(lobe) => lobe.label().to_owned(),
             Setting::Curve(curve) => format!("Curve: {}", curve.label().to_lowercase()),
+            Setting::Scattering(true) => "GGX, multiple scattering".to_owned(),
+            Setting::Scattering(false) => "GGX, single scattering".to_owned(),
             Setting::Strategy(Strategy::Lobe) => "BSDF sampling only".to_owned(),
             Setting::Strategy(Strategy::Light) => "Light sampling only".to_owned(),
             Setting::Strategy(Strategy::Mis) => "BSDF and light sampling".to_owned(),
@@ -303,6 +320,7 @@ impl fmt::Display for Setting {
         match self {
             Setting::Lobe(lobe) => write!(f, "lobe={}", lobe.name()),
             Setting::Curve(curve) => write!(f, "curve={}", curve.name()),
+            Setting::Scattering(is_on) => write!(f, "scattering={}", if *is_on { "multiple" } else { "single" }),
             Setting::Strategy(strategy) => write!(f, "strategy={}", strategy.name()),
             Setting::Sequence(sequence) => write!(f, "sequence={}", sequence.name()),
             Setting::ExactFresnel(is_exact) => write!(f, "fresnel={}", if *is_exact { "exact" } else { "schlick" }),
@@ -353,6 +371,11 @@ impl FromStr for Setting {
                     Err(wrong("a curve with a name: a drawn one has no points here".to_owned()))
                 }
                 curve => Ok(Setting::Curve(curve)),
+            },
+            "scattering" => match value {
+                "multiple" => Ok(Setting::Scattering(true)),
+                "single" => Ok(Setting::Scattering(false)),
+                _ => Err(wrong("multiple or single".to_owned())),
             },
             "strategy" => entry!(Strategy).map(Setting::Strategy),
             "sequence" => entry!(Sequence).map(Setting::Sequence),
@@ -480,6 +503,7 @@ mod tests {
         for (text, word) in [
             ("colour=red", "strategy"),
             ("lobe=velvet", "ggx-2018"),
+            ("scattering=twice", "single"),
             ("bounces=0", "64"),
             ("effect=-lobe", "+NAME"),
             ("effect=ground", "-NAME"),

@@ -13,7 +13,6 @@ use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::layer::fuzz::fuzz_bell;
 use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::optics::material::{COATS_BASE, COMPENSATES, MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
@@ -115,6 +114,9 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 material.coat_texture = of_others.below(textures.records.len()) as u32;
                 material.coat_color_texture = of_others.below(textures.records.len()) as u32;
                 material.film_texture = of_others.below(textures.records.len()) as u32;
+                material.fuzz_texture = of_others.below(textures.records.len()) as u32;
+                material.fuzz_color_texture = of_others.below(textures.records.len()) as u32;
+                material.fuzz_roughness_texture = of_others.below(textures.records.len()) as u32;
                 material.film_path_texture = of_others.below(textures.records.len()) as u32;
                 materials.push(material);
             }
@@ -254,7 +256,6 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
     let tint = color(0.2, 1.0);
     let fuzz_roughness = rng.range(0.1, 1.0);
-    let bell = fuzz_bell(f64::from(fuzz_roughness)).map(|x| x as f32);
     // From a sequence of their own, so that the other numbers stay what they are.
     let mut of_film = Rng::new(u64::from(tint.x.to_bits()));
     let film = [
@@ -309,9 +310,9 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         fuzz_color: tint,
         fuzz_weight: if rng.chance(0.3) { rng.range(0.1, 1.0) } else { 0.0 },
         fuzz_roughness,
-        fuzz_middle: bell[0],
-        fuzz_width: bell[1],
-        fuzz_floor: bell[2],
+        fuzz_texture: NO_TEXTURE,
+        fuzz_color_texture: NO_TEXTURE,
+        fuzz_roughness_texture: NO_TEXTURE,
         film_path: film_path(film[0]),
         film_weight: film[1],
         film_ior: film[2],

@@ -2,13 +2,14 @@
 
 use serde_json::Value as Json;
 
-use super::{Apply, IOR_MAX, Materials, mean, not_negative, unit};
+use super::pictures::PictureKey;
+use super::{IOR_MAX, Materials, SheenTextures, not_negative, unit};
 use crate::gltf::anisotropy::widths_from_gltf;
 use crate::gltf::material_extensions::{Coat, Fuzz, Iridescence, Sheen, TextureInfo, extension};
-use crate::optics::layer::fuzz::{fuzz_of_sheen, sheen_of_fuzz};
-use crate::scene::Slot;
+use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::scene::report::Fate;
 use crate::scene::texture::TextureTarget;
+use crate::scene::{Slot, TextureRef};
 
 impl Materials<'_> {
     pub(super) fn read_coat(&mut self, coat: &Coat, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
@@ -38,35 +39,64 @@ impl Materials<'_> {
     }
 
     /// Fuzz; the draft takes precedence over a sheen, whose fibres are of another model.
-    pub(super) fn read_fuzz(&mut self, raw: &Json, read: &mut Slot, means: &mut Vec<(usize, &'static str, Apply)>) {
+    pub(super) fn read_fuzz(&mut self, raw: &Json, slot: usize, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
         if let Some(fuzz) = extension::<Fuzz>(raw, "KHR_materials_fuzz") {
             (read.fuzz, read.fuzz_roughness) = (unit(fuzz.fuzz_factor), unit(fuzz.fuzz_roughness_factor));
             read.fuzz_color = fuzz.fuzz_color_factor.map(unit);
-        } else if let Some(sheen) = extension::<Sheen>(raw, "KHR_materials_sheen") {
-            let color = sheen.sheen_color_factor.map(unit);
-            (read.fuzz, read.fuzz_color, read.fuzz_roughness) =
-                fuzz_of_sheen(color, unit(sheen.sheen_roughness_factor));
-            if read.fuzz == 0.0 {
-                return;
+            let textures = [
+                (TextureTarget::Fuzz, fuzz.fuzz_texture),
+                (TextureTarget::FuzzColor, fuzz.fuzz_color_texture),
+                (TextureTarget::FuzzRoughness, fuzz.fuzz_roughness_texture),
+            ];
+            let is_there = read.fuzz > 0.0;
+            for (target, texture) in textures.into_iter().filter(|_| is_there) {
+                let place = texture.as_ref().map(TextureInfo::reference);
+                *read.texture_mut(target) = self.texture(place, sets, &read.name);
             }
-            let what = "a sheen, as fuzz of about its albedo";
-            self.report.note(Fate::Approximated, what, &read.name);
-            means.extend(mean(
-                &sheen.sheen_color_texture,
-                "a sheen colour texture, by its mean",
-                |slot, mean| {
-                    slot.fuzz_color = [0, 1, 2].map(|i| slot.fuzz_color[i] * mean.linear[i]);
-                },
-            ));
-            means.extend(mean(
-                &sheen.sheen_roughness_texture,
-                "a sheen roughness texture, by its mean",
-                |slot, mean| {
-                    (_, _, slot.fuzz_roughness) =
-                        fuzz_of_sheen([1.0; 3], sheen_of_fuzz(slot.fuzz_roughness) * mean.codes[3]);
-                },
-            ));
+        } else if let Some(sheen) = extension::<Sheen>(raw, "KHR_materials_sheen") {
+            self.read_sheen(&sheen, slot, read, sets);
         }
+    }
+
+    /// A sheen, with textures that are turned into those of fuzz.
+    fn read_sheen(&mut self, sheen: &Sheen, slot: usize, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
+        let root_of_alpha = unit(sheen.sheen_roughness_factor);
+        (read.fuzz, read.fuzz_color, read.fuzz_roughness) =
+            fuzz_of_sheen(sheen.sheen_color_factor.map(unit), root_of_alpha);
+        if read.fuzz == 0.0 {
+            return;
+        }
+        let what = "a sheen, as fuzz of about its albedo";
+        self.report.note(Fate::Approximated, what, &read.name);
+        let textures = [&sheen.sheen_color_texture, &sheen.sheen_roughness_texture];
+        let mut converted = SheenTextures {
+            slot,
+            tint: read.fuzz_color,
+            root_of_alpha,
+            images: [None; 2],
+        };
+        let turned: [&[(TextureTarget, PictureKey)]; 2] = [
+            &[
+                (TextureTarget::Fuzz, PictureKey::FuzzWeight(slot)),
+                (TextureTarget::FuzzColor, PictureKey::FuzzColor(slot)),
+            ],
+            &[(TextureTarget::FuzzRoughness, PictureKey::FuzzRoughness(slot))],
+        ];
+        for ((texture, turned), image) in textures.into_iter().zip(turned).zip(&mut converted.images) {
+            let reference = texture.as_ref().map(TextureInfo::reference);
+            let Some(placed) = self.texture(reference, sets, &read.name) else {
+                continue;
+            };
+            if let PictureKey::Image(found) = self.pictures[placed.texture] {
+                *image = Some(found);
+            }
+            for (target, key) in turned {
+                self.pictures.push(*key);
+                let texture = self.pictures.len() - 1;
+                *read.texture_mut(*target) = Some(TextureRef { texture, ..placed });
+            }
+        }
+        self.sheens.push(converted);
     }
 
     /// A thin film. Without a texture it has the largest thickness.

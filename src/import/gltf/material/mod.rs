@@ -22,6 +22,7 @@ use super::material_extensions::{
     Anisotropy, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, coat,
     extension, kept, unreadable,
 };
+use super::sheen;
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
@@ -75,6 +76,35 @@ struct Conversion {
     specular: Option<usize>,
 }
 
+/// Textures of a slot's sheen, which are turned into those of fuzz.
+struct SheenTextures {
+    slot: usize,
+    /// What the colour's texture multiplies, at most 1.
+    tint: [f32; 3],
+    /// What the roughness's texture multiplies.
+    root_of_alpha: f32,
+    /// The images of colour and roughness.
+    images: [Option<usize>; 2],
+}
+
+impl SheenTextures {
+    /// The textures of the fuzz.
+    fn converted(&self, decoded: &HashMap<usize, Texture>) -> Vec<(PictureKey, Texture)> {
+        let [color, root] = self.images.map(|image| decoded.get(&image?));
+        let mut all = Vec::new();
+        if let Some(color) = color {
+            let [weight, color] = sheen::weight_and_color(color, self.tint);
+            all.push((PictureKey::FuzzWeight(self.slot), weight));
+            all.push((PictureKey::FuzzColor(self.slot), color));
+        }
+        if let Some(root) = root {
+            let roughness = sheen::roughness(root, self.root_of_alpha);
+            all.push((PictureKey::FuzzRoughness(self.slot), roughness));
+        }
+        all
+    }
+}
+
 /// A texture with its set of coordinates and its transform.
 type Reference = (usize, u32, Option<TextureTransform>);
 
@@ -91,6 +121,7 @@ pub(super) struct Materials<'a> {
     pictures: Vec<PictureKey>,
     means: Vec<MeanUse>,
     conversions: Vec<Conversion>,
+    sheens: Vec<SheenTextures>,
     report: ImportReport,
 }
 
@@ -117,6 +148,7 @@ impl<'a> Materials<'a> {
             pictures: Vec::new(),
             means: Vec::new(),
             conversions: Vec::new(),
+            sheens: Vec::new(),
             report,
         }
     }
@@ -212,10 +244,22 @@ impl<'a> Materials<'a> {
                 )
             })
             .collect();
+        let of_sheens: HashMap<PictureKey, Texture> = self
+            .sheens
+            .par_iter()
+            .flat_map_iter(|sheen| sheen.converted(&decoded))
+            .collect();
+        for sheen in &self.sheens {
+            if of_sheens.contains_key(&PictureKey::FuzzColor(sheen.slot)) {
+                // Its tint is in the texture.
+                slots[sheen.slot].fuzz_color = [1.0; 3];
+            }
+        }
         let textures = self.pictures.iter().map(|key| match key {
             PictureKey::Image(image) => decoded.get(image).cloned(),
             PictureKey::BaseColor(material) => converted.get(material).map(|[color, _]| color.clone()),
             PictureKey::Surface(material) => converted.get(material).map(|[_, surface]| surface.clone()),
+            of_sheen => of_sheens.get(of_sheen).cloned(),
         });
         let mut textures = without_missing(&mut slots, textures.collect());
         for slot in slots.iter_mut().filter(|slot| slot.anisotropy > 0.0) {
@@ -394,7 +438,7 @@ impl<'a> Materials<'a> {
         if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
             self.read_film(&film, read, sets);
         }
-        self.read_fuzz(raw, read, &mut means);
+        self.read_fuzz(raw, slot, read, sets);
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
             read.anisotropy = unit(anisotropy.anisotropy_strength);
             read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;

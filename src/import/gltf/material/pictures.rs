@@ -17,7 +17,7 @@ use crate::scene::texture::TextureTarget;
 use crate::scene::{Filter, Slot, Texture, TextureRef, Wrap};
 
 /// An image used by slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum PictureKey {
     /// An image of the file.
     Image(usize),
@@ -25,6 +25,12 @@ pub(super) enum PictureKey {
     BaseColor(usize),
     /// Its metalness and roughness channels.
     Surface(usize),
+    /// The weight of the fuzz that a slot's sheen is turned into.
+    FuzzWeight(usize),
+    /// Its colour.
+    FuzzColor(usize),
+    /// Its roughness.
+    FuzzRoughness(usize),
 }
 
 impl Materials<'_> {
@@ -85,14 +91,13 @@ impl Materials<'_> {
     /// Whether a slot looks an image up for colours.
     fn is_color(&self, image: usize) -> bool {
         let is_it = |place: &TextureRef| self.pictures[place.texture] == PictureKey::Image(image);
-        let colors = |slot: &Slot| {
-            [
-                slot.texture(TextureTarget::BaseColor),
-                slot.texture(TextureTarget::Emission),
-            ]
-        };
         let mut slots = self.slots.iter();
-        slots.any(|(slot, _)| colors(slot).iter().flatten().any(is_it))
+        let of_colors = || TextureTarget::ALL.iter().filter(|target| target.is_color());
+        slots.any(|(slot, _)| {
+            of_colors()
+                .filter_map(|target| slot.texture(*target))
+                .any(|place| is_it(&place))
+        }) || self.sheens.iter().any(|sheen| sheen.images[0] == Some(image))
     }
 
     /// Reports an unreadable image.

@@ -97,17 +97,17 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
     }
     "/extensions/KHR_materials_sheen/" {
         "sheenColorFactor" "[0.5, 0.25, 0]" => To "fuzz.weight, fuzz.color" "as fuzz of about its albedo";
-        "sheenColorTexture" TEXTURE => To "fuzz.color" "by its mean";
+        "sheenColorTexture" TEXTURE => To "fuzz.weight_texture, fuzz.color_texture" "converted texel by texel";
         "sheenRoughnessFactor" "0.25" => To "fuzz.roughness" "as fuzz of about its albedo";
-        "sheenRoughnessTexture" TEXTURE => To "fuzz.roughness" "by its mean";
+        "sheenRoughnessTexture" TEXTURE => To "fuzz.roughness_texture" "converted texel by texel";
     }
     "/extensions/KHR_materials_fuzz/" {
         "fuzzFactor" "0.25" => To "fuzz.weight" "a draft";
-        "fuzzTexture" TEXTURE => Nowhere "a texture of the fuzz" "";
+        "fuzzTexture" TEXTURE => To "fuzz.weight_texture" "";
         "fuzzColorFactor" "[0.5, 0.25, 0]" => To "fuzz.color" "a draft";
-        "fuzzColorTexture" TEXTURE => Nowhere "a texture of the fuzz's colour" "";
+        "fuzzColorTexture" TEXTURE => To "fuzz.color_texture" "";
         "fuzzRoughnessFactor" "0.25" => To "fuzz.roughness" "a draft";
-        "fuzzRoughnessTexture" TEXTURE => Nowhere "a texture of the fuzz's roughness" "";
+        "fuzzRoughnessTexture" TEXTURE => To "fuzz.roughness_texture" "";
     }
     "/extensions/KHR_materials_iridescence/" {
         "iridescenceFactor" "0.25" => To "thin_film.weight" "";

@@ -14,6 +14,11 @@ pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
 /// The draft of OpenPBR's coat.
 const COAT: &str = "KHR_materials_coat";
 
+/// The draft of OpenPBR's fuzz.
+const FUZZ: &str = "KHR_materials_fuzz";
+/// The extension that stands for it where the draft is not read.
+const SHEEN: &str = "KHR_materials_sheen";
+
 /// The extension of thin films.
 const IRIDESCENCE: &str = "KHR_materials_iridescence";
 
@@ -30,6 +35,9 @@ pub struct SlotTextures {
     pub coat_color: Option<Json>,
     pub film: Option<Json>,
     pub film_thickness: Option<Json>,
+    pub fuzz: Option<Json>,
+    pub fuzz_color: Option<Json>,
+    pub fuzz_roughness: Option<Json>,
     /// The film's least thickness over its largest, where a texture varies it.
     pub thinnest: f32,
     /// The mean of the roughness that a texture varies.
@@ -120,6 +128,17 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
             coat["coatNormalTexture"]["scale"] = material.coat_normal_strength.into();
         }
     }
+    if let Some(fuzz) = extensions.get_mut(FUZZ) {
+        put(fuzz, "fuzzTexture", &textures.fuzz);
+        put(fuzz, "fuzzColorTexture", &textures.fuzz_color);
+        put(fuzz, "fuzzRoughnessTexture", &textures.fuzz_roughness);
+    }
+    if textures.fuzz.is_some() {
+        // A sheen has no texture of its weight: it would be everywhere.
+        extensions.remove(SHEEN);
+    } else if let Some(sheen) = extensions.get_mut(SHEEN) {
+        put(sheen, "sheenColorTexture", &textures.fuzz_color);
+    }
     if let Some(film) = extensions.get_mut(IRIDESCENCE) {
         put(film, "iridescenceTexture", &textures.film);
         put(film, "iridescenceThicknessTexture", &textures.film_thickness);
@@ -193,7 +212,7 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
     }
     if surface.fuzz_weight > 0.0 {
         all.insert(
-            "KHR_materials_fuzz".to_owned(),
+            FUZZ.to_owned(),
             json!({
                 "fuzzFactor": surface.fuzz_weight,
                 "fuzzColorFactor": surface.fuzz_color,
@@ -202,7 +221,7 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
         );
         // Readers without the draft take the other.
         all.insert(
-            "KHR_materials_sheen".to_owned(),
+            SHEEN.to_owned(),
             json!({
                 "sheenColorFactor": surface.fuzz_color.map(|x| x * surface.fuzz_weight),
                 "sheenRoughnessFactor": sheen_of_fuzz(surface.fuzz_roughness),
