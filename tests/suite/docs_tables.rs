@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, Value, parameter};
+use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, parameter};
 use glossmith::import::{FileParameter, GLTF_PARAMETERS, Goes, MTL_PARAMETERS};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
@@ -104,29 +104,24 @@ fn presets() -> String {
             let parameter = parameter(key).unwrap();
             parameter.text(&parameter.get(material))
         };
-        let color = Value::Color(material.base_color);
+        let of_reflection = |key: &str| match material.specular_weight > 0.0 {
+            true => text(key),
+            false => "–".to_owned(),
+        };
+        let name = command_line_name(&material.name);
         vec![
-            format!("`{}`", command_line_name(&material.name)),
-            match color {
-                Value::Color(color) => hex(color),
-                _ => String::new(),
-            },
+            format!("![{name}](../pictures/presets/{name}.png)"),
+            format!("`{name}`"),
+            hex(material.base_color),
             text("base.metalness"),
-            if material.specular_weight > 0.0 {
-                text("specular.roughness")
-            } else {
-                "–".to_owned()
-            },
-            if material.specular_weight > 0.0 {
-                text("specular.fresnel")
-            } else {
-                "–".to_owned()
-            },
+            of_reflection("specular.roughness"),
+            of_reflection("specular.fresnel"),
             source_of_values(&material.name).unwrap_or_default().to_owned(),
         ]
     };
     table(
         &[
+            "look",
             "name",
             "base colour",
             "metalness",
