@@ -10,7 +10,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("instructions", &["named"]),
     ("panics", &[]),
     ("console", &["panics"]),
-    ("optics", &["named"]),
+    ("optics", &["named", "instructions"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
     ("import", &["panics", "optics", "scene"]),
     ("job", &["named", "optics", "scene"]),
