@@ -1,4 +1,4 @@
-//! What the viewport's renderer is told beside the document.
+//! What the viewport's renderer is set to beside the document.
 
 use std::path::Path;
 
