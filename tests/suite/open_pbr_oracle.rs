@@ -155,6 +155,8 @@ enum Coated {
     /// The oracle's reflection, and all other light let through, by the colour of the way in: the oracle's glass below a
     /// coat lets through up to 0.014 more than there is, and here refracted light finds no coat on its way out.
     Refracted,
+    /// The oracle's way of what lies below: it takes off the albedo of a coat that is not stretched, and gains or loses light.
+    Stretched,
     /// The fuzz over what is below it: the oracle's table of fuzz is a fit here.
     Fuzz,
 }
@@ -163,6 +165,7 @@ fn held_to(name: &str) -> Coated {
     match name {
         _ if name.contains("w0.5") => Coated::Darkening,
         "coat_ior2.0" | "coat_metal" | "coat_metal_rough_coat" | "coat_r1" => Coated::Darkening,
+        "coat_aniso" => Coated::Stretched,
         "trans_coat_color" | "furnace_coat_trans" => Coated::Refracted,
         _ if name.starts_with("fuzz") => Coated::Fuzz,
         _ => Coated::Oracle,
@@ -185,6 +188,10 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
         let cosine = numbers[0];
         let with = |more: &str| albedo(&place, &format!("{inputs}{more}"), false, cosine);
         let (found, material) = with("");
+        let of_coat = |more: &str| {
+            let black = format!("{more};base_color=0 0 0;specular_weight=0;base_metalness=0");
+            with(&black).0.reflected[0]
+        };
         let mut near = |found: f64, expected: f64, tolerance: f64| {
             let off = (found - expected).abs();
             if off >= tolerance {
@@ -202,7 +209,7 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
             }
             Coated::Darkening => {
                 let bright = with(";coat_darkening=0").0.reflected;
-                let black = with(";base_color=0 0 0;specular_weight=0;base_metalness=0").0.reflected[0];
+                let black = of_coat("");
                 let kept = darkened(&material, cosine);
                 for channel in 0..3 {
                     let below = bright[channel] - black;
@@ -217,6 +224,13 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
                     near(white.reflected[channel] + white.transmitted[channel], 1.0, 2e-3);
                     let once = f64::from(material.coat_color[channel]).powf(0.5 / behind);
                     near(found.transmitted[channel], once * white.transmitted[channel], 2e-3);
+                }
+            }
+            Coated::Stretched => {
+                let [stretched, plain] = [of_coat(""), of_coat(";coat_roughness_anisotropy=0")];
+                for channel in 0..3 {
+                    let below = (found.reflected[channel] - stretched) * (1.0 - plain) / (1.0 - stretched);
+                    near(stretched + below, numbers[1 + channel], 0.01);
                 }
             }
             Coated::Fuzz => {
