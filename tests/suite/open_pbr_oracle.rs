@@ -238,7 +238,7 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
                 let closed = under_fuzz(&place, inputs, cosine);
                 for channel in 0..3 {
                     near(found.reflected[channel], closed[channel], 3e-3);
-                    near(found.reflected[channel], numbers[1 + channel], 0.02);
+                    near(found.reflected[channel], numbers[1 + channel], 0.015);
                 }
             }
         }
@@ -406,7 +406,8 @@ fn albedos_are_the_oracle_s() {
                 let closed = under_fuzz(&place, inputs, cosine);
                 for channel in 0..3 {
                     near("fuzz", found.reflected[channel], closed[channel], 3e-3);
-                    near("table of fuzz", found.reflected[channel], numbers[1 + channel], 0.02);
+                    // The fits leave the table by up to 0.0099, at roughness 0.7 head-on.
+                    near("table of fuzz", found.reflected[channel], numbers[1 + channel], 0.011);
                 }
             }
         }
