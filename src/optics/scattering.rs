@@ -243,8 +243,10 @@ impl Kept<'_> {
             {
                 let refracting = if *is_apart { visible_normal(*through, wo, xi) } else { h };
                 for (sum, side) in sums[1..].iter_mut().zip(sides) {
-                    let reflected = side.reflected(wo.dot(h)) * mirrored;
-                    add(sum, reflected + side.let_through(*through, wo, refracting));
+                    let film = side.film(wo.dot(h));
+                    let reflected = side.reflected(wo.dot(h), film) * mirrored;
+                    let film = if *is_apart { side.film(wo.dot(refracting)) } else { film };
+                    add(sum, reflected + side.let_through(*through, wo, refracting, film));
                 }
             }
             first += T::LANES;
@@ -330,21 +332,21 @@ impl<T: Real> Side<T> {
         film_passed(&self.terms, cosine, height)
     }
 
-    /// The share that a facet reflects.
+    /// The share that a facet reflects, under a film that lets this much more through.
     #[inline(always)]
-    fn reflected(&self, cosine: T) -> Vec3<T> {
-        Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - self.film(cosine)
+    fn reflected(&self, cosine: T, film: Vec3<T>) -> Vec3<T> {
+        Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film
     }
 
     /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
     #[inline(always)]
-    fn let_through(&self, through: Alpha<T>, wo: Vec3<T>, h: Vec3<T>) -> Vec3<T> {
+    fn let_through(&self, through: Alpha<T>, wo: Vec3<T>, h: Vec3<T>, film: Vec3<T>) -> Vec3<T> {
         let refracted = refracted(wo, h, self.eta);
         let (zero, one) = (T::zero(), T::one());
         let [before, behind] = [wo.dot(h).clamp(zero, one), (-refracted.wi.dot(h)).clamp(zero, one)];
         let share = match self.has_one_index {
-            true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + self.film(before),
-            false => Vec3::splat(one) - self.reflected(before),
+            true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + film,
+            false => Vec3::splat(one) - self.reflected(before, film),
         };
         let seen = smith_g1_over_cosine(through, refracted.wi) * refracted.wi.z.abs();
         let is_lost = refracted.is_total | !refracted.wi.z.less(zero);

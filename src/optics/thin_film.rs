@@ -148,14 +148,19 @@ fn entered<T: Real>(film: &FilmTerms<T>, cosine: T, behind: [Behind<T>; 3]) -> V
     let square = refracted_square(cosine, film.ior).max(T::zero());
     let (height, index_square) = (square.sqrt(), film.ior * film.ior);
     let channel = |path: T, behind: Behind<T>| {
-        let phase = path * height;
-        let is_small = phase.less(T::from_f64(1e-4));
-        let across = path * T::select(is_small, T::one(), phase.sin() / phase.max(T::from_f64(FILM_TINY)));
-        let along = phase.cos();
-        let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across]);
-        let square = square / (index_square * index_square);
-        let parallel = entered_polarised(cosine, behind.parallel, square, [along, across * index_square]);
-        T::from_f64(0.5) * (perpendicular + parallel)
+        T::vectorize(
+            #[inline(always)]
+            || {
+                let phase = path * height;
+                let is_small = phase.less(T::from_f64(1e-4));
+                let across = path * T::select(is_small, T::one(), phase.sin() / phase.max(T::from_f64(FILM_TINY)));
+                let along = phase.cos();
+                let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across]);
+                let square = square / (index_square * index_square);
+                let parallel = entered_polarised(cosine, behind.parallel, square, [along, across * index_square]);
+                T::from_f64(0.5) * (perpendicular + parallel)
+            },
+        )
     };
     let [x, y, z] = behind;
     vec3(

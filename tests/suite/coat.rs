@@ -184,13 +184,6 @@ fn a_coat_over_white_is_white_in_the_furnace() {
                 "coat.lobe=ggx",
                 "coat.roughness=0.6",
             ],
-            &[
-                "base.metalness=0",
-                "base.color=1,1,1",
-                "coat.lobe=ggx",
-                "coat.roughness=0.4",
-                "coat.anisotropy=0.7",
-            ],
         ] {
             let all = [&["coat.weight=1", "specular.roughness=0.3"], assignments].concat();
             let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &all);

@@ -258,8 +258,12 @@ fn textures_of_sheens_and_fuzz_are_looked_up() {
     let texture = json!({"index": 0});
     let read = |extension: &str, numbers: Value| {
         let model = slot_of(&json!({"extensions": {extension: numbers}}));
-        let told = &model.report.entries;
-        assert!(told.iter().all(|entry| !entry.what.contains("texture")), "{told:?}");
+        let told = model.report.entries.iter().filter(|entry| entry.fate != Fate::Used);
+        assert!(
+            told.clone().all(|entry| !entry.what.contains("texture")),
+            "{:?}",
+            model.report
+        );
         let material = materials_of(&model, ImportLobe::Geometric).remove(0);
         let uses = material.textures;
         assert!(uses.fuzz && uses.fuzz_color && uses.fuzz_roughness);

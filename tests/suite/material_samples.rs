@@ -37,7 +37,12 @@ const CASES: [(&[&str], &[&str], &str); 5] = [
     ),
     (
         &COAT,
-        &["transmission.weight=1", "coat.anisotropy=-0.5"],
+        &[
+            "transmission.weight=1",
+            "coat.anisotropy=-0.5",
+            "specular.lobe=ggx",
+            "specular.roughness=0.5",
+        ],
         "coat.anisotropy=0.5",
     ),
 ];

@@ -5,6 +5,7 @@
 //! albedos with it.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use glossmith::compile::compile;
@@ -152,9 +153,11 @@ enum Coated {
     /// The darkening by the specification's closed form: the oracle takes averages of the Fresnel factor, for a smooth base
     /// too, and blends the index around a coat in part before the ratio.
     Darkening,
-    /// The oracle's reflection, and all other light let through, by the colour of the way in: the oracle's glass below a
-    /// coat lets through up to 0.014 more than there is, and here refracted light finds no coat on its way out.
+    /// The oracle's reflection, and all other light let through, by the colour of the way in, twice: the oracle's glass
+    /// below a coat lets through up to 0.014 more than there is, and here refracted light finds no coat on its way out.
     Refracted,
+    /// The oracle's way of what lies below: it takes off the albedo of a coat that is not stretched, and gains or loses light.
+    Stretched,
     /// The fuzz over what is below it: the oracle's table of fuzz is a fit here.
     Fuzz,
 }
@@ -163,6 +166,7 @@ fn held_to(name: &str) -> Coated {
     match name {
         _ if name.contains("w0.5") => Coated::Darkening,
         "coat_ior2.0" | "coat_metal" | "coat_metal_rough_coat" | "coat_r1" => Coated::Darkening,
+        "coat_aniso" => Coated::Stretched,
         "trans_coat_color" | "furnace_coat_trans" => Coated::Refracted,
         _ if name.starts_with("fuzz") => Coated::Fuzz,
         _ => Coated::Oracle,
@@ -185,6 +189,10 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
         let cosine = numbers[0];
         let with = |more: &str| albedo(&place, &format!("{inputs}{more}"), false, cosine);
         let (found, material) = with("");
+        let of_coat = |more: &str| {
+            let black = format!("{more};base_color=0 0 0;specular_weight=0;base_metalness=0");
+            with(&black).0.reflected[0]
+        };
         let mut near = |found: f64, expected: f64, tolerance: f64| {
             let off = (found - expected).abs();
             if off >= tolerance {
@@ -202,7 +210,7 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
             }
             Coated::Darkening => {
                 let bright = with(";coat_darkening=0").0.reflected;
-                let black = with(";base_color=0 0 0;specular_weight=0;base_metalness=0").0.reflected[0];
+                let black = of_coat("");
                 let kept = darkened(&material, cosine);
                 for channel in 0..3 {
                     let below = bright[channel] - black;
@@ -215,15 +223,22 @@ fn coats_over_bases_have_the_oracle_s_albedo() {
                 for channel in 0..3 {
                     near(found.reflected[channel], numbers[1 + channel], 0.01);
                     near(white.reflected[channel] + white.transmitted[channel], 1.0, 2e-3);
-                    let once = f64::from(material.coat_color[channel]).powf(0.5 / behind);
-                    near(found.transmitted[channel], once * white.transmitted[channel], 2e-3);
+                    let twice = f64::from(material.coat_color[channel]).powf(1.0 / behind);
+                    near(found.transmitted[channel], twice * white.transmitted[channel], 2e-3);
+                }
+            }
+            Coated::Stretched => {
+                let [stretched, plain] = [of_coat(""), of_coat(";coat_roughness_anisotropy=0")];
+                for channel in 0..3 {
+                    let below = (found.reflected[channel] - stretched) * (1.0 - plain) / (1.0 - stretched);
+                    near(stretched + below, numbers[1 + channel], 0.01);
                 }
             }
             Coated::Fuzz => {
                 let closed = under_fuzz(&place, inputs, cosine);
                 for channel in 0..3 {
                     near(found.reflected[channel], closed[channel], 3e-3);
-                    near(found.reflected[channel], numbers[1 + channel], 0.02);
+                    near(found.reflected[channel], numbers[1 + channel], 0.015);
                 }
             }
         }
@@ -273,7 +288,8 @@ enum Bare {
     Oracle,
     /// The base below a gloss by the specification's albedo scaling: the oracle's takes less at grazing angles.
     Scaled,
-    /// What a coloured metal's facets scatter more than once: there a lobe of its own, here a factor (Turquin 2019).
+    /// What a coloured metal's facets scatter more than once: there a lobe of its own, over separable masking, here a factor
+    /// (Turquin 2019).
     Metal,
     /// The same of glass, which shares that otherwise between both sides: there a lobe of its own, here as what facets
     /// scatter once.
@@ -288,7 +304,7 @@ fn bare_held_to(name: &str, material: &MaterialSettings) -> Bare {
         "ior3.0" => Bare::Scaled,
         _ if name.starts_with("fuzz") => Bare::Fuzz,
         _ if name.starts_with("metal_gold") && material.roughness >= 0.6 => Bare::Metal,
-        _ if is_glass && material.roughness >= 0.3 => Bare::Glass,
+        _ if is_glass => Bare::Glass,
         _ => Bare::Oracle,
     }
 }
@@ -306,6 +322,26 @@ fn mean_fresnel(material: &MaterialSettings) -> [[f64; 3]; 2] {
         mean = [0, 1, 2].map(|channel| mean[channel] + 2.0 * cosine * there[channel] / STEPS as f64);
     }
     [mean, fresnel(&terms, 1.0).to_f64()]
+}
+
+/// The albedo of a rough metal with separable masking, by a sum over directions.
+fn separable_albedo(material: &MaterialSettings, cosine: f64) -> [f64; 3] {
+    const STEPS: usize = 96;
+    let evaluator = Evaluator::open(material, EngineChoice::Cpu, Precision::Double).unwrap();
+    let wo = direction(cosine.acos().to_degrees(), 0.0);
+    let middle = |step: usize| (step as f64 + 0.5) / STEPS as f64;
+    let cells = (0..STEPS * STEPS).map(|i| (middle(i / STEPS), 180.0 * middle(i % STEPS)));
+    let pairs: Vec<_> = cells
+        .map(|(height, phi)| [wo, direction(height.acos().to_degrees(), phi)])
+        .collect();
+    let alpha = f64::from(material.roughness).powi(2);
+    let mut sum = [0.0; 3];
+    for ([_, wi], found) in pairs.iter().zip(evaluator.evaluate(&pairs).unwrap()) {
+        // Both halves of the circle, per cell of equal solid angle.
+        let share = separable_over_correlated(alpha, [cosine, f64::from(wi.z)]) * TAU / pairs.len() as f64;
+        sum = [0, 1, 2].map(|channel| sum[channel] + share * found.value[channel]);
+    }
+    sum
 }
 
 #[test]
@@ -337,13 +373,18 @@ fn albedos_are_the_oracle_s() {
                 near("scaled", found.reflected[0], kept + 0.8 * (1.0 - kept), 2e-3);
             }
             Bare::Metal => {
-                let single = with("", true).reflected;
-                let white = with(";base_weight=1;base_color=1 1 1;specular_color=1 1 1", true).reflected[0];
+                let to_white = ";base_weight=1;base_color=1 1 1;specular_color=1 1 1";
+                let [single, white] = ["", to_white].map(|more| with(more, true).reflected);
+                let separable = |more: &str| {
+                    let material = self::material(&place, &format!("{inputs}{more}"), true);
+                    separable_albedo(&material, numbers[0])
+                };
+                let [there, white_there] = ["", to_white].map(separable);
                 let [mean, head_on] = mean_fresnel(&material);
                 for channel in 0..3 {
-                    let factor = 1.0 + head_on[channel] * (1.0 - white) / white;
+                    let factor = 1.0 + head_on[channel] * (1.0 - white[0]) / white[0];
                     near("factor", found.reflected[channel], single[channel] * factor, 3e-3);
-                    let lobe = single[channel] + mean[channel].powi(2) * (1.0 - white);
+                    let lobe = there[channel] + mean[channel].powi(2) * (1.0 - white_there[0]);
                     near("its own lobe", lobe, numbers[1 + channel], 5e-3);
                 }
             }
@@ -365,7 +406,8 @@ fn albedos_are_the_oracle_s() {
                 let closed = under_fuzz(&place, inputs, cosine);
                 for channel in 0..3 {
                     near("fuzz", found.reflected[channel], closed[channel], 3e-3);
-                    near("table of fuzz", found.reflected[channel], numbers[1 + channel], 0.02);
+                    // The fits leave the table by up to 0.0099, at roughness 0.7 head-on.
+                    near("table of fuzz", found.reflected[channel], numbers[1 + channel], 0.011);
                 }
             }
         }

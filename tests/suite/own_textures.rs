@@ -334,7 +334,7 @@ fn dressed(folder: &Folder) -> Document {
             channel: [TextureChannel::Red, TextureChannel::Green][number % 2],
             scale: 1.0 + number as f32,
             rotation_deg: 20.0 * number as f32,
-            strength: 0.4 + 0.05 * number as f32,
+            strength: 0.4 + 0.5 * number as f32 / TextureTarget::ALL.len() as f32,
             inverted: number % 3 == 1,
             ..UserTexture::default()
         };

@@ -63,28 +63,6 @@ fn a_white_metal_reflects_all_light_at_every_roughness() {
 }
 
 #[test]
-#[ignore]
-fn temporary_times() {
-    for rough in ["specular.roughness", "base.metalness"] {
-        for film in ["thin_film.weight=0", "thin_film.weight=1"] {
-            for step in 0..6 {
-                let value = format!("{rough}=0.{}", 31 + step);
-                let material = material(&[
-                    "base.metalness=0",
-                    "transmission.weight=1",
-                    "specular.roughness=0.4",
-                    film,
-                    &value,
-                ]);
-                let start = std::time::Instant::now();
-                let (_, tables) = glossmith::compile::compile(&[material]);
-                println!("{value} {film}: {:?} {}", start.elapsed(), tables.len());
-            }
-        }
-    }
-}
-
-#[test]
 fn the_gpu_keeps_all_light_too() {
     let metal = [
         "base.color=1,1,1",

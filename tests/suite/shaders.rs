@@ -13,6 +13,7 @@ use glossmith::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NOD
 use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
 use glossmith::optics::layer::base::BASE_EDGE;
 use glossmith::optics::layer::coat::INNER_MAX;
+use glossmith::optics::layer::fuzz;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::rough_diffuse;
@@ -263,6 +264,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("BASE_EDGE", BASE_EDGE),
         ("HEAD_ON", rough_diffuse::HEAD_ON),
         ("MEAN", rough_diffuse::MEAN),
+        ("FUZZ_ROUGHNESS_MIN", fuzz::FUZZ_ROUGHNESS_MIN),
         ("ROUGH_COSINE_MIN", rough_diffuse::ROUGH_COSINE_MIN),
         ("LARGEST_FILM_F0", thin_film::LARGEST_FILM_F0),
         ("LEAST_FILM_COSINE", thin_film::LEAST_FILM_COSINE),
