@@ -274,7 +274,7 @@ fn cast<T: Real>(alpha: Alpha<f64>) -> Alpha<T> {
 fn add<T: Real<Scalar = f32>>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
     let [r, g, b] = [energy.x.to_each(), energy.y.to_each(), energy.z.to_each()];
     for lane in 0..T::LANES {
-        *sum = *sum + Vec3::from_f32([r.as_ref()[lane], g.as_ref()[lane], b.as_ref()[lane]]);
+        *sum += Vec3::from_f32([r.as_ref()[lane], g.as_ref()[lane], b.as_ref()[lane]]);
     }
 }
 
