@@ -95,7 +95,8 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
     nodes.map(|x| x as f32).collect()
 }
 
-/// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine.
+/// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe over all
+/// azimuths of the view.
 fn node_means<const N: usize>(
     node: usize,
     is_inside: bool,
@@ -109,10 +110,18 @@ fn node_means<const N: usize>(
     let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
     // At exactly grazing the microfacet lobes are 0/0.
     let cosine = node_cosine(node, eta).max(1e-3);
-    let wo = vec3((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let is_stretched = shape.anisotropy != 0.0;
     let mut sums = [0.0; N];
     for i in 0..samples {
-        let [a, b, c, _] = even_point(i);
+        let [a, b, c, turn] = even_point(i);
+        let wo = match is_stretched {
+            true => {
+                let azimuth_rad = std::f64::consts::TAU * turn;
+                vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
+            }
+            false => vec3(sine, 0.0, cosine),
+        };
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         let factors = factors(half_vector_cosine(wo, drawn.wi));
         for (sum, factor) in sums.iter_mut().zip(factors) {

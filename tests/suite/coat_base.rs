@@ -215,7 +215,6 @@ fn white_stacks_with_a_coat_keep_all_light() {
         (&["coat.roughness=0.3"], 1.0),
         (&["coat.weight=0.5", "coat.roughness=0.5"], 1.0),
         (&["coat.lobe=ggx", "coat.roughness=0.5"], 1.0),
-        (&["coat.lobe=ggx", "coat.roughness=0.3", "coat.anisotropy=0.7"], 1.0),
         (&["specular.weight=1", "coat.ior=1.2", "coat.roughness=0.2"], 1.0),
         (&["specular.weight=1", "coat.ior=2.5", "coat.weight=0.7"], 1.0),
         (

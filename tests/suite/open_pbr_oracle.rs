@@ -355,7 +355,8 @@ fn albedos_are_the_oracle_s() {
         let with = |more: &str, is_single| albedo(&place, &format!("{inputs}{more}"), is_single, cosine).0;
         let (found, material) = albedo(&place, inputs, false, cosine);
         let mut near = |what: &str, found: f64, expected: f64, tolerance: f64| {
-            if !((found - expected).abs() < tolerance) {
+            let is_near = (found - expected).abs() < tolerance;
+            if !is_near {
                 faults.push(format!("{name} at {cells:?}, {what}: {found} for {expected}"));
             }
             (found - expected).abs()
