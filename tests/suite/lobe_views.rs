@@ -149,7 +149,7 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         (ViewKind::Polar, "lobe,view_angle_deg,angle_deg,value"),
         (ViewKind::Solid, "lobe,view_angle_deg,x,y,z,value"),
         (ViewKind::Hemisphere, "lobe,view_angle_deg,x,y,z,density"),
-        (ViewKind::Albedo, "lobe,view_angle_deg,albedo"),
+        (ViewKind::Albedo, "lobe,view_angle_deg,albedo,compensated"),
         (ViewKind::Reciprocity, "lobe,view_angle_deg,rms,max"),
         (ViewKind::Horizon, "lobe,view_angle_deg,fraction_below"),
         (ViewKind::Distance, "lobe,distance,density"),
