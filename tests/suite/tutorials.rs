@@ -111,6 +111,7 @@ fn names_of_the_window_that_the_pages_give_exist() {
         "src/optics",
         "src/scene/environment",
         "src/store",
+        "src/study",
     ] {
         literals(&root.join(folder), &mut sources);
     }
