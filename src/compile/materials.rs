@@ -428,10 +428,11 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
             // With a table over the roughness their difference counts.
             roughness: material.roughness,
             transmission_roughness: of_interface(material.transmission_roughness),
-            has_film: if transmits { key.material.has_film } else { 0 },
-            film_weight: of_interface(key.material.film_weight),
-            film_path: key.material.film_path * of_interface(1.0),
-            film_ior: of_interface(key.material.film_ior),
+            // Other than an albedo's, a table over the roughness has the film: it shares the light of each channel otherwise.
+            has_film: if transmits { material.has_film } else { 0 },
+            film_weight: of_interface(material.film_weight),
+            film_path: material.film_path * of_interface(1.0),
+            film_ior: of_interface(material.film_ior),
             ..key.material
         },
         holds: Holds::Energies,
