@@ -128,7 +128,8 @@ fn make_first(folder: &Path) {
         let mut harness: Editor = Harness::builder()
             .with_size(size.map(|side| side as f32))
             .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
-        settle(&mut harness);
+        // To its last sample it would take half an hour.
+        rest(&mut harness, 20.0);
         for theme in THEMES {
             rest(&mut harness, 3.0);
             write(&mut harness, &root().join("docs").join(path(FIRST, size, theme)));
