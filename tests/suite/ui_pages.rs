@@ -6,16 +6,14 @@ use std::time::{Duration, Instant};
 
 use egui::Vec2;
 use egui::accesskit::Role;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{Denoise, Document};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::store::examples::EXAMPLES;
 
-use super::ui::{Editor, options, request, see, see_label, settle, window_of};
+use super::ui::{Editor, request, see, see_label, settle, window_of};
 use super::ui_hands::{press, type_path};
 use super::ui_study::race_strategies;
 
@@ -27,8 +25,6 @@ const PAGES: [(&str, &[Pane]); 5] = [
     ("race", &[Pane::Queue, Pane::Race, Pane::Material, Pane::Inspector]),
     ("error", &[Pane::Presets, Pane::Race, Pane::Log, Pane::Convergence]),
 ];
-/// The window as it comes up for the first time.
-const FIRST: &str = "first";
 /// Width and height of the window, pixels.
 const SIZES: [[u32; 2]; 2] = [[1920, 1080], [1366, 768]];
 const THEMES: [&str; 2] = ["dark", "light"];
@@ -116,34 +112,11 @@ fn write(harness: &mut Editor, to: &Path) {
     window.write_with_encoder(encoder).expect("written");
 }
 
-fn make_first(folder: &Path) {
-    for size in SIZES {
-        let made = Options {
-            document: None,
-            workspace: None,
-            resolution: Some(Resolution::Auto),
-            data: Some(folder.join("first")),
-            ..options()
-        };
-        let mut harness: Editor = Harness::builder()
-            .with_size(size.map(|side| side as f32))
-            .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
-        // To its last sample it would take half an hour.
-        rest(&mut harness, 20.0);
-        for theme in THEMES {
-            rest(&mut harness, 3.0);
-            write(&mut harness, &root().join("docs").join(path(FIRST, size, theme)));
-            request(&mut harness, Action::Do(Command::ToggleTheme));
-        }
-    }
-}
-
 fn make_all() {
     // Its name is seen in the pictures.
     let folder = Path::new("target/panels");
     let _ = std::fs::remove_dir_all(folder);
     std::fs::create_dir_all(folder).expect("a folder");
-    make_first(folder);
     // The work takes minutes: it is done once.
     let mut harness = worked_in(folder, SIZES[0]);
     for size in SIZES {
@@ -178,7 +151,7 @@ fn every_panel_has_a_picture_at_each_size_and_in_each_theme() {
             pane.title()
         );
     }
-    for page in PAGES.iter().map(|(page, _)| *page).chain([FIRST]) {
+    for (page, _) in PAGES {
         for size in SIZES {
             for theme in THEMES {
                 let path = path(page, size, theme);
