@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use super::material::FILM_THICKNESS_MAX;
 use super::material::specular_color;
-use super::{CoatLobe, MaterialSettings, TextureUse};
+use super::{CoatLobe, MaterialSettings};
 use crate::named::named;
 use crate::optics::lobe::{Lobe, Width};
 use crate::optics::material::MATCHED_NODES;
@@ -98,22 +98,12 @@ impl MaterialSettings {
             ..Self::default()
         };
         lobe.of_slot(slot).apply(&mut material);
-        material.textures = TextureUse {
-            color: slot.texture(TextureTarget::BaseColor).is_some() || (slot.has_vertex_colors && !slot.is_unlit),
-            roughness: slot.texture(TextureTarget::Roughness).is_some(),
-            normal: slot.texture(TextureTarget::Normal).is_some(),
-            emission: slot.texture(TextureTarget::Emission).is_some() || (slot.has_vertex_colors && slot.is_unlit),
-            opacity: slot.alpha_mode != AlphaMode::Opaque,
-            coat: slot.texture(TextureTarget::Coat).is_some(),
-            coat_roughness: slot.texture(TextureTarget::CoatRoughness).is_some(),
-            coat_color: slot.texture(TextureTarget::CoatColor).is_some(),
-            coat_normal: slot.texture(TextureTarget::CoatNormal).is_some(),
-            film: slot.texture(TextureTarget::Film).is_some(),
-            film_thickness: slot.texture(TextureTarget::FilmThickness).is_some(),
-            fuzz: slot.texture(TextureTarget::Fuzz).is_some(),
-            fuzz_color: slot.texture(TextureTarget::FuzzColor).is_some(),
-            fuzz_roughness: slot.texture(TextureTarget::FuzzRoughness).is_some(),
-        };
+        for &target in TextureTarget::ALL {
+            *material.uses_texture_mut(target) |= slot.texture(target).is_some();
+        }
+        material.textures.color |= slot.has_vertex_colors && !slot.is_unlit;
+        material.textures.emission |= slot.has_vertex_colors && slot.is_unlit;
+        material.textures.opacity = slot.alpha_mode != AlphaMode::Opaque;
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
             material.opacity = unit(slot.opacity);

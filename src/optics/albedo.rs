@@ -95,6 +95,18 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
     nodes.map(|x| x as f32).collect()
 }
 
+/// A view of this cosine to the normal, in the surface's frame; turned about the normal by a share of a whole turn, if one
+/// is given.
+#[inline(always)]
+pub fn view_at<T: Real>(cosine: T, turn: Option<T>) -> Vec3<T> {
+    let sine = (T::one() - cosine * cosine).safe_sqrt();
+    let Some(turn) = turn else {
+        return vec3(sine, T::zero(), cosine);
+    };
+    let azimuth_rad = T::from_f64(std::f64::consts::TAU) * turn;
+    vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
+}
+
 /// Mean over a lobe, at a table node, of its weight times `factors` of the half vector's cosine; of a stretched lobe over all
 /// azimuths of the view.
 fn node_means<const N: usize>(
@@ -110,18 +122,11 @@ fn node_means<const N: usize>(
     let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
     // At exactly grazing the microfacet lobes are 0/0.
     let cosine = node_cosine(node, eta).max(1e-3);
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let is_stretched = shape.anisotropy != 0.0;
     let mut sums = [0.0; N];
     for i in 0..samples {
         let [a, b, c, turn] = even_point(i);
-        let wo = match is_stretched {
-            true => {
-                let azimuth_rad = std::f64::consts::TAU * turn;
-                vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
-            }
-            false => vec3(sine, 0.0, cosine),
-        };
+        let wo = view_at(cosine, is_stretched.then_some(turn));
         let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
         let factors = factors(half_vector_cosine(wo, drawn.wi));
         for (sum, factor) in sums.iter_mut().zip(factors) {

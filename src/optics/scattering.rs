@@ -9,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::albedo::{
-    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup,
+    ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup, view_at,
 };
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
 use super::lanes::{InLanes, in_lanes};
@@ -221,16 +221,15 @@ impl Kept<'_> {
         let is_stretched = self.alpha.x != self.alpha.y;
         let interface = self.clear.map(Interface::<T>::of);
         let cosine = T::from_f64(self.cosine);
-        let sine = (T::one() - cosine * cosine).safe_sqrt();
         let mut sums = [Vec3::zero(); 3];
         let mut first = 0;
         while first < count {
             let xi = [T::load(&across[first..]), T::load(&up[first..]), T::zero()];
-            let mut wo = vec3(sine, T::zero(), cosine);
-            if is_stretched {
-                let azimuth = T::from_f64(std::f64::consts::TAU) * T::load(&azimuths[first..]);
-                wo = vec3(sine * azimuth.cos(), sine * azimuth.sin(), cosine);
-            }
+            let turn = match is_stretched {
+                true => Some(T::load(&azimuths[first..])),
+                false => None,
+            };
+            let wo = view_at(cosine, turn);
             let h = visible_normal(alpha, wo, xi);
             let wi = wo.mirrored_about(h);
             let mirrored = smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);

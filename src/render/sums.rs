@@ -232,9 +232,12 @@ impl KeptFilm {
         let document = parse_document(path, document.as_bytes())?.value;
         let samples = ranges(&samples).ok_or_else(|| file.missing(SAMPLES))?;
         let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
-        // Files of before groups had sums know their names alone.
         let mut groups = without_what_is_off(&document).light_groups();
-        groups.retain(|name| file.find(&format!("{}.R.high", light_sums(*name, HALVES[0]))).is_some());
+        let has_sums = |name: &GroupName| file.find(&format!("{}.R.high", light_sums(*name, HALVES[0]))).is_some();
+        if !groups.iter().any(has_sums) {
+            // Older files have the names of their groups alone.
+            groups.clear();
+        }
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
             guides: file.find(&format!("{}samples", file.guides_of(HALVES[0]))).is_some(),

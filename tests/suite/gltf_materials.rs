@@ -92,8 +92,8 @@ fn a_stretched_highlight_has_the_widths_of_the_extension() {
     for (roughness, strength) in [(0.5, 0.0), (0.3, 0.1), (0.3, 0.6), (0.5, 0.9), (0.9, 1.0), (1.0, 0.7)] {
         let (material, model) = read(roughness, strength);
         has_widths(&material, roughness, strength);
-        let told = model.report.entries.iter().any(|entry| entry.what.contains("19 : 1"));
-        assert!(!told, "{roughness}, {strength}");
+        let is_cut = model.report.entries.iter().any(|entry| entry.what.contains("19 : 1"));
+        assert!(!is_cut, "{roughness}, {strength}");
     }
     // What is stretched more than any lobe of ours has the longer width.
     for (roughness, strength) in [(0.0, 0.5), (0.1, 0.5), (0.2, 1.0)] {
@@ -258,9 +258,9 @@ fn textures_of_sheens_and_fuzz_are_looked_up() {
     let texture = json!({"index": 0});
     let read = |extension: &str, numbers: Value| {
         let model = slot_of(&json!({"extensions": {extension: numbers}}));
-        let told = model.report.entries.iter().filter(|entry| entry.fate != Fate::Used);
+        let mut unused = model.report.entries.iter().filter(|entry| entry.fate != Fate::Used);
         assert!(
-            told.clone().all(|entry| !entry.what.contains("texture")),
+            unused.all(|entry| !entry.what.contains("texture")),
             "{:?}",
             model.report
         );

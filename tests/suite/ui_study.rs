@@ -39,13 +39,19 @@ fn race_kinds(harness: &mut Editor, changed: &[&str], seconds_each: f64) {
     harness.run_steps(2);
 }
 
-#[test]
-fn a_race_is_run_and_its_winner_taken() {
+/// An editor whose sphere is rendered.
+fn sphere_editor() -> Editor {
     let mut harness = editor_of(glossmith::app::Options {
         document: Some(sphere()),
         ..options()
     });
     settle(&mut harness);
+    harness
+}
+
+#[test]
+fn a_race_is_run_and_its_winner_taken() {
+    let mut harness = sphere_editor();
     race_strategies(&mut harness, 0.05);
     see_label(&mut harness, "Use Light sampling only");
     assert!(
@@ -64,11 +70,7 @@ fn a_race_is_run_and_its_winner_taken() {
 
 #[test]
 fn multiple_scattering_is_raced_in_the_window() {
-    let mut harness = editor_of(glossmith::app::Options {
-        document: Some(sphere()),
-        ..options()
-    });
-    settle(&mut harness);
+    let mut harness = sphere_editor();
     harness.state_mut().reveal(Pane::Race);
     harness.run_steps(2);
     let scattering = harness.get_by_role_and_label(Role::CheckBox, "Scattering between facets");
@@ -83,11 +85,7 @@ fn multiple_scattering_is_raced_in_the_window() {
 
 /// A window in which a race runs, so many seconds for each technique.
 fn racing(seconds: f64) -> Editor {
-    let mut harness = editor_of(glossmith::app::Options {
-        document: Some(sphere()),
-        ..options()
-    });
-    settle(&mut harness);
+    let mut harness = sphere_editor();
     harness.state_mut().reveal(Pane::Race);
     harness.run_steps(2);
     harness
@@ -126,11 +124,7 @@ fn a_study_that_ends_behind_another_panel_lets_the_viewport_go_on() {
 
 #[test]
 fn the_ledger_is_measured_on_demand() {
-    let mut harness = editor_of(glossmith::app::Options {
-        document: Some(sphere()),
-        ..options()
-    });
-    settle(&mut harness);
+    let mut harness = sphere_editor();
     // The command shows the panel as well.
     request(&mut harness, Action::Do(Command::Measure));
     // Nothing else is measured meanwhile.

@@ -12,6 +12,7 @@ use crate::optics::material::{
     COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::vector::Vec3;
+use crate::scene::texture::TextureTarget as On;
 
 /// Every effect, in the order of [`EffectId::ALL`].
 pub static EFFECTS: &[Effect] = &[
@@ -375,7 +376,7 @@ pub static EFFECTS: &[Effect] = &[
             let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_flag(VERTEX_BASE);
             facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
         },
-        remove: Some(|document| each_material(document, |material| material.textures.color = false)),
+        remove: Some(|document| without_textures(document, &[On::BaseColor])),
     },
     Effect {
         id: EffectId::RoughnessTexture,
@@ -385,7 +386,7 @@ pub static EFFECTS: &[Effect] = &[
             let is_looked_up = |m: &Material<f32>| [m.textures[1], m.metalness_texture] != [NO_TEXTURE; 2];
             facts.needed_by(is_looked_up, "takes its roughness from a texture")
         },
-        remove: Some(|document| each_material(document, |material| material.textures.roughness = false)),
+        remove: Some(|document| without_textures(document, &[On::Roughness])),
     },
     Effect {
         id: EffectId::RoughTables,
@@ -404,14 +405,14 @@ pub static EFFECTS: &[Effect] = &[
         label: "Normal maps",
         help: "Shading normals from normal maps.",
         decide: |facts| facts.needed_by(|m| m.textures[2] != NO_TEXTURE, "has a normal map"),
-        remove: Some(|document| each_material(document, |material| material.textures.normal = false)),
+        remove: Some(|document| without_textures(document, &[On::Normal])),
     },
     Effect {
         id: EffectId::EmissionTexture,
         label: "Emission textures",
         help: "Emission from textures.",
         decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
-        remove: Some(|document| each_material(document, |material| material.textures.emission = false)),
+        remove: Some(|document| without_textures(document, &[On::Emission])),
     },
     Effect {
         id: EffectId::VertexColors,
@@ -423,12 +424,7 @@ pub static EFFECTS: &[Effect] = &[
                 "shines or is clear by the colours of its vertices",
             )
         },
-        remove: Some(|document| {
-            each_material(document, |material| {
-                material.textures.emission = false;
-                material.textures.opacity = false;
-            });
-        }),
+        remove: Some(|document| without_textures(document, &[On::Emission, On::Opacity])),
     },
     Effect {
         id: EffectId::CoatTexture,
@@ -436,10 +432,8 @@ pub static EFFECTS: &[Effect] = &[
         help: "Weight, roughness and colour of coats from textures.",
         decide: |facts| facts.needed_by(Material::has_textured_coat, "has a texture of its coat"),
         remove: Some(|document| {
-            each_material(document, |material| {
-                let uses = &mut material.textures;
-                (uses.coat, uses.coat_roughness, uses.coat_color) = (false, false, false);
-            });
+            let of_coat = [On::Coat, On::CoatRoughness, On::CoatColor];
+            without_textures(document, &of_coat);
         }),
     },
     Effect {
@@ -447,18 +441,14 @@ pub static EFFECTS: &[Effect] = &[
         label: "Coat normal maps",
         help: "Normals of coats bent by a texture of their own.",
         decide: |facts| facts.needed_by(|m| m.coat_normal_texture != NO_TEXTURE, "bends the normals of its coat"),
-        remove: Some(|document| each_material(document, |material| material.textures.coat_normal = false)),
+        remove: Some(|document| without_textures(document, &[On::CoatNormal])),
     },
     Effect {
         id: EffectId::FilmTexture,
         label: "Thin film textures",
         help: "Weights and thicknesses of thin films from textures.",
         decide: |facts| facts.needed_by(Material::has_film_texture, "takes its thin film from a texture"),
-        remove: Some(|document| {
-            each_material(document, |material| {
-                (material.textures.film, material.textures.film_thickness) = (false, false);
-            });
-        }),
+        remove: Some(|document| without_textures(document, &[On::Film, On::FilmThickness])),
     },
     Effect {
         id: EffectId::FuzzTexture,
@@ -466,10 +456,8 @@ pub static EFFECTS: &[Effect] = &[
         help: "Weight, colour and roughness of fuzz from textures.",
         decide: |facts| facts.needed_by(Material::has_fuzz_texture, "has a texture of its fuzz"),
         remove: Some(|document| {
-            each_material(document, |material| {
-                let uses = &mut material.textures;
-                (uses.fuzz, uses.fuzz_color, uses.fuzz_roughness) = (false, false, false);
-            });
+            let of_fuzz = [On::Fuzz, On::FuzzColor, On::FuzzRoughness];
+            without_textures(document, &of_fuzz);
         }),
     },
     Effect {
@@ -592,4 +580,13 @@ pub static EFFECTS: &[Effect] = &[
 
 fn each_material(document: &mut Document, change: impl FnMut(&mut MaterialSettings)) {
     document.materials.iter_mut().for_each(change);
+}
+
+/// Switches off the textures on these targets.
+fn without_textures(document: &mut Document, targets: &[On]) {
+    each_material(document, |material| {
+        for target in targets {
+            *material.uses_texture_mut(*target) = false;
+        }
+    });
 }
