@@ -156,6 +156,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/long_passes.rs"]
+mod long_passes;
 #[path = "suite/look_of_ggx.rs"]
 mod look_of_ggx;
 #[path = "suite/lut.rs"]

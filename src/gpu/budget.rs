@@ -16,6 +16,12 @@ pub const FIRST_TILES: usize = 8;
 const TILES_FULL: f64 = 4096.0;
 /// Most samples per pixel of such a pass.
 const PASS_SAMPLES_MAX: u32 = 16;
+/// Loop iterations after which Mesa's software driver 22.3 leaves every loop of an invocation, without an error: the
+/// samples that are left would be missing, and the last one's rays would miss.
+const LOOP_ITERATIONS: u32 = 65_535;
+/// Loop iterations that one bounce may take, in all loops together. Measured: 40 per path of a glass teapot, 66 per camera
+/// ray that misses with all effects on; the rest is for models of many triangles.
+const BOUNCE_ITERATIONS: u32 = 256;
 /// Largest growth of samples from one dispatch to the next: an idle GPU's time for a few tiles says little about its time
 /// for many.
 const GROWTH: f64 = 4.0;
@@ -74,6 +80,11 @@ impl Budget {
     pub fn least_pass_samples(affordable: f64, done: u32) -> u32 {
         let fitting = affordable / (TILES_FULL * f64::from(TILE_SIDE * TILE_SIDE));
         (fitting as u32).min(done).clamp(1, PASS_SAMPLES_MAX)
+    }
+
+    /// Most samples per pixel of a pass on software Vulkan, for paths of so many bounces.
+    pub fn most_pass_samples(bounces: u32) -> u32 {
+        (LOOP_ITERATIONS / BOUNCE_ITERATIONS / bounces.saturating_add(1)).max(1)
     }
 
     /// Records a dispatch of `samples` pixel samples that took `took`.

@@ -156,7 +156,7 @@ impl GpuEngine {
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
             let affordable = self.budget.affordable(left);
-            let most = FLUSH_SAMPLES - self.unflushed;
+            let most = self.most_pass_samples();
             let least = Budget::least_pass_samples(affordable, self.schedule.samples_per_pixel());
             let limits = SliceLimits {
                 pass_samples: [least.min(most), most],
@@ -175,6 +175,17 @@ impl GpuEngine {
             }
         }
         Ok(())
+    }
+
+    /// Most samples per pixel of the next pass.
+    fn most_pass_samples(&self) -> u32 {
+        let until_flush = FLUSH_SAMPLES - self.unflushed;
+        match &self.resources {
+            Some(resources) if self.gpu.is_software() => {
+                until_flush.min(Budget::most_pass_samples(resources.job().settings.bounces))
+            }
+            _ => until_flush,
+        }
     }
 
     /// Renders a slice in one dispatch.
