@@ -49,7 +49,7 @@ fn document() -> Document {
     document.camera.fov_deg = 24.0;
     document.camera.target = Some([0.2, 1.3, 0.0]);
     document.view.denoise = Denoise::High;
-    document.render.samples = 32;
+    document.render.samples = 12;
     document
 }
 

@@ -12,3 +12,13 @@ pub mod status;
 pub(super) mod turntable;
 pub(super) mod unsaved;
 mod workspaces;
+
+use egui::Ui;
+
+/// Share of the window's height that long sheets scroll within.
+const SHEET_SHARE: f32 = 0.7;
+
+/// Largest height of what scrolls in a sheet, in points.
+fn scrolled_height(ui: &Ui) -> f32 {
+    SHEET_SHARE * ui.ctx().content_rect().height()
+}
