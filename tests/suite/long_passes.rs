@@ -38,6 +38,6 @@ fn small_pictures_get_all_their_samples() {
         let sum = |values: Vec<f64>| values.iter().sum::<f64>();
         let ratio = sum(film.luminance()) / sum(cpu.film().luminance());
         // Both engines trace the same paths; rounding moves a decision of a path now and then.
-        assert!((ratio - 1.0).abs() < 1e-4, "{side} pixels wide: {ratio}");
+        assert!((ratio - 1.0).abs() < 1e-3, "{side} pixels wide: {ratio}");
     }
 }
