@@ -86,7 +86,9 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
             more(ui, desk, &inside);
         }
         for (item, width) in ITEMS.into_iter().rev().filter(|(item, _)| inside.contains(item)) {
-            sized(ui, width, |ui| show_item(ui, desk, item));
+            // An identity that stays while others come and go with the room: a click under way would be lost.
+            let builder = UiBuilder::new().id(ui.id().with(("header", item as usize)));
+            ui.scope_builder(builder, |ui| sized(ui, width, |ui| show_item(ui, desk, item)));
         }
     });
 }
