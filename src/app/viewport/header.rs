@@ -87,7 +87,7 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
         }
         for (item, width) in ITEMS.into_iter().rev().filter(|(item, _)| inside.contains(item)) {
             // An identity that stays while others come and go with the room: a click under way would be lost.
-            let builder = UiBuilder::new().id(ui.id().with(("header", item as usize)));
+            let builder = UiBuilder::new().scope_id(ui.scope_id().with(("header", item as usize)));
             ui.scope_builder(builder, |ui| sized(ui, width, |ui| show_item(ui, desk, item)));
         }
     });
