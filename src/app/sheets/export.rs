@@ -5,7 +5,7 @@ use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui, vec2};
 use crate::app::book::EXPORT;
 use crate::app::kit::{theme, widgets};
 use crate::app::services::export::Ready;
-use crate::app::sheets::{book, scrolled_height};
+use crate::app::sheets::{book, scrolled};
 use crate::render::looks::Compared;
 use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
@@ -67,13 +67,11 @@ impl ExportSheet {
             let report = &ready.prepared.report;
             ui.label(report.output.display().to_string());
             ui.add_space(theme::GAP);
-            egui::ScrollArea::vertical()
-                .max_height(scrolled_height(ui))
-                .show(ui, |ui| {
-                    for (material, textures) in report.materials.iter().zip(&self.textures) {
-                        material_rows(ui, material, textures.as_ref());
-                    }
-                });
+            scrolled(ui, |ui| {
+                for (material, textures) in report.materials.iter().zip(&self.textures) {
+                    material_rows(ui, material, textures.as_ref());
+                }
+            });
             ui.add_space(theme::GAP);
             ui.horizontal(|ui| {
                 if ui.button("Write the file").clicked() {

@@ -5,7 +5,7 @@ use egui::{Align, Layout, RichText, Ui};
 use crate::app::actions::Action;
 use crate::app::book::MODEL_FILE;
 use crate::app::kit::{theme, widgets};
-use crate::app::sheets::{book, scrolled_height};
+use crate::app::sheets::{book, scrolled};
 use crate::document::of_model::import_report;
 use crate::document::{Document, ImportLobe};
 use crate::scene::{Fate, ImportReport, Model, ModelOptions};
@@ -94,34 +94,32 @@ fn entries(ui: &mut Ui, report: &ImportReport) {
         widgets::note(ui, "Built-in model: no import report.");
         return;
     }
-    egui::ScrollArea::vertical()
-        .max_height(scrolled_height(ui))
-        .show(ui, |ui| {
-            for &fate in Fate::ALL.iter().rev() {
-                let mut entries = report.of(fate).peekable();
-                if entries.peek().is_none() {
-                    continue;
-                }
-                ui.add_space(4.0);
-                ui.label(RichText::new(capital(fate.label())).strong());
-                egui::Grid::new(fate.label())
-                    .num_columns(2)
-                    .spacing([12.0, 3.0])
-                    .show(ui, |ui| {
-                        for entry in entries {
-                            ui.label(format!("{} ×", entry.count));
-                            let names = entry.names.join(", ");
-                            let text = if names.is_empty() {
-                                entry.what.clone()
-                            } else {
-                                format!("{}: {names}", entry.what)
-                            };
-                            ui.add(egui::Label::new(text).wrap());
-                            ui.end_row();
-                        }
-                    });
+    scrolled(ui, |ui| {
+        for &fate in Fate::ALL.iter().rev() {
+            let mut entries = report.of(fate).peekable();
+            if entries.peek().is_none() {
+                continue;
             }
-        });
+            ui.add_space(4.0);
+            ui.label(RichText::new(capital(fate.label())).strong());
+            egui::Grid::new(fate.label())
+                .num_columns(2)
+                .spacing([12.0, 3.0])
+                .show(ui, |ui| {
+                    for entry in entries {
+                        ui.label(format!("{} ×", entry.count));
+                        let names = entry.names.join(", ");
+                        let text = if names.is_empty() {
+                            entry.what.clone()
+                        } else {
+                            format!("{}: {names}", entry.what)
+                        };
+                        ui.add(egui::Label::new(text).wrap());
+                        ui.end_row();
+                    }
+                });
+        }
+    });
 }
 
 /// With a capital first letter.

@@ -10,7 +10,7 @@ use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::palette::{self, Findable};
-use crate::app::sheets::{import, scrolled_height, workspaces};
+use crate::app::sheets::{import, scrolled, workspaces};
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
@@ -251,27 +251,25 @@ fn shortcuts(ui: &mut Ui) {
     ui.set_width(440.0);
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
-    egui::ScrollArea::vertical()
-        .max_height(scrolled_height(ui))
-        .show(ui, |ui| {
-            egui::Grid::new("keys")
-                .num_columns(2)
-                .spacing(vec2(24.0, 5.0))
-                .show(ui, |ui| {
-                    for (how, what) in MOUSE {
-                        ui.label(RichText::new(how).strong());
-                        ui.label(what);
+    scrolled(ui, |ui| {
+        egui::Grid::new("keys")
+            .num_columns(2)
+            .spacing(vec2(24.0, 5.0))
+            .show(ui, |ui| {
+                for (how, what) in MOUSE {
+                    ui.label(RichText::new(how).strong());
+                    ui.label(what);
+                    ui.end_row();
+                }
+                for command in Command::ALL {
+                    if let Some(shortcut) = command.shortcut() {
+                        ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
+                        ui.label(command.label());
                         ui.end_row();
                     }
-                    for command in Command::ALL {
-                        if let Some(shortcut) = command.shortcut() {
-                            ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
-                            ui.label(command.label());
-                            ui.end_row();
-                        }
-                    }
-                });
-        });
+                }
+            });
+    });
     ui.add_space(theme::GAP);
     if ui.button("Close").clicked() {
         ui.close();
@@ -303,11 +301,9 @@ fn path(ui: &mut Ui, text: &str) {
     ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
     ui.heading("Path trace of this pixel");
     ui.add_space(theme::GAP);
-    egui::ScrollArea::vertical()
-        .max_height(scrolled_height(ui))
-        .show(ui, |ui| {
-            ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
-        });
+    scrolled(ui, |ui| {
+        ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+    });
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
         if ui.button("Copy").on_hover_text("Copies the account as text.").clicked() {

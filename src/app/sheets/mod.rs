@@ -18,7 +18,8 @@ use egui::Ui;
 /// Share of the window's height that long sheets scroll within.
 const SHEET_SHARE: f32 = 0.7;
 
-/// Largest height of what scrolls in a sheet, in points.
-fn scrolled_height(ui: &Ui) -> f32 {
-    SHEET_SHARE * ui.ctx().content_rect().height()
+/// Contents of a sheet, which scroll where the window has no room for them.
+fn scrolled(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    let height = SHEET_SHARE * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().max_height(height).show(ui, contents);
 }

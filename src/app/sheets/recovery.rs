@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use crate::app::kit::{theme, widgets};
 use crate::app::services::autosave::Leftover;
-use crate::app::sheets::scrolled_height;
+use crate::app::sheets::scrolled;
 use crate::store::recovery::{Recovered, Report};
 
 /// What is to be done with a leftover.
@@ -28,17 +28,15 @@ pub(in crate::app) fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usiz
         ui.heading("Glossmith crashed");
         widgets::note(ui, "Everything had been saved.");
     }
-    egui::ScrollArea::vertical()
-        .max_height(scrolled_height(ui))
-        .show(ui, |ui| {
-            for (at, leftover) in leftovers.iter().enumerate() {
-                ui.add_space(theme::GAP);
-                ui.separator();
-                if let Some(choice) = row(ui, leftover, at == 0) {
-                    chosen = Some((at, choice));
-                }
+    scrolled(ui, |ui| {
+        for (at, leftover) in leftovers.iter().enumerate() {
+            ui.add_space(theme::GAP);
+            ui.separator();
+            if let Some(choice) = row(ui, leftover, at == 0) {
+                chosen = Some((at, choice));
             }
-        });
+        }
+    });
     ui.add_space(theme::GAP);
     ui.separator();
     let later = ui.button("Later").on_hover_text("Asks again at the next start.");
