@@ -53,7 +53,7 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
     report.note(Fate::Used, "meshes", "");
     Ok(Model {
         mesh,
-        slots: vec![Slot::neutral("default")],
+        slots: vec![Slot::clay()],
         report,
         ..Model::default()
     })

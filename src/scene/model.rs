@@ -380,6 +380,19 @@ impl Slot {
         }
     }
 
+    /// The clay of surfaces to which a file gives no material.
+    pub fn clay() -> Self {
+        Self::neutral("Clay")
+    }
+
+    /// Has the surface coloured by its vertices. Clay has no other colour then.
+    pub fn color_by_vertices(&mut self) {
+        if *self == Self::clay() {
+            self.base_color = [1.0; 3];
+        }
+        self.has_vertex_colors = true;
+    }
+
     /// The texture that a target looks up.
     pub fn texture(&self, target: TextureTarget) -> Option<TextureRef> {
         let is_looked_up = target != TextureTarget::Opacity || self.alpha_mode != AlphaMode::Opaque;

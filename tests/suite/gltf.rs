@@ -38,7 +38,7 @@ fn a_square_is_read_as_it_is() {
     );
     assert_eq!(
         (model.slots.len(), model.slots[0].metalness, model.slots[0].roughness),
-        (1, 1.0, 1.0)
+        (1, 0.0, 0.5)
     );
     assert!(model.report.is_clean(), "{:?}", model.report);
 }
@@ -271,7 +271,7 @@ fn materials_and_textures_become_slots() {
     let [lamp, default] = &model.slots[..] else {
         panic!("two slots, not {}", model.slots.len())
     };
-    assert_eq!((lamp.name.as_str(), default.name.as_str()), ("Lamp", "default"));
+    assert_eq!((lamp.name.as_str(), default.name.as_str()), ("Lamp", "Clay"));
     assert_eq!(
         (lamp.base_color, lamp.metalness, lamp.roughness),
         ([0.5, 0.25, 1.0], 0.125, 0.375)

@@ -4,6 +4,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3};
+use glossmith::document::ImportLobe;
+use glossmith::document::of_model::materials_of;
 use glossmith::import::load;
 use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Entry, Fate, Geometry, Model, ModelSource, Wrap};
@@ -212,6 +214,50 @@ fn names_in_latin_1_are_found() {
         let model = folder.load("m.obj", text).expect("loads");
         assert_eq!(model.slots[0].name, "Blå", "{is_latin}: {:?}", model.report);
         assert_eq!(model.textures.len(), 1, "{is_latin}: {:?}", model.report);
+    }
+}
+
+/// Surfaces without a material are clay in every format. What is coloured by its vertices has no other colour.
+#[test]
+fn surfaces_without_a_material_are_clay() {
+    let folder = Folder::new();
+    let (mut buffer, bare) = square();
+    let mut colored = bare.clone();
+    colored["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = buffer.floats(&[[1.0, 0.5, 0.0]; 4]).into();
+    for key in ["bufferViews", "accessors", "buffers"] {
+        colored[key] = buffer.document(bare["meshes"][0]["primitives"].clone())[key].clone();
+    }
+    let obj = |color: &str| {
+        let corners = ["0 0 0", "1 0 0", "0 1 0"].map(|place| format!("v {place}{color}\n"));
+        format!("{}f 1 2 3\n", corners.concat()).into_bytes()
+    };
+    let stl = b"solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid s\n";
+    let ply = |color: &str, value: &str| {
+        let corners = ["0 0 0", "1 0 0", "0 1 0"]
+            .map(|place| format!("{place}{value}\n"))
+            .concat();
+        let places = "property float x\nproperty float y\nproperty float z\n";
+        let faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        format!("ply\nformat ascii 1.0\nelement vertex 3\n{places}{color}{faces}{corners}3 0 1 2\n").into_bytes()
+    };
+    let channels = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    for (name, bytes, is_colored) in [
+        ("bare.glb", glb(&bare, &buffer.bytes), false),
+        ("colored.glb", glb(&colored, &buffer.bytes), true),
+        ("bare.obj", obj(""), false),
+        ("colored.obj", obj(" 1 0.5 0"), true),
+        ("bare.stl", stl.to_vec(), false),
+        ("bare.ply", ply("", ""), false),
+        ("colored.ply", ply(channels, " 255 128 0"), true),
+    ] {
+        let model = folder.load(name, &bytes).expect(name);
+        let [material] = &materials_of(&model, ImportLobe::Ggx)[..] else {
+            panic!("{name}: one material")
+        };
+        let color = if is_colored { [1.0; 3] } else { [0.6; 3] };
+        let found = (material.name.as_str(), material.metalness, material.base_color);
+        assert_eq!(found, ("Clay", 0.0, color), "{name}");
+        assert_eq!(model.slots[0].has_vertex_colors, is_colored, "{name}");
     }
 }
 

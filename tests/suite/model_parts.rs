@@ -201,11 +201,7 @@ fn files_are_read_again_unless_they_are_broken() {
     document["materials"] = json!([{"name": "New"}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
     std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
-    assert_eq!(
-        assets.model(&source, &options).unwrap().slots[0].name,
-        "default",
-        "kept"
-    );
+    assert_eq!(assets.model(&source, &options).unwrap().slots[0].name, "Clay", "kept");
     let again = reload().expect("it is whole");
     assert_eq!(again.before.as_deref(), Some(&*first));
     assert_eq!(again.model.slots[0].name, "New");

@@ -5,30 +5,17 @@ use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::actions::{Action, Command};
+use crate::document::MaterialSettings;
 use crate::document::of_model::{lights_left_out, materials_of};
-use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelOptions, ModelSource, Slot};
+use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::examples::still_life;
 
-/// What the material of surfaces without one is called.
-const CLAY: &str = "Clay";
 /// What an edit is called that changes the model, before the model's name.
 const MODEL_CHANGED: &str = "Change the model to";
 /// What an edit is called that changes the environment.
 pub(in crate::app) const ENVIRONMENT_CHANGED: &str = "Change the environment";
-
-/// The materials of a model's slots; surfaces without one are clay, where the format's default would be white metal.
-fn shown_materials(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
-    let mut materials = materials_of(model, lobe);
-    for (slot, material) in model.slots.iter().zip(&mut materials) {
-        if *slot == Slot::default() {
-            *material = MaterialSettings::from_slot(&Slot::neutral(CLAY), lobe);
-        }
-    }
-    materials
-}
 
 impl App {
     /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
@@ -37,7 +24,7 @@ impl App {
         let is_shown_anew = self.document.model == source && self.document.import != options;
         let edited = self.desk_material();
         let before = std::mem::take(&mut self.document.materials);
-        self.document.materials = shown_materials(model, self.shared.import_lobe);
+        self.document.materials = materials_of(model, self.shared.import_lobe);
         if is_shown_anew {
             self.keep_edits(before);
         } else if source == ModelSource::StillLife {
@@ -84,7 +71,7 @@ impl App {
             return;
         }
         let lobe = self.shared.import_lobe;
-        let (old, mut materials) = (shown_materials(&before, lobe), shown_materials(&model, lobe));
+        let (old, mut materials) = (materials_of(&before, lobe), materials_of(&model, lobe));
         for material in &mut materials {
             let place = old.iter().position(|known| known.name == material.name);
             let edited = place.and_then(|place| Some((&old[place], self.document.materials.get(place)?)));

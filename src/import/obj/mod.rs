@@ -60,7 +60,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
         let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
         read.make_tangents(texture_from_uv, normal_texture.is_some(), &files.import.loading);
         if !read.colors.is_empty() {
-            slots.slots[slot as usize].has_vertex_colors = true;
+            slots.slots[slot as usize].color_by_vertices();
             report.note(Fate::Used, "vertex colours", &part.name);
         }
         let vertices = part.mesh.positions.len() / 3;
@@ -222,7 +222,7 @@ impl<'a> Slots<'a> {
         }
         let slot = match self.materials.get(place) {
             Some(material) => self.read(material, report),
-            None => Slot::neutral("default"),
+            None => Slot::clay(),
         };
         self.slots.push(slot);
         let index = self.slots.len() as u32 - 1;

@@ -120,11 +120,11 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
         loading.check()?;
     }
     let (vertices, faces) = read.map_err(invalid)?;
-    let mut slot = Slot::neutral("default");
+    let mut slot = Slot::clay();
     loading.step("normals and tangents")?;
     let mesh = assemble(&vertices, &faces, &mut report, loading);
     if !mesh.colors.is_empty() {
-        (slot.base_color, slot.has_vertex_colors) = ([1.0; 3], true);
+        slot.color_by_vertices();
         report.note(Fate::Used, "vertex colours", "");
     }
     report.note(Fate::Used, "meshes", "");

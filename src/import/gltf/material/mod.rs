@@ -181,10 +181,12 @@ impl<'a> Materials<'a> {
             return slot;
         }
         let slot = self.slots.len();
-        self.slots.push((Slot::default(), UvUse::default()));
+        self.slots.push((Slot::clay(), UvUse::default()));
         if let Some(index) = material {
             self.slots[slot] = self.read(index, slot);
             self.report.note(Fate::Used, "materials", &self.slots[slot].0.name);
+        } else {
+            self.report.note(Fate::Used, "surfaces without a material, as clay", "");
         }
         self.slot_of.insert(material, slot as u32);
         slot as u32
@@ -204,7 +206,7 @@ impl<'a> Materials<'a> {
     /// Says that a mesh with this slot has colours at its vertices, with an alpha below 1 or without.
     pub fn has_vertex_colors(&mut self, slot: u32, has_alpha: bool) {
         let slot = &mut self.slots[slot as usize].0;
-        slot.has_vertex_colors = true;
+        slot.color_by_vertices();
         slot.has_vertex_alpha |= has_alpha;
     }
 
