@@ -4,11 +4,14 @@ use glossmith::document::{CoatLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
+use glossmith::optics::vector::Vec3;
+use glossmith::render::{EngineChoice, Precision};
 use glossmith::scene::ModelSource;
 use glossmith::scene::texture::TextureTarget;
 use glossmith::store::exchange::report::Outcome;
 use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
 use glossmith::store::{load_material, save_document, save_material};
+use glossmith::study::evaluate::Evaluator;
 use serde_json::Value as Json;
 
 use crate::cli_support::Workplace;
@@ -151,6 +154,51 @@ fn what_a_coat_does_to_the_base_is_in_open_pbr() {
     plain.keep_below_coat();
     assert!(report_of(&plain, "mtlx").contains("share in the base"));
     assert!(!report_of(&plain, "xml").contains("what the coat changes below it"));
+}
+
+/// A coat that leaves the base as it is looks the same in OpenPBR, whose coat changes the base's index and roughness.
+#[test]
+fn a_coat_that_leaves_the_base_looks_the_same_in_open_pbr() {
+    let place = Workplace::new();
+    let cosines = [1.0_f64, 0.7, 0.3];
+    for (coat_weight, metalness) in [(1.0, 0.0), (0.6, 0.0), (1.0, 1.0)] {
+        let mut material = MaterialSettings {
+            lobe: Lobe::Ggx,
+            fresnel: Fresnel::Dielectric,
+            base_color: [0.42, 0.008, 0.012],
+            metalness,
+            roughness: 0.35,
+            coat_weight,
+            coat_lobe: CoatLobe::Ggx,
+            coat_roughness: 0.2,
+            ..MaterialSettings::default()
+        };
+        material.keep_below_coat();
+        save_material(&place.path("a.json"), &material).unwrap();
+        place.done("convert a.json a.mtlx");
+        place.done("convert a.mtlx b.json --without-exact --import-lobe ggx");
+        let back = load_material(&place.path("b.json")).unwrap().value;
+        assert!(back.coat_on_base && back.roughness < material.roughness, "{back:?}");
+        let pairs: Vec<_> = cosines
+            .iter()
+            .map(|&cosine| {
+                let sine = (1.0 - cosine * cosine).sqrt();
+                [[sine, 0.0, cosine], [-sine, 0.0, cosine]].map(Vec3::from_f64)
+            })
+            .collect();
+        let [before, after] = [&material, &back].map(|material| {
+            let evaluator = Evaluator::open(material, EngineChoice::Cpu, Precision::Double).unwrap();
+            evaluator.evaluate(&pairs).unwrap()
+        });
+        for (before, after) in before.iter().zip(&after) {
+            for (before, after) in before.value.iter().zip(after.value) {
+                assert!(
+                    (before / after - 1.0).abs() < 1e-3,
+                    "{coat_weight}, {metalness}: {before}, {after}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

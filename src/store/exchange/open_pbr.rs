@@ -63,6 +63,9 @@ impl Takes {
 /// The inputs with their values.
 pub(super) fn inputs(surface: &Surface) -> Vec<(&'static str, Value)> {
     use Value::{Color, Number};
+    let mut surface = surface.clone();
+    surface.counter_coat();
+    let surface = &surface;
     let (roughness, anisotropy) = roughness_and_anisotropy(surface);
     let coat_ratio = surface.coat_ratio();
     let (coat_roughness, coat_anisotropy) = (

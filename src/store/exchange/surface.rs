@@ -187,7 +187,7 @@ fn unit(x: f32) -> f32 {
 }
 
 /// To the digits that a file is read by people with.
-fn rounded(x: f32) -> f32 {
+pub(super) fn rounded(x: f32) -> f32 {
     ((f64::from(x) * 1e5).round() / 1e5) as f32
 }
 
