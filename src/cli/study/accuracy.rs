@@ -73,6 +73,12 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         cache: arguments.cache.cache(),
         ..RaceOptions::new(common.scene.engine, runners)
     };
+    message!(
+        "up to {} techniques race for {} s each, after references that take up to {} s each",
+        options.techniques.len() + 1,
+        options.seconds,
+        options.reference_seconds
+    );
     let found = {
         let bar = Bar::new()?;
         race(&document, &options, &mut |progress| bar.show(progress))?
