@@ -54,7 +54,7 @@ bench: ## Measure what docs/PERFORMANCE.md quotes
 	cargo bench $(ARGS)
 
 pictures: ## Make the images of the documentation again (GLOSSMITH=PROGRAM takes a build that is there)
-	@scripts/setup run
+	@scripts/setup pictures
 	scripts/pictures
 
 mutants: ## Mutation testing (MINUTES=60 SEED=1; docs/MUTANTS.md)
