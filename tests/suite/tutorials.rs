@@ -429,7 +429,8 @@ fn automate_it() {
     );
     for call in calls {
         let run = place.done(&call);
-        if run.stdout.is_empty() {
+        let answers = call.starts_with("batch") || call.contains("--json");
+        if !answers {
             continue;
         }
         let lines: Vec<Value> = match call.starts_with("batch") {
