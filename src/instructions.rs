@@ -59,7 +59,7 @@ impl Instructions {
 /// The instructions to compute with: those asked for, else the best there are.
 #[inline]
 pub fn level() -> Level {
-    *ASKED_FOR.get_or_init(best)
+    *ASKED_FOR.get_or_init(Level::new)
 }
 
 /// Name of the instruction set in use.
@@ -69,17 +69,6 @@ pub fn instruction_set() -> &'static str {
         found.is_some_and(|found| std::mem::discriminant(&found) == std::mem::discriminant(&level()))
     };
     Instructions::ALL.iter().find(is_it).map_or("", |choice| choice.name())
-}
-
-/// The best instruction set of this processor that the build has. Builds for tests leave AVX-512 out unless the feature
-/// `every-level` is on: it takes a compilation of the whole engine more.
-fn best() -> Level {
-    let best = Level::new();
-    #[cfg(all(target_arch = "x86_64", debug_assertions, not(feature = "every-level")))]
-    if let Some(avx2) = best.as_avx2() {
-        return Level::Avx2(avx2);
-    }
-    best
 }
 
 /// The names of the instruction sets that this processor has.

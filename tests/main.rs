@@ -1,6 +1,23 @@
 //! The integration tests, in one binary: see docs/ARCHITECTURE.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+use std::sync::LazyLock;
+
+/// The repository's folder.
+pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// Path of the program, which `cargo build --release` leaves beside the tests.
+pub fn program() -> &'static str {
+    static PROGRAM: LazyLock<String> = LazyLock::new(|| {
+        let tests = std::env::current_exe().expect("this program has a path");
+        let folder = tests.ancestors().nth(2).expect("tests lie in deps");
+        let program = folder.join(format!("glossmith{}", std::env::consts::EXE_SUFFIX));
+        assert!(program.is_file(), "{} is missing: run cargo build --release", program.display());
+        program.to_str().expect("a path in UTF-8").to_owned()
+    });
+    &PROGRAM
+}
+
 #[path = "suite/analytic.rs"]
 mod analytic;
 #[path = "suite/analytic_bodies.rs"]

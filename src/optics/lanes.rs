@@ -23,7 +23,7 @@ pub trait InLanes {
 /// Does something with numbers in lanes, computed by the instruction set of `level`.
 pub fn in_lanes<I: InLanes>(level: Level, what: I) -> I::Output {
     match level {
-        #[cfg(all(target_arch = "x86_64", any(feature = "every-level", not(debug_assertions))))]
+        #[cfg(target_arch = "x86_64")]
         Level::Avx512(_) => what.run::<sixteen::Lanes<fearless_simd::Avx512>>(),
         // Sixteen lanes would take two of AVX2's sixteen registers each, too few for shading.
         #[cfg(target_arch = "x86_64")]
@@ -305,5 +305,4 @@ macro_rules! lanes {
 }
 
 lanes!(eight: 8 f32x8 i32x8 u32x8 mask32x8);
-#[cfg(any(target_arch = "aarch64", feature = "every-level", not(debug_assertions)))]
 lanes!(sixteen: 16 f32x16 i32x16 u32x16 mask32x16);

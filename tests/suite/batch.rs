@@ -94,7 +94,7 @@ fn a_batch_that_was_killed_goes_on_where_it_was() {
         format!("materials = [\"gold\", \"silver\", \"car-paint-red\"]\nframes = 2\nformats = [\"exr\"]\n{SMALL}");
     place.write("a.toml", text.as_bytes());
     place.done("batch a.toml --engine cpu --folder whole");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+    let mut child = Command::new(crate::program())
         .args(["batch", "a.toml", "--engine", "cpu"])
         .current_dir(place.path(""))
         .stdout(Stdio::piped())

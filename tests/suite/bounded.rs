@@ -27,7 +27,7 @@ struct Taken {
 /// Runs the program, and measures it.
 fn run(place: &Workplace, arguments: &str, memory_mib: Option<u64>) -> Taken {
     let words = std::fs::File::create(place.path("words.txt")).unwrap();
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"));
+    let mut command = std::process::Command::new(crate::program());
     command.args(arguments.split_whitespace()).current_dir(place.path(""));
     command
         .env_remove("DISPLAY")

@@ -59,7 +59,7 @@ fn a_limit_of_the_process_is_seen() {
     let place = Workplace::new();
     let command = format!(
         "ulimit -v 3000000; exec '{}' render --model sphere --engine cpu --size 16000x16000 --samples 1 --output a.exr",
-        env!("CARGO_BIN_EXE_glossmith")
+        crate::program()
     );
     let output = std::process::Command::new("sh")
         .args(["-c", &command])
@@ -102,7 +102,7 @@ fn names_that_are_no_unicode_are_written() {
         ("convert --without-exact", "gold", &b"c\xff.mtlx"[..]),
     ] {
         let name = std::ffi::OsStr::from_bytes(bytes);
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = std::process::Command::new(crate::program())
             .args(command.split_whitespace())
             .arg(option)
             .arg(name)
@@ -130,7 +130,7 @@ fn textures_whose_names_are_no_unicode_are_read() {
         .unwrap();
     for before in ["", "1:", "base-color=", "1:base-color="] {
         let argument = [before.as_bytes(), name.as_bytes()].concat();
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = std::process::Command::new(crate::program())
             .args("render --model sphere --engine cpu --size 8x8 --samples 1 --output a.png --report a.json".split(' '))
             .arg("--texture")
             .arg(std::ffi::OsStr::from_bytes(&argument))
@@ -161,7 +161,7 @@ fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
     let text = "models = [\"m.obj\"]\nmaterials = [\"mine.json\"]\nenvironments = [\"l.hdr\"]\n[common]\nsize = \"8x8\"\nsamples = 1\n";
     std::fs::write(folder.join("b.toml"), text).unwrap();
     let batch = |out: &[u8]| {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = std::process::Command::new(crate::program())
             .args(["batch", "--engine", "cpu"])
             .arg(folder.join("b.toml"))
             .arg("--folder")
@@ -195,7 +195,7 @@ fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
     let render = |option: &str, name: &str| {
         let mut argument = std::ffi::OsString::from(format!("{option}="));
         argument.push(folder.join(name));
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = std::process::Command::new(crate::program())
             .args("render --engine cpu --size 8x8 --samples 1 --output a.png".split(' '))
             .arg(argument)
             .current_dir(place.path(""))

@@ -105,7 +105,7 @@ impl Module {
 }
 
 fn modules() -> Modules {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let src = Path::new(crate::ROOT).join("src");
     let of_file = |file: &Path| {
         let below = file.strip_prefix(&src).unwrap().with_extension("");
         let mut path: Vec<String> = below.iter().map(|part| part.to_str().unwrap().to_owned()).collect();

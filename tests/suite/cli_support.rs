@@ -62,7 +62,7 @@ impl Workplace {
 
     /// Runs the program with arguments that have blanks between them, without a display.
     pub fn run(&self, arguments: &str) -> Run {
-        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = Command::new(crate::program())
             .args(arguments.split_whitespace())
             .current_dir(self.0.path())
             .env_remove("DISPLAY")

@@ -492,7 +492,7 @@ fn setup_says_what_it_would_take_and_keeps_to_a_no() {
     let place = Workplace::new();
     let data = place.path("data");
     let setup = |purpose: &str| {
-        let output = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/setup"))
+        let output = Command::new(Path::new(crate::ROOT).join("scripts/setup"))
             .args([purpose, "--dry-run"])
             .env("XDG_DATA_HOME", &data)
             .env_remove("GLOSSMITH_OIDN")

@@ -116,7 +116,7 @@ fn a_library_that_goes_is_missed_in_a_line() {
     let run = |report: &str| {
         let arguments =
             format!("render --engine cpu --size 8x8 --samples 2 --denoise fast --report {report} --output a.png");
-        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = Command::new(crate::program())
             .args(arguments.split(' '))
             .current_dir(place.path("."))
             .env("GLOSSMITH_OIDN", &folder)

@@ -26,7 +26,7 @@ fn a_library_that_cannot_be_used_is_told_in_a_line() {
         ("old", "Open Image Denoise 2.1.0 is too old"),
     ];
     for (name, words) in cases {
-        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = Command::new(crate::program())
             .args("render --engine cpu --size 8x8 --samples 2 --denoise fast --report r.json --output a.png".split(' '))
             .current_dir(place.path("."))
             .env("GLOSSMITH_OIDN", place.path(name))
@@ -74,7 +74,7 @@ fn the_gpu_denoises_and_the_cpu_takes_over_where_it_fails() {
     // Whether the image is red, and what was said.
     let reddened = |library: &Path, device: &str| {
         let arguments = "render --engine cpu --model plane --environment furnace --environment-strength 0.2 --size 8x8";
-        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = Command::new(crate::program())
             .args(arguments.split(' '))
             .args([
                 "--samples",

@@ -82,7 +82,7 @@ impl Desktop {
     pub fn start(&self, files: &[&Path], log: &str) -> Window<'_> {
         let log = self.path(log);
         let program = started(
-            Command::new(env!("CARGO_BIN_EXE_glossmith"))
+            Command::new(crate::program())
                 .args(["--engine", "cpu"])
                 .args(files)
                 .current_dir(self.home.path())

@@ -9,7 +9,7 @@ use glossmith::document::{PARAMETERS, SETTINGS};
 use super::docs_tables::written;
 
 pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(crate::ROOT)
 }
 
 /// The pages: README, contributing, changelog, and the book in `docs`. Paths are relative to the root.

@@ -41,7 +41,7 @@ fn exported(place: &Workplace, format: &str, ending: &str) -> Vec<PathBuf> {
 
 /// What a tool says of files, which it must find right.
 fn judged(format: &str, files: &[PathBuf]) -> String {
-    let scripts = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/tools");
+    let scripts = PathBuf::from(crate::ROOT).join("tests/tools");
     let tools = tools();
     let mut command = if format == "gltf" {
         let mut node = Command::new(tools.join("bin/node"));
@@ -159,7 +159,7 @@ fn graphs_that_compute_are_baked() {
 </materialx>"#;
     place.write("ramp.mtlx", document.as_bytes());
     let convert = |more: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_glossmith"));
+        let mut command = Command::new(crate::program());
         command.args(["convert", "ramp.mtlx", "ramp.json", "--import-lobe", "ggx"]);
         command.current_dir(place.path("")).env("GLOSSMITH_TOOLS", tools());
         if more.is_empty() {

@@ -21,7 +21,7 @@ fn worker(place: &Workplace, name: &str, tasks: &[[u32; 2]]) -> Child {
     let task = |[picture, slice]: &[u32; 2]| format!("{{\"Picture\": {picture}, \"Slice\": {slice}}}");
     let tasks = format!("[{}]", tasks.iter().map(task).collect::<Vec<_>>().join(", "));
     let log = std::fs::File::create(place.path(&format!("{name}.log"))).unwrap();
-    let program = format!("Glossmith={}", env!("CARGO_BIN_EXE_glossmith"));
+    let program = format!("Glossmith={}", crate::program());
     let arguments = [
         "run",
         "job.yaml",
@@ -142,7 +142,7 @@ fn workers_of_a_farm_make_the_pictures_of_one_machine() {
 
 /// Runs a job's last step, with or without those before it.
 fn collect(place: &Workplace, dependencies: &str) {
-    let program = format!("Glossmith={}", env!("CARGO_BIN_EXE_glossmith"));
+    let program = format!("Glossmith={}", crate::program());
     let run = [
         "run",
         "job.yaml",

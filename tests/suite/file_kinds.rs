@@ -16,7 +16,7 @@ use image::{ImageFormat, RgbImage};
 use tempfile::tempdir;
 
 fn corpus(file: &str) -> Vec<u8> {
-    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(file)).unwrap()
+    std::fs::read(Path::new(crate::ROOT).join("fuzz/corpus").join(file)).unwrap()
 }
 
 /// A picture with this ending: panoramas, so that each can be an environment.

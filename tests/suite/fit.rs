@@ -320,7 +320,7 @@ fn merl_file(base: [f64; 3], highlight: [f64; 3], lobe: &LobeModel) -> Vec<u8> {
 }
 
 fn glossmith(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_glossmith"))
+    Command::new(crate::program())
         .args(arguments)
         .output()
         .unwrap()

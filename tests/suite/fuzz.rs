@@ -21,7 +21,7 @@ const MEMORY_FLOOR_KIB: u64 = 48 << 10;
 const CHILD: &str = "GLOSSMITH_FUZZ_CHILD";
 
 fn corpus() -> Vec<(&'static str, PathBuf)> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus");
+    let root = Path::new(crate::ROOT).join("fuzz/corpus");
     let files_of = |format: &'static str| {
         let mut files: Vec<_> = fs::read_dir(root.join(format))
             .unwrap_or_else(|error| panic!("fuzz/corpus/{format}: {error}"))

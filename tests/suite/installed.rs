@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+const ROOT: &str = crate::ROOT;
 
 fn script(prefix: &Path, binary: &str, arguments: &[&str]) -> Output {
     Command::new(Path::new(ROOT).join("scripts/install"))
@@ -28,7 +28,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 fn it_is_installed_for_the_user_and_taken_away_again() {
     let home = tempfile::tempdir().expect("a temporary folder");
     let prefix = home.path().join("with a space");
-    let output = script(&prefix, env!("CARGO_BIN_EXE_glossmith"), &[]);
+    let output = script(&prefix, crate::program(), &[]);
     assert!(output.status.success(), "{output:?}");
     let program = prefix.join("bin/glossmith");
     let version = Command::new(&program)
@@ -123,7 +123,7 @@ fn a_flatpak_has_all_that_it_is_built_from_without_a_network() {
             .is_some_and(|text| text.contains("replace-with = \"vendored\""))
     );
     let prefix = home.path().join("installed");
-    assert!(script(&prefix, env!("CARGO_BIN_EXE_glossmith"), &[]).status.success());
+    assert!(script(&prefix, crate::program(), &[]).status.success());
     for kind in ["desktop-file", "mime-file", "icon", "appdata-file"] {
         let renamed = manifest[format!("rename-{kind}")].as_str().expect("a name");
         let is_installed =

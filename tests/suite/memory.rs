@@ -65,7 +65,7 @@ fn command_line_and_project_files_refuse_alike() {
         document_text(&place.path("large.json"), &project).unwrap().as_bytes(),
     );
     for arguments in ["render --engine cpu --size 8000x8000 --output a.png", "large.json"] {
-        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        let output = Command::new(crate::program())
             .args(arguments.split(' '))
             .current_dir(place.path("."))
             .env("GLOSSMITH_MEMORY", "1000")

@@ -38,7 +38,7 @@ impl Deaf {
 }
 
 fn program(place: &Workplace, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_glossmith"));
+    let mut command = Command::new(crate::program());
     command.args(arguments.split_whitespace()).current_dir(place.path(""));
     for variable in ["DISPLAY", "WAYLAND_DISPLAY", "RUST_LOG"] {
         command.env_remove(variable);

@@ -9,7 +9,7 @@ use super::cli_support::Workplace;
 fn files(place: &Workplace, arguments: &str, threads: u32) -> (Vec<Vec<u8>>, f64) {
     let all =
         format!("render --engine cpu --keep-sums --aovs --output a.exr --output a.png --report a.json {arguments}");
-    let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+    let output = Command::new(crate::program())
         .args(all.split_whitespace())
         .current_dir(place.path("."))
         .env("RAYON_NUM_THREADS", threads.to_string())

@@ -25,7 +25,9 @@ use glossmith::scene::inversion::DRAW_BITS;
 use glossmith::scene::light_profile::PROFILE_AXES_LENGTH;
 use glossmith::scene::medium::NO_MEDIUM;
 use glossmith::scene::{light, surface, texture};
-use naga::back::{hlsl, msl, spv};
+#[cfg(feature = "metal")]
+use naga::back::msl;
+use naga::back::{hlsl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
 /// naga's reading of a shader, or its first complaint with the module and the line in it.
@@ -119,7 +121,7 @@ fn a_mistake_is_located_by_module_and_line() {
     linked.source = linked
         .source
         .replace("let t1 = a2_plus_b2 + cos2;", "let t1 = a2_plus_b2 + cos3;");
-    let file = std::fs::read_to_string(format!("{}/shaders/optics/fresnel.wgsl", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let file = std::fs::read_to_string(format!("{}/shaders/optics/fresnel.wgsl", crate::ROOT)).unwrap();
     let line = 1 + file
         .lines()
         .position(|line| line.contains("let t1 = a2_plus_b2 + cos2;"))
@@ -137,7 +139,7 @@ fn shaders_are_read_from_the_folder_that_is_named() {
     let folder = tempfile::TempDir::new().unwrap();
     std::fs::create_dir(folder.path().join("pass")).unwrap();
     std::fs::write(folder.path().join("pass/path_trace.wgsl"), "fn broken(").unwrap();
-    let run = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+    let run = std::process::Command::new(crate::program())
         .args(["render", "--engine", "gpu", "--size", "8x8", "--samples", "1"])
         .current_dir(folder.path())
         .env(FOLDER_VARIABLE, folder.path())
@@ -158,7 +160,7 @@ fn assert_lines_are_located(linked: &Linked) {
     let mut compared = 0;
     for (number, line) in (1..).zip(linked.source.lines()) {
         let (module, place) = linked.locate(number);
-        let path = format!("{}/shaders/{module}.wgsl", env!("CARGO_MANIFEST_DIR"));
+        let path = format!("{}/shaders/{module}.wgsl", crate::ROOT);
         let Ok(file) = std::fs::read_to_string(path) else {
             let is_generated = GENERATED.iter().any(|(name, _)| *name == module);
             assert!(is_generated || module == EXTENSIONS, "{module} is no file");
@@ -445,31 +447,18 @@ fn translate(
     entry: (naga::ShaderStage, &str),
     traversal: Traversal,
 ) -> Result<(), String> {
-    let (metal, direct3d): (_, &[_]) = match traversal {
-        Traversal::Own => ((2, 0), &[hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0]),
-        Traversal::RayQueries => ((2, 4), &[hlsl::ShaderModel::V6_5]),
+    let direct3d: &[_] = match traversal {
+        Traversal::Own => &[hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0],
+        Traversal::RayQueries => &[hlsl::ShaderModel::V6_5],
     };
+    #[cfg(feature = "metal")]
+    translate_for_metal(module, info, entry, traversal)?;
     let (stage, name) = entry;
     let options = spv::PipelineOptions {
         shader_stage: stage,
         entry_point: name.to_owned(),
     };
     spv::write_vec(module, info, &spv::Options::default(), Some(&options)).map_err(|e| format!("SPIR-V: {e}"))?;
-    let options = msl::Options {
-        lang_version: metal,
-        ..Default::default()
-    };
-    let pipeline = msl::PipelineOptions {
-        entry_point: Some((stage, name.to_owned())),
-        ..Default::default()
-    };
-    let (text, reflected) = msl::write_string(module, info, &options, &pipeline).map_err(|e| format!("Metal: {e}"))?;
-    if let Some(Err(error)) = reflected.entry_point_names.first() {
-        return Err(format!("Metal: {error}"));
-    }
-    if text.is_empty() {
-        return Err("Metal: nothing came out".into());
-    }
     for &shader_model in direct3d {
         let options = hlsl::Options {
             shader_model,
@@ -486,6 +475,37 @@ fn translate(
         if let Some(Err(error)) = reflected.entry_point_names.first() {
             return Err(format!("HLSL {shader_model:?}: {error}"));
         }
+    }
+    Ok(())
+}
+
+/// Metal, whose writer of shaders is compiled with the feature `metal` alone.
+#[cfg(feature = "metal")]
+fn translate_for_metal(
+    module: &naga::Module,
+    info: &ModuleInfo,
+    entry: (naga::ShaderStage, &str),
+    traversal: Traversal,
+) -> Result<(), String> {
+    let metal = match traversal {
+        Traversal::Own => (2, 0),
+        Traversal::RayQueries => (2, 4),
+    };
+    let (stage, name) = entry;
+    let options = msl::Options {
+        lang_version: metal,
+        ..Default::default()
+    };
+    let pipeline = msl::PipelineOptions {
+        entry_point: Some((stage, name.to_owned())),
+        ..Default::default()
+    };
+    let (text, reflected) = msl::write_string(module, info, &options, &pipeline).map_err(|e| format!("Metal: {e}"))?;
+    if let Some(Err(error)) = reflected.entry_point_names.first() {
+        return Err(format!("Metal: {error}"));
+    }
+    if text.is_empty() {
+        return Err("Metal: nothing came out".into());
     }
     Ok(())
 }

@@ -30,7 +30,7 @@ fn begun(place: &Workplace, before: &str, arguments: &str) -> (Child, BufReader<
         .args([
             "-c",
             &format!("{before} exec \"$0\" {arguments}"),
-            env!("CARGO_BIN_EXE_glossmith"),
+            crate::program(),
         ])
         .current_dir(place.path("."))
         .env_remove("RUST_LOG")

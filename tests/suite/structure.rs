@@ -105,7 +105,7 @@ fn used(text: &str) -> BTreeSet<&str> {
 
 #[test]
 fn folders_use_only_what_is_below_them() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let src = Path::new(crate::ROOT).join("src");
     let mut wrong = Vec::new();
     for (folder, allowed) in MAY_USE {
         let files = match src.join(folder) {
@@ -133,7 +133,7 @@ fn folders_use_only_what_is_below_them() {
 
 #[test]
 fn every_folder_has_its_place_in_the_order() {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let src = Path::new(crate::ROOT).join("src");
     for entry in fs::read_dir(src).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
@@ -145,7 +145,7 @@ fn every_folder_has_its_place_in_the_order() {
 
 #[test]
 fn files_stay_short() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(crate::ROOT);
     let code = ["src", "tests", "benches", "fuzz/fuzz_targets"].map(|folder| files_with("rs", &root.join(folder)));
     let files = code
         .into_iter()
@@ -167,7 +167,7 @@ fn of_the_engine(src: &Path) -> Vec<String> {
 
 #[test]
 fn every_dependency_is_used() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(crate::ROOT);
     let src = root.join("src");
     let engine = of_the_engine(&src);
     assert!(engine.iter().any(|module| module == "optics"), "{engine:?}");
@@ -229,7 +229,7 @@ fn used_of_app(text: &str, is_near: bool) -> BTreeSet<String> {
 
 #[test]
 fn the_window_is_built_in_layers() {
-    let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
+    let app = Path::new(crate::ROOT).join("src/app");
     let mut wrong = Vec::new();
     for (height, parts) in LAYERS_OF_APP.iter().enumerate() {
         for part in *parts {
@@ -261,7 +261,7 @@ fn the_window_is_built_in_layers() {
 /// Panels know the desk, never each other.
 #[test]
 fn panels_keep_to_themselves() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app/panels");
+    let folder = Path::new(crate::ROOT).join("src/app/panels");
     let name_of = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
     let panels: Vec<PathBuf> = fs::read_dir(&folder)
         .unwrap()

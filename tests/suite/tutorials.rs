@@ -102,7 +102,7 @@ fn literals(folder: &Path, found: &mut String) {
 /// What tutorials and how-to pages call by an italic name is called so in the window: as a label, a choice or an entry.
 #[test]
 fn names_of_the_window_that_the_pages_give_exist() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(crate::ROOT);
     let mut sources = String::new();
     for folder in [
         "src/app",

@@ -115,7 +115,7 @@ fn names_in_shaders(file: &Path) -> BTreeSet<String> {
 
 #[test]
 fn shader_functions_have_twins() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = Path::new(crate::ROOT);
     let mut alone: BTreeSet<&str> = ALONE.iter().flat_map(|(_, names)| names.iter().copied()).collect();
     let mut wrong = Vec::new();
     for folder in ["optics", "scene"] {

@@ -32,7 +32,7 @@ const THEMES: [&str; 2] = ["dark", "light"];
 const JPEG_QUALITY: u8 = 88;
 
 fn root() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+    PathBuf::from(crate::ROOT)
 }
 
 fn path(page: &str, [width, height]: [u32; 2], theme: &str) -> String {
