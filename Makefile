@@ -2,9 +2,7 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-# Tests of AVX-512 where the machine has it; elsewhere it could not run, and would take a compilation of the engine more.
-EVERY_LEVEL := $(if $(shell grep -sm1 avx512f /proc/cpuinfo),--features every-level)
-.PHONY: help run install uninstall check test test-thorough docs bench pictures mutants fuzz
+.PHONY: help run install uninstall check lint test test-thorough test-times docs bench pictures mutants fuzz
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -21,27 +19,37 @@ install: ## Install for the current user: program, icon, menu entry, file types 
 uninstall: ## Remove what `make install` installed; your materials and settings stay
 	scripts/install --remove
 
-check: ## The quick loop: format, lints, the tests that concern what you changed
+check: ## The quick loop: format, the ratchet, the tests that concern what you changed
 	@scripts/setup test
 	scripts/check $(ARGS)
 
-test: ## Check format and lints, then run every test
-	@scripts/setup test
+lint: ## Check the format, the lints and that no folder grew
 	@if cargo fmt --version >/dev/null 2>&1; then set -x; scripts/format --check; \
 	else echo "note: rustfmt is not installed, the format is not checked (rustup component add rustfmt)"; fi
-	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
+	@if python3 --version >/dev/null 2>&1; then set -x; scripts/tokens --check; \
+	else echo "note: Python is not installed, the tokens of the folders are not counted"; fi
+	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --release --workspace --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
-	cargo test $(EVERY_LEVEL) $(ARGS)
+
+test: ## Run the tests, beside the program that `make run` built
+	@scripts/setup test
+	cargo build --release
+	cargo test --release --package glossmith-tests -- $(ARGS)
+
+test-times: ## The same, then what the parts took and the 40 slowest tests (docs/BUILD.md)
+	@scripts/setup test
+	scripts/test-times
 
 fuzz: ## Damaged files of all formats through the program for a while (MINUTES=10); what fails is kept in fuzz/failures
 	@scripts/setup run
 	cargo build --release
 	scripts/fuzz --minutes $(or $(MINUTES),10) $(ARGS)
 
-test-thorough: export GLOSSMITH_THOROUGH = 1
-test-thorough: test ## The same, for an hour more: what is random or repeats others at greater length, shaders on a second Vulkan driver and OpenGL
+test-thorough: lint ## All that there is, for hours: what is random, long or needs other programs, with debug assertions and on other drivers
 	@scripts/setup thorough
-	cargo check --no-default-features
+	cargo build --profile thorough
+	cargo test --profile thorough --package glossmith-tests --all-features -- $(ARGS)
+	cargo check --release --no-default-features
 	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
 	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install --locked cargo-deny)"; fi

@@ -12,7 +12,11 @@ pub fn program() -> &'static str {
         let tests = std::env::current_exe().expect("this program has a path");
         let folder = tests.ancestors().nth(2).expect("tests lie in deps");
         let program = folder.join(format!("glossmith{}", std::env::consts::EXE_SUFFIX));
-        assert!(program.is_file(), "{} is missing: run cargo build --release", program.display());
+        assert!(
+            program.is_file(),
+            "{} is missing: run cargo build --release",
+            program.display()
+        );
         program.to_str().expect("a path in UTF-8").to_owned()
     });
     &PROGRAM

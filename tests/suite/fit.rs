@@ -320,10 +320,7 @@ fn merl_file(base: [f64; 3], highlight: [f64; 3], lobe: &LobeModel) -> Vec<u8> {
 }
 
 fn glossmith(arguments: &[&str]) -> Output {
-    Command::new(crate::program())
-        .args(arguments)
-        .output()
-        .unwrap()
+    Command::new(crate::program()).args(arguments).output().unwrap()
 }
 
 fn text(path: &Path) -> &str {

@@ -27,11 +27,7 @@ fn begun(place: &Workplace, before: &str, arguments: &str) -> (Child, BufReader<
         });
     }
     let mut child = command
-        .args([
-            "-c",
-            &format!("{before} exec \"$0\" {arguments}"),
-            crate::program(),
-        ])
+        .args(["-c", &format!("{before} exec \"$0\" {arguments}"), crate::program()])
         .current_dir(place.path("."))
         .env_remove("RUST_LOG")
         .stdout(Stdio::null())
