@@ -6,6 +6,7 @@
 
 pub mod named;
 pub mod panics;
+pub mod parallel;
 
 pub mod instructions;
 

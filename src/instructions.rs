@@ -30,7 +30,7 @@ pub struct Missing(pub Instructions);
 impl Instructions {
     /// The instruction set itself; `None` if the CPU does not have it.
     pub fn level(self) -> Option<Level> {
-        let best = best();
+        let best = Level::new();
         match self {
             Self::Auto => Some(best),
             Self::Portable => Some(Level::baseline()),

@@ -7,7 +7,7 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, scene};
+pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, parallel, scene};
 pub use glossmith_import as import;
 
 pub mod console;

@@ -15,14 +15,13 @@ mod moments;
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use moments::Moments;
 
 use super::halves::Distance;
 use super::noise::{BAND, MAP_RADIUS, bands, box_sums};
 use crate::job::film::luminance;
 use crate::job::tiles::{TILE_SIDE, TileGrid};
+use crate::parallel;
 
 /// Radius in tiles over which a tile's errors are averaged to choose its blend.
 const RADIUS: usize = 2;
@@ -100,7 +99,7 @@ impl Errors {
         let bright = |color: [f32; 3]| luminance(color.map(f64::from)) as f32;
         let [[a, b], [d, e]] = [halves.noisy, halves.denoised];
         let of_pixel = |i: usize| Luminances([a[i], b[i], d[i], e[i]].map(bright));
-        let luminances: Vec<_> = (0..a.len()).into_par_iter().map(of_pixel).collect();
+        let luminances: Vec<_> = parallel::map(a.len(), of_pixel);
         let denoised = luminances
             .iter()
             .map(|Luminances([_, _, d, e])| f64::from(*d) + f64::from(*e));
@@ -110,10 +109,7 @@ impl Errors {
         };
         Self {
             mean_luminance: denoised.sum::<f64>() / (2 * a.len()).max(1) as f64,
-            variances: bands(grid)
-                .into_par_iter()
-                .flat_map_iter(|rows| variances(&luminances, halves.width, rows))
-                .collect(),
+            variances: parallel::map_into(bands(grid), |rows| variances(&luminances, halves.width, rows)).concat(),
             correlation: correlation(&luminances, halves.width),
             luminances,
             grid,
@@ -294,7 +290,7 @@ fn correlation(luminances: &[Luminances], width: usize) -> f64 {
     let around = -CORRELATED_RADIUS..=CORRELATED_RADIUS;
     let places = (0..=CORRELATED_RADIUS).flat_map(|y| around.clone().map(move |x| (x, y)));
     let places: Vec<_> = places.filter(|&(x, y)| y > 0 || x > 0).collect();
-    let sum: f64 = places.into_par_iter().map(squared).sum();
+    let sum: f64 = parallel::map_into(places, squared).into_iter().sum();
     let correlation = 1.0 + 2.0 * sum / (variance * variance);
     if correlation.is_finite() {
         correlation.max(1.0)
@@ -320,7 +316,7 @@ fn tiles_around(grid: TileGrid, tile: usize, radius: usize) -> impl Iterator<Ite
 /// The filter spreads a pixel's noise to its neighbours, so that db of one and ea of another are correlated: the sum over
 /// the others of 2 E(ad') E(be'). If the filter is locally linear with weights w (δ = Σ wa) and the noise locally uniform,
 /// that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), with σ² estimated by (A − B)²/2.
-fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = f64> {
+fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> Vec<f64> {
     let height = luminances.len() / width.max(1);
     let first = rows.start.saturating_sub(MAP_RADIUS);
     let last = (rows.end + MAP_RADIUS).min(height);
@@ -345,7 +341,9 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> imp
         let shared = 2.0 * (left[i] * whole[i] - common[i].powi(2));
         alone.max(0.0) + shared.max(0.0)
     };
-    ((rows.start - first) * width..(rows.end - first) * width).map(of_pixel)
+    ((rows.start - first) * width..(rows.end - first) * width)
+        .map(of_pixel)
+        .collect()
 }
 
 /// Interpolates tile values bilinearly between the tiles' centres.

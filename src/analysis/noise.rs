@@ -8,10 +8,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use crate::job::film::{Film, HalfSums};
 use crate::job::tiles::TileGrid;
+use crate::parallel;
 
 /// Half width of a normal distribution's 95 % interval, in standard deviations.
 pub(super) const BAND: f64 = 1.959_964;
@@ -50,10 +49,7 @@ pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
 
 /// The relative error of a render; `None` without samples in both halves. A black image has no error.
 pub fn noise(film: &Film) -> Option<Noise> {
-    let bands: Vec<Sums> = bands(film.grid())
-        .into_par_iter()
-        .map(|rows| Sums::of(&Band::of(film, rows)))
-        .collect();
+    let bands = parallel::map_into(bands(film.grid()), |rows| Sums::of(&Band::of(film, rows)));
     let sums = bands.iter().fold(Sums::default(), Sums::with);
     let pixels = film.pixel_count() as f64;
     if sums.measured < MEASURED_SHARE * pixels || pixels == 0.0 {
@@ -205,9 +201,8 @@ pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64;
     let width = width.max(1);
     let entry = |value: &f64| if value.is_nan() { [0.0; 2] } else { [*value, 1.0] };
     let mut across = vec![[0.0; 2]; values.len()];
-    let rows = across.par_chunks_exact_mut(width).zip(values.par_chunks_exact(width));
-    rows.for_each(|(sums, row)| {
-        let row: Vec<[f64; 2]> = row.iter().map(entry).collect();
+    parallel::for_rows(&mut across, width, |y, sums| {
+        let row: Vec<[f64; 2]> = values[y * width..][..width].iter().map(entry).collect();
         for left in (1..=radius.min(width)).rev() {
             add_each(&mut sums[left..], &row);
         }
@@ -217,7 +212,7 @@ pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64;
     });
     let mut around = vec![[0.0; 2]; values.len()];
     let height = values.len() / width;
-    around.par_chunks_exact_mut(width).enumerate().for_each(|(y, sums)| {
+    parallel::for_rows(&mut around, width, |y, sums| {
         let rows = y.saturating_sub(radius) * width..(y + radius + 1).min(height) * width;
         for row in across[rows].chunks_exact(width) {
             add_each(sums, row);
@@ -244,9 +239,9 @@ pub fn relative_errors(film: &Film) -> Vec<f32> {
     };
     let of_band = |rows| {
         let band = Band::of(film, rows);
-        band.spread.into_iter().zip(band.gains).map(error)
+        band.spread.into_iter().zip(band.gains).map(error).collect::<Vec<f32>>()
     };
-    bands(film.grid()).into_par_iter().flat_map_iter(of_band).collect()
+    parallel::map_into(bands(film.grid()), of_band).concat()
 }
 
 /// Sum of the finite values.
@@ -270,10 +265,7 @@ pub struct TileError {
 /// Error estimates of all tiles. A tile's own spread is precise; the sequence's gain is averaged over its neighbours.
 pub fn tile_errors(film: &Film) -> Vec<TileError> {
     let grid = film.grid();
-    let sums: Vec<TileSums> = (0..grid.tiles())
-        .into_par_iter()
-        .map(|tile| TileSums::of(film, tile))
-        .collect();
+    let sums = parallel::map(grid.tiles(), |tile| TileSums::of(film, tile));
     let of_tile = |tile: usize| {
         let TileSums {
             spread,

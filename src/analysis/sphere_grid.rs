@@ -1,9 +1,8 @@
 //! Quadrature over directions, adapted to lobes: the pole on the mirror direction, narrow rings where the lobe is large.
 
-use rayon::prelude::*;
-
 use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// Side of the surface to integrate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,10 +48,7 @@ impl SphereGrid {
 
     /// The profile at the points, in their order.
     pub fn values(&self, profile: Profile) -> Vec<f64> {
-        self.points
-            .par_iter()
-            .map(|(direction, _)| profile(*direction))
-            .collect()
+        parallel::map_each(&self.points, |(direction, _)| profile(*direction))
     }
 
     /// The integral of values at the points.
@@ -123,7 +119,7 @@ fn ring_shares(pole: &Pole, edges: &[f64], profiles: &[Profile]) -> Vec<f64> {
     let mut shares = vec![0.0_f64; rings.len()];
     for profile in profiles {
         let in_ring = |ring: &Vec<(Vec3<f64>, f64)>| ring.iter().map(|(w, area)| area * profile(*w)).sum();
-        let contents: Vec<f64> = rings.par_iter().map(in_ring).collect();
+        let contents: Vec<f64> = parallel::map_each(&rings, in_ring);
         let total: f64 = contents.iter().sum();
         for (share, content) in shares.iter_mut().zip(contents) {
             *share = share.max(if total > 0.0 { content / total } else { 0.0 });

@@ -13,8 +13,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-
 use crate::instructions;
 pub use crate::instructions::instruction_set;
 use crate::job::Job;
@@ -23,6 +21,7 @@ use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};
 use crate::optics::lanes::{InLanes, in_lanes};
 use crate::optics::real::Real;
 use crate::panics::lock;
+use crate::parallel;
 use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 
@@ -141,9 +140,9 @@ impl CpuEngine {
         let film = Mutex::new(&mut self.film);
         let film = || lock(&film);
         let (start, taken) = (Instant::now(), AtomicUsize::new(0));
-        waves.par_iter_mut().for_each(|wave| {
+        parallel::for_rows(waves, 1, |_, wave| {
             while let Some(work) = works.get(taken.fetch_add(1, Ordering::Relaxed)) {
-                let wave = wave.get_or_insert_with(|| Wave::new(integrator.sequence()));
+                let wave = wave[0].get_or_insert_with(|| Wave::new(integrator.sequence()));
                 let origin = grid.origin(work.tile);
                 let mut sums = film().part(origin, grid.size(work.tile));
                 render_tile(integrator, wave, origin, work, &mut sums);

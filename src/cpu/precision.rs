@@ -1,8 +1,6 @@
 //! A map of numerical trouble, pixel by pixel: f32 against f64 on the same surface, dropped samples, and rays that start on
 //! the wrong side.
 
-use rayon::prelude::*;
-
 use super::integrator::is_sound;
 use super::oracle::PathTracer;
 use super::probe::moved_direction;
@@ -14,6 +12,7 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_sphere;
+use crate::parallel;
 use crate::scene::camera::camera_ray;
 use crate::scene::surface::{SurfacePoint, surface_at};
 use crate::scene::texture::textured_material;
@@ -41,7 +40,7 @@ pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() 
         }
         let pixels = first * width..(first + ROWS).min(height) * width;
         let find = |index: u32| find(job, &tracer, [index % width, index / width], [width, height]);
-        findings.par_extend(pixels.into_par_iter().map(find));
+        findings.extend(parallel::map(pixels.len(), |place| find(pixels.start + place as u32)));
     }
     Some(PrecisionMap {
         width,

@@ -1,8 +1,6 @@
 //! Single functions asked about inputs of one's own. Twin of `shaders/pass/probe.wgsl`; the material in f64, too, as the
 //! oracle.
 
-use rayon::prelude::*;
-
 use crate::job::probe::{
     DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, MaterialView, NO_HIT,
     ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
@@ -17,6 +15,7 @@ use crate::optics::random::{Sequence, random_pair_bits, random_state};
 use crate::optics::real::{Real, Scalar};
 use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
+use crate::parallel;
 
 fn by_number<E: Copy>(all: &[E], number: u32) -> E {
     all[(number as usize).min(all.len() - 1)]
@@ -43,7 +42,7 @@ pub fn probe_lobe(scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Vec<Lob
             given: lobe_evaluate(&shape, &frame, q.normal, q.wo, q.wi),
         }
     };
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }
 
 /// The share reflected by a dielectric or a conductor.
@@ -91,7 +90,7 @@ pub fn probe_random(questions: &[RandomQuestion]) -> Vec<[u32; 2]> {
             q.dimension,
         )
     };
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }
 
 /// A direction moved by so many roundings of f32 along two tangents.
@@ -139,7 +138,7 @@ pub fn probe_material<T: Scalar>(scene: &ProbeScene<'_>, question: &MaterialQues
 /// Materials' values in the precision `T`.
 pub fn probe_materials<T: Scalar>(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<Vec3<T>> {
     let answer = |q: &MaterialQuestion| probe_material(scene, q, [0.0; 2]);
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }
 
 /// Densities with which materials draw directions, in the precision `T`.
@@ -150,7 +149,7 @@ pub fn probe_density<T: Scalar>(scene: &ProbeScene<'_>, questions: &[MaterialQue
         let layers = material_layers(&material, scene.tables, &surface);
         material_density(&material, scene.tables, &surface, &layers, vector(q.wi))
     };
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }
 
 /// Directions drawn from materials, computed in the precision `T`.
@@ -171,7 +170,7 @@ pub fn probe_draw<T: Scalar>(scene: &ProbeScene<'_>, questions: &[DrawQuestion])
             throughput: Vec3::from_f64(drawn.throughput.to_f64()),
         }
     };
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }
 
 /// The nearest triangles on rays.
@@ -183,5 +182,5 @@ pub fn probe_ray(scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Vec<RayAn
             t: hit.map_or(q.t_max, |hit| hit.t),
         }
     };
-    questions.par_iter().map(answer).collect()
+    parallel::map_each(questions, answer)
 }

@@ -2,13 +2,12 @@
 
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use crate::job::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun, SamplingStage};
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, LobeShape, raw_sampler};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// A corner of the emitting triangle and two of its edges, relative to the quad.
 const LIGHT_CORNER: [f32; 3] = [-0.5, -0.5, 1.0];
@@ -17,16 +16,16 @@ const LIGHT_SIDES: [[f32; 3]; 2] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 /// Samples on all cores and measures the time.
 pub fn run(request: &SamplingRequest) -> SamplingRun {
     let begun = Instant::now();
-    let rows = (0..request.rows).into_par_iter();
+    let of_rows = |row: &(dyn Fn(u32) -> f64 + Sync)| parallel::map(request.rows as usize, |y| row(y as u32));
     // A kernel for each stage, as on the GPU: no choice inside the loop.
-    let sum = match request.stage {
-        SamplingStage::Numbers => rows.map(|y| row(request, y, |xi, _| Vec3::from_f32(xi))).sum(),
-        SamplingStage::Directions => rows.map(|y| directions(request, y, |_| true)).sum(),
-        SamplingStage::Rays => rows.map(|y| directions(request, y, hits_light)).sum(),
+    let sums = match request.stage {
+        SamplingStage::Numbers => of_rows(&|y| row(request, y, |xi, _| Vec3::from_f32(xi))),
+        SamplingStage::Directions => of_rows(&|y| directions(request, y, |_| true)),
+        SamplingStage::Rays => of_rows(&|y| directions(request, y, hits_light)),
     };
     SamplingRun {
         seconds: begun.elapsed().as_secs_f64(),
-        sum,
+        sum: sums.into_iter().sum(),
     }
 }
 

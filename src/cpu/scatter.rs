@@ -1,23 +1,22 @@
 //! Samples of a lobe, drawn as the path tracer draws them. Twin of `shaders/pass/scatter.wgsl`.
 
-use rayon::prelude::*;
-
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::lobe::{lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
+use crate::parallel;
 
 /// Samples the lobe.
 pub fn scatter(request: &ScatterRequest) -> ScatterCloud {
     let shape = request.model.shape::<f32>();
     let frame = ScatterRequest::frame();
     let wo = request.wo();
-    let draw = |i: u32| {
-        let state = random_state(0, 0, request.seed, i, Sequence::Independent);
+    let draw = |i: usize| {
+        let state = random_state(0, 0, request.seed, i as u32, Sequence::Independent);
         let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f32>(state, 1));
         let drawn = lobe_sample(&shape, &frame, frame.normal, wo, [a, b, c]);
         let [_, density] = lobe_evaluate(&shape, &frame, frame.normal, wo, drawn.wi);
         let [x, y, z] = drawn.wi.to_f32();
         [x, y, z, if drawn.weight > 0.0 { density } else { -1.0 }]
     };
-    ScatterCloud::from_raw((0..request.count).into_par_iter().map(draw).collect())
+    ScatterCloud::from_raw(parallel::map(request.count as usize, draw))
 }

@@ -1,7 +1,7 @@
 //! Import of models, textures, environments and light profiles from files, a package of its own (`src/import/Cargo.toml`): its decoders are
 //! compiled once, and not again when the engine's formulas or the window change.
 
-use glossmith_engine::{optics, panics, scene};
+use glossmith_engine::{optics, panics, parallel, scene};
 
 mod budget;
 pub mod endings;

@@ -1,14 +1,10 @@
 //! The film: an image as sums, which the engines accumulate.
 
-use rayon::prelude::*;
-
 use super::effect::EffectId;
 use super::guides::{GUIDE_SAMPLES, GuideSums};
 use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
-
-/// Pixels at least that a thread adds to at once.
-pub(super) const ADDED_AT_ONCE: usize = 4096;
+use crate::parallel;
 
 /// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 72
 /// bytes per pixel and 32 per tile, plus the requested [`Extras`].
@@ -267,12 +263,9 @@ impl Film {
     /// Adds the halves of `count` consecutive pixels, from pixel `first` on, in parallel; `halves` gives those of a pixel by
     /// its place among them.
     pub fn add_halves(&mut self, first: usize, count: usize, halves: impl Fn(usize) -> [HalfSums; 2] + Sync) {
-        let pixels = self.pixels[first..first + count]
-            .par_iter_mut()
-            .with_min_len(ADDED_AT_ONCE);
-        pixels.enumerate().for_each(|(place, kept)| {
-            let ([even, odd], [more_even, more_odd]) = (kept.sums(), halves(place));
-            *kept = KeptHalves::of(&[even.with(&more_even), odd.with(&more_odd)]);
+        parallel::for_rows(&mut self.pixels[first..first + count], 1, |place, kept| {
+            let ([even, odd], [more_even, more_odd]) = (kept[0].sums(), halves(place));
+            kept[0] = KeptHalves::of(&[even.with(&more_even), odd.with(&more_odd)]);
         });
     }
 
@@ -415,7 +408,7 @@ impl Film {
         Image {
             width: self.width,
             height: self.height,
-            pixels: (0..self.pixels.len()).into_par_iter().map(mean).collect(),
+            pixels: parallel::map(self.pixels.len(), mean),
         }
     }
 
@@ -428,7 +421,7 @@ impl Film {
     /// Mean luminance of each pixel; NaN without samples.
     pub fn luminance(&self) -> Vec<f64> {
         let of_pixel = |pixel| self.luminance_of(pixel);
-        (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()
+        parallel::map(self.pixels.len(), of_pixel)
     }
 
     /// Difference of the total luminance from another render's of the same size, in standard deviations. The sum over many
@@ -443,7 +436,7 @@ impl Film {
     /// Unbiased for uniform random numbers, too large for the Sobol sequence: see `analysis::noise`.
     pub fn variance_of_mean(&self) -> Vec<f64> {
         let of_pixel = |pixel| self.variance_of_mean_at(pixel);
-        (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()
+        parallel::map(self.pixels.len(), of_pixel)
     }
 
     /// The same of one pixel.

@@ -4,9 +4,8 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use rayon::prelude::*;
-
-use super::film::{ADDED_AT_ONCE, Film, HalfSums, Image, KeptHalves, LightSums, copy_kept, luminance};
+use super::film::{Film, HalfSums, Image, KeptHalves, LightSums, copy_kept, luminance};
+use crate::parallel;
 
 /// Light groups at most.
 pub const LIGHT_GROUPS_MAX: usize = 16;
@@ -59,17 +58,15 @@ impl Film {
         Image {
             width: self.width,
             height: self.height,
-            pixels: (0..self.pixel_count()).into_par_iter().map(mean).collect(),
+            pixels: parallel::map(self.pixel_count(), mean),
         }
     }
 
     /// The film with other halves of each pixel's samples, made in parallel, and without light groups.
     fn with_halves(&self, halves: impl Fn(usize, [HalfSums; 2]) -> [HalfSums; 2] + Sync) -> Film {
-        let pixels = self.pixels.par_iter().with_min_len(ADDED_AT_ONCE).enumerate();
+        let of_pixel = |pixel: usize| KeptHalves::of(&halves(pixel, self.pixels[pixel].sums()));
         Film {
-            pixels: pixels
-                .map(|(pixel, kept)| KeptHalves::of(&halves(pixel, kept.sums())))
-                .collect(),
+            pixels: parallel::map(self.pixels.len(), of_pixel),
             coverage: self.coverage.clone(),
             guides: self.guides.clone(),
             lights: Vec::new(),

@@ -4,8 +4,6 @@
 //! too. It then holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]), for the whole
 //! and for the dielectric alone, which covers the base.
 
-use rayon::prelude::*;
-
 use super::frame::frame_from_normal;
 use super::fresnel::{
     Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
@@ -19,6 +17,7 @@ use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
 use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
 use super::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
 pub const ALBEDO_NODES: usize = 64;
@@ -91,8 +90,8 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
         });
         [r, g, b, 0.0]
     };
-    let nodes = (0..ALBEDO_NODES).into_par_iter().flat_map_iter(means);
-    nodes.map(|x| x as f32).collect()
+    let nodes = parallel::map(ALBEDO_NODES, means).into_flattened();
+    nodes.into_iter().map(|x| x as f32).collect()
 }
 
 /// A view of this cosine to the normal, in the surface's frame; turned about the normal by a share of a whole turn, if one
@@ -147,8 +146,8 @@ pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32
         let factors = |cosine: f64| fresnel_basis(&terms, cosine);
         node_means(index % ALBEDO_NODES, is_inside, material, &shape, samples, factors)
     };
-    let nodes = (0..ROUGHNESS_NODES * ALBEDO_NODES).into_par_iter();
-    nodes.flat_map_iter(means).map(|x| x as f32).collect()
+    let nodes = parallel::map(ROUGHNESS_NODES * ALBEDO_NODES, means).into_flattened();
+    nodes.into_iter().map(|x| x as f32).collect()
 }
 
 /// Basis of the Fresnel factor for any metalness and base colour: the exact dielectric, Schlick's two terms and the

@@ -6,8 +6,6 @@
 //! reflects all light. At a clear interface reflection and refraction are divided by the energy that both keep together.
 //! The base below a dielectric takes what its lobe loses, so that needs no factor.
 
-use rayon::prelude::*;
-
 use super::albedo::{
     ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup, view_at,
 };
@@ -23,6 +21,7 @@ use super::refraction::{refracted, refracted_square};
 use super::thin_film::film_passed;
 use super::vector::{Vec3, vec3};
 use crate::instructions::level;
+use crate::parallel;
 
 /// Factor that keeps a clear interface's light, linear RGB: one over the energy of reflection and refraction together. A
 /// film shares the light otherwise in each channel.
@@ -147,7 +146,7 @@ pub fn scattering_table(material: &Material<f64>, samples: u32) -> Vec<f32> {
             },
         )
     };
-    let energies: Vec<_> = (0..steps * ALBEDO_NODES).into_par_iter().map(energies).collect();
+    let energies: Vec<_> = parallel::map(steps * ALBEDO_NODES, energies);
     let channels = if material.has_film == 1 && material.transmits() {
         3
     } else {

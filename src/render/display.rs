@@ -1,11 +1,12 @@
 //! Display-referred images.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
 use crate::document::ViewSettings;
 use crate::job::film::Image;
 use crate::optics::tone::{Grade, srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
+use crate::parallel;
 use crate::store::lut;
 
 use super::lens;
@@ -29,7 +30,9 @@ pub fn exposure(image: &Image, view: &ViewSettings) -> f32 {
         [alpha * luminance.max(LUMINANCE_MIN).ln(), alpha]
     };
     let add = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-    let [logs, weight] = image.pixels.par_iter().map(log_of).reduce(|| [0.0; 2], add);
+    let of_block = |range: Range<usize>| image.pixels[range].iter().map(log_of).fold([0.0; 2], add);
+    let blocks = parallel::map_blocks(image.pixels.len(), of_block).into_iter();
+    let [logs, weight] = blocks.fold([0.0; 2], add);
     if weight > 0.0 {
         chosen * (MIDDLE_GREY / (logs / weight).exp()) as f32
     } else {
@@ -54,5 +57,5 @@ pub fn display(image: &Image, view: &ViewSettings) -> Vec<u8> {
         let [r, g, b] = lut.as_ref().map_or(codes, |lut| lut.apply(codes)).to_f32();
         [r, g, b, alpha].map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
     };
-    image.pixels.par_iter().flat_map_iter(encode).collect()
+    parallel::map_each(&image.pixels, encode).into_flattened()
 }

@@ -1,9 +1,8 @@
 //! What a lens does to an image before it is shown: glare and vignette. The render itself is left alone.
 
-use rayon::prelude::*;
-
 use crate::document::ViewSettings;
 use crate::job::film::Image;
+use crate::parallel;
 
 /// The widest glow as a share of the image's shorter side, and how many there are, each half as wide as the one before.
 const WIDEST: f64 = 0.25;
@@ -46,8 +45,9 @@ fn add_glare(image: &mut Image, share: f32) {
             glow = transposed_box(&glow, width, radius);
             glow = transposed_box(&glow, height, radius);
         }
-        let pixels = image.pixels.par_iter_mut().zip(&glow);
-        pixels.for_each(|(pixel, glow)| *pixel = std::array::from_fn(|i| pixel[i] + weight * glow[i]));
+        for (pixel, glow) in image.pixels.iter_mut().zip(&glow) {
+            *pixel = std::array::from_fn(|i| pixel[i] + weight * glow[i]);
+        }
     }
 }
 
@@ -59,7 +59,7 @@ fn scaled(pixel: [f32; 4], by: f32) -> [f32; 4] {
 /// end the box is mirrored, so that the sum over a row stays.
 fn transposed_box(pixels: &[[f32; 4]], width: usize, radius: usize) -> Vec<[f32; 4]> {
     let height = pixels.len() / width.max(1);
-    let blurred: Vec<Vec<[f32; 4]>> = pixels.par_chunks(width).map(|row| box_mean(row, radius)).collect();
+    let blurred = parallel::map(height, |row| box_mean(&pixels[row * width..][..width], radius));
     let column = |x: usize| (0..height).map(move |y| (x, y));
     (0..width).flat_map(column).map(|(x, y)| blurred[y][x]).collect()
 }
@@ -94,8 +94,7 @@ fn darken_corners(image: &mut Image, strength: f32) {
     let [width, height] = [image.width as f32, image.height as f32];
     let diagonal = 0.25 * (width * width + height * height);
     let columns = image.width as usize;
-    let rows = image.pixels.par_chunks_mut(columns.max(1)).enumerate();
-    rows.for_each(|(y, row)| {
+    parallel::for_rows(&mut image.pixels, columns, |y, row| {
         for (x, pixel) in row.iter_mut().enumerate() {
             let [dx, dy] = [x as f32 + 0.5 - 0.5 * width, y as f32 + 0.5 - 0.5 * height];
             let tangent = 1.0 + strength * (dx * dx + dy * dy) / diagonal;

@@ -3,10 +3,9 @@
 use std::io;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::background::Background;
 use crate::job::Job;
+use crate::parallel;
 use crate::scene::NO_OBJECT;
 use crate::scene::camera::camera_ray;
 
@@ -58,12 +57,10 @@ pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl F
         if is_superseded() {
             return None;
         }
-        let row = |y: &u32| {
-            (0..width)
-                .map(|x| seen_at(job, [x, *y], [width, height]))
-                .collect::<Vec<_>>()
-        };
-        seen.par_extend(some.par_iter().flat_map_iter(row));
+        let columns = width as usize;
+        seen.extend(parallel::map(some.len() * columns, |place| {
+            seen_at(job, [(place % columns) as u32, some[place / columns]], [width, height])
+        }));
     }
     Some(SeenMap {
         job: job.clone(),
@@ -103,7 +100,7 @@ impl SeenMap {
     /// Pixels at the edges of the selection: those with neighbours of another kind.
     pub fn edges(&self, is_chosen: impl Fn([u32; 2]) -> bool + Sync) -> Vec<bool> {
         let (width, height) = (self.width as usize, self.height as usize);
-        let chosen: Vec<bool> = self.seen.par_iter().map(|seen| is_chosen(*seen)).collect();
+        let chosen = parallel::map_each(&self.seen, |seen| is_chosen(*seen));
         let is_edge = |place: usize| {
             let (x, y) = (place % width, place / width);
             let at = |x: usize, y: usize| chosen[y * width + x];
@@ -116,7 +113,7 @@ impl SeenMap {
             ];
             beside.into_iter().flatten().any(|other| other != is_inside)
         };
-        (0..chosen.len()).into_par_iter().map(is_edge).collect()
+        parallel::map(chosen.len(), is_edge)
     }
 }
 

@@ -1,7 +1,5 @@
 //! Views of a render in the window: the image, or maps of per-pixel quantities.
 
-use rayon::prelude::*;
-
 use super::display::{MIDDLE_GREY, display, exposure};
 use crate::analysis::noise::relative_errors;
 use crate::document::ViewSettings;
@@ -9,6 +7,7 @@ use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
+use crate::parallel;
 use crate::plot::scale_color;
 
 /// Stops to either side of middle grey that false colours span.
@@ -230,7 +229,7 @@ fn colored(values: &[f32], scale: Scale) -> Map {
         [red, green, blue, 255]
     };
     Map {
-        rgba: values.par_iter().flat_map_iter(color).collect(),
+        rgba: parallel::map_each(values, color).into_flattened(),
         scale: Some(scale),
     }
 }
@@ -241,7 +240,7 @@ fn colors(values: &[[f32; 3]], encode: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> 
         let [r, g, b] = encode(*value).map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8);
         [r, g, b, 255]
     };
-    values.par_iter().flat_map_iter(bytes).collect()
+    parallel::map_each(values, bytes).into_flattened()
 }
 
 /// Stops from middle grey of a luminance that has the exposure, −∞ for black.
@@ -261,7 +260,7 @@ fn stops(image: &Image, view: &ViewSettings) -> Vec<f32> {
         let value = luminance([red, green, blue].map(|x| x * straight));
         stops_of(value.max(1e-30)).clamp(-1e3, 1e3) as f32
     };
-    image.pixels.par_iter().map(of).collect()
+    parallel::map_each(&image.pixels, of)
 }
 
 /// Whether displayed bytes are as bright as they can be in a channel, or black in all.

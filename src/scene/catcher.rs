@@ -9,7 +9,6 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::area_shape::AreaShape;
 use super::environment::{Environment, environment_local_from_world, environment_radiance};
@@ -17,6 +16,7 @@ use super::ground::HALF_SIDE;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::NODE_LENGTH;
 use crate::optics::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// Nodes per side with area lights; without them the light is uniform.
 const SIDE: usize = 128;
@@ -96,8 +96,9 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
         }
         sum.map(|radiance| radiance.max(0.0) as f32)
     };
-    let nodes: Vec<[f32; 3]> = (0..side * side).into_par_iter().map(at).collect();
-    let nodes = nodes.into_iter().map(|[r, g, b]| [r, g, b, 0.0]);
+    let nodes = parallel::map(side * side, at)
+        .into_iter()
+        .map(|[r, g, b]| [r, g, b, 0.0]);
     std::iter::once([side as f32, reflection, 0.0, 0.0])
         .chain(nodes)
         .flatten()
@@ -154,10 +155,7 @@ fn far_light(environment: &Environment) -> [f64; 3] {
     };
     let height = environment.height as usize;
     let upper = (height / 2 + 1).min(height);
-    let rows: Vec<[f64; 3]> = environment.texels[..upper * columns]
-        .par_chunks(columns)
-        .map(row_mean)
-        .collect();
+    let rows = parallel::map(upper, |row| row_mean(&environment.texels[row * columns..][..columns]));
     // Midpoint rule in the squared sine, in which the weight is uniform.
     let steps = (8 * height).max(4096);
     let mut sum = [0.0; 3];

@@ -1,9 +1,11 @@
 //! Triangles that are coarse for the smooth normals at their corners.
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
+
+use std::ops::Range;
 
 use super::part::Part;
+use crate::parallel;
 
 /// Cosine of the largest lean of a normal from its triangle: 6 degrees. Beyond, the light cut off by the triangle's own
 /// horizon is brighter than a tenth of light from straight above.
@@ -18,7 +20,7 @@ pub(super) fn is_coarse([all, leaning]: [f64; 2]) -> bool {
 
 /// Twice the area of all triangles, and of those from which a normal leans far.
 pub(super) fn leaning_areas(part: &Part) -> [f64; 2] {
-    let areas = (0..part.triangles.len()).into_par_iter().map(|triangle| {
+    let of_triangle = |triangle: usize| {
         let [a, b, c] = part
             .corners(triangle)
             .map(|corner| DVec3::from_array(corner.map(f64::from)));
@@ -30,6 +32,10 @@ pub(super) fn leaning_areas(part: &Part) -> [f64; 2] {
             normal != DVec3::ZERO && normal.dot(out).abs() < LEAN_COSINE * area
         });
         [area, if leans { area } else { 0.0 }]
-    });
-    areas.reduce(|| [0.0; 2], |[a, b], [c, d]| [a + c, b + d])
+    };
+    let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
+    let of_block = |triangles: Range<usize>| triangles.map(of_triangle).fold([0.0; 2], add);
+    parallel::map_blocks(part.triangles.len(), of_block)
+        .into_iter()
+        .fold([0.0; 2], add)
 }

@@ -1,11 +1,11 @@
 //! Proof that a scene is one convex body: then rays that leave it outwards miss.
 
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::loading::{Cancelled, Loading};
+use crate::parallel;
 
 /// Distance that a vertex may lie above a face's plane, in bounding radii: the rounding of f32 corners.
 const TOLERANCE: f64 = 1e-6;
@@ -81,13 +81,22 @@ fn is_proven(
         return false;
     }
     let clusters: Vec<Cluster> = positions.chunks(CLUSTER).map(Cluster::new).collect();
-    triangles.par_iter().all(|triangle| {
+    let is_refuted = AtomicBool::new(false);
+    let is_below = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|vertex| DVec3::from_array(positions[vertex as usize].map(f64::from)));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let mut here = 0;
         let is_below = clusters.iter().all(|cluster| cluster.is_below(a, normal, &mut here));
         is_below && effort.fetch_add(here, Relaxed) + here <= EFFORT_MAX && is_wanted()
-    })
+    };
+    parallel::for_blocks(triangles.len(), CLUSTER, &|faces| {
+        for face in faces {
+            if is_refuted.load(Relaxed) || !is_below(&triangles[face]) {
+                return is_refuted.store(true, Relaxed);
+            }
+        }
+    });
+    !is_refuted.into_inner()
 }
 
 #[cfg(test)]

@@ -1,9 +1,11 @@
 //! Bounds of the view angles of a scene's faces.
 
 use glam::DVec3;
-use rayon::prelude::*;
+
+use std::ops::Range;
 
 use super::geometry::Geometry;
+use crate::parallel;
 
 /// Deviation of a corner's normal from its face's, as 1 − cosine: the rounding of f32 normals.
 const TOLERANCE: f64 = 1e-6;
@@ -31,6 +33,8 @@ pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
             .fold(0.0, f64::max);
         ((eye - a).dot(normal) / farthest).abs()
     };
-    let triangles = (0..geometry.triangle_count()).into_par_iter();
-    triangles.map(of_face).reduce(|| 1.0, f64::min)
+    let of_block = |triangles: Range<usize>| triangles.map(of_face).fold(1.0, f64::min);
+    parallel::map_blocks(geometry.triangle_count(), of_block)
+        .into_iter()
+        .fold(1.0, f64::min)
 }

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 use glam::{DMat4, DVec3};
-use rayon::prelude::*;
 
 use super::area_shape::AreaShape;
 use super::coarse::{is_coarse, leaning_areas};
@@ -20,6 +19,7 @@ use super::memory::prefetch;
 use super::model::{Model, Slot};
 use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
 use crate::instructions;
+use crate::parallel;
 
 /// Gap between the lowest point and the ground, in bounding radii: enough that flat bottoms do not flicker.
 const GROUND_GAP: f64 = 1e-4;
@@ -532,29 +532,35 @@ impl Framing {
             let counts = model.instances.iter().map(|instance| count(&traceable[instance.mesh]));
             counts.sum::<usize>()
         };
-        let of_instances = || {
-            model.instances.par_iter().flat_map_iter(|instance| {
+        let counts = parallel::map_blocks(mesh.triangles.len(), |triangles| {
+            let corners = || triangles.clone().map(|triangle| mesh.corners(triangle));
+            let usable = corners().filter(|corners| is_traceable(*corners)).count();
+            (usable, corners().filter(|corners| !is_finite(corners)).count())
+        });
+        // The largest of a function of all places.
+        let largest = |of: &(dyn Fn(DVec3) -> DVec3 + Sync)| {
+            let of_mesh = parallel::map_blocks(mesh.triangles.len(), |triangles| {
+                let corners = triangles.map(|triangle| mesh.corners(triangle));
+                let places = corners.filter(|corners| is_traceable(*corners)).flatten();
+                places.map(of).fold(DVec3::NEG_INFINITY, DVec3::max)
+            });
+            let of_instances = parallel::map_each(&model.instances, |instance| {
                 let places = traceable[instance.mesh].places.iter();
-                places.map(|place| instance.world_from_mesh.transform_point3(*place))
-            })
+                let places = places.map(|place| instance.world_from_mesh.transform_point3(*place));
+                places.map(of).fold(DVec3::NEG_INFINITY, DVec3::max)
+            });
+            let all = of_mesh.into_iter().chain(of_instances);
+            all.fold(DVec3::NEG_INFINITY, DVec3::max)
         };
-        let corners = || {
-            let triangles = (0..mesh.triangles.len()).into_par_iter();
-            triangles.map(|triangle| mesh.corners(triangle))
-        };
-        let usable = || corners().filter(|corners| is_traceable(*corners));
-        let places = || usable().flatten_iter().chain(of_instances());
-        let low = places().reduce(|| DVec3::INFINITY, DVec3::min);
-        let high = places().reduce(|| DVec3::NEG_INFINITY, DVec3::max);
+        let (low, high) = (-largest(&|place| -place), largest(&|place| place));
         let has_any = low.x <= high.x;
         let bounds_world = if has_any { [low, high] } else { [DVec3::ZERO; 2] };
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
-        let distances = places().map(|corner| corner.distance(center_world));
-        let radius = distances.reduce(|| 0.0, f64::max);
+        let radius = largest(&|place| DVec3::splat(place.distance(center_world))).x;
         let has_radius = radius > 0.0 && radius.is_finite();
         Self {
-            usable: usable().count() + in_instances(|mesh| mesh.count),
-            dropped_not_finite: corners().filter(|corners| !is_finite(corners)).count()
+            usable: counts.iter().map(|counts| counts.0).sum::<usize>() + in_instances(|mesh| mesh.count),
+            dropped_not_finite: counts.iter().map(|counts| counts.1).sum::<usize>()
                 + in_instances(|mesh| mesh.not_finite),
             bounds_world,
             center_world,

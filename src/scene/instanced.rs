@@ -4,7 +4,6 @@ use std::sync::OnceLock;
 
 use fearless_simd::Level;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
-use rayon::prelude::*;
 
 use super::coarse::leaning_areas;
 use super::hierarchy::{Bottom, Hierarchy, Placement, Wide, triangle_of_box};
@@ -12,6 +11,7 @@ use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::mesh::{Mesh, MeshInstance};
 use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
+use crate::parallel;
 
 /// Instances of repeated meshes. Their triangles are numbered instance by instance.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +91,7 @@ impl Traceable {
 
     /// The traceable triangles of each mesh.
     pub fn of_meshes(meshes: &[Mesh]) -> Vec<Self> {
-        meshes.par_iter().map(Self::of).collect()
+        parallel::map_each(meshes, Self::of)
     }
 }
 
@@ -161,10 +161,8 @@ impl Instanced {
         let is_shown =
             |instance: &&MeshInstance| !hidden.contains(&instance.object) && !prepared[instance.mesh].part.is_empty();
         let shown: Vec<&MeshInstance> = all.iter().filter(is_shown).collect();
-        let placed = shown
-            .into_par_iter()
-            .map(|instance| prepared[instance.mesh].at(instance, units_from_world));
-        let placed: Vec<Instance> = placed.collect();
+        let at = |instance: &&MeshInstance| prepared[instance.mesh].at(instance, units_from_world);
+        let placed = parallel::map_each(&shown, at);
         let corners = |instance: u32| triangle_of_box(placed[instance as usize].bounds);
         let (top, order) = Hierarchy::new(placed.len(), corners, loading)?;
         let mut instances: Vec<Instance> = order.iter().map(|&place| placed[place as usize].clone()).collect();

@@ -9,9 +9,9 @@ use std::collections::HashMap;
 use std::sync::LazyLock;
 
 use glam::{DVec3, Vec2, Vec3Swizzles};
-use rayon::prelude::*;
 
 use super::mesh::Mesh;
+use crate::parallel;
 
 /// Segments along each side of a patch that give about 40 000 triangles.
 pub const DEFAULT_SEGMENTS: u32 = 24;
@@ -93,11 +93,7 @@ pub fn mesh(segments: u32) -> Mesh {
     let segments = segments.max(1);
     let grid = Grid::new(segments);
     let mut mesh = Mesh::default();
-    for part in PATCHES
-        .par_iter()
-        .map(|patch| grid.tessellate(patch))
-        .collect::<Vec<_>>()
-    {
+    for part in parallel::map_each(&PATCHES, |patch| grid.tessellate(patch)) {
         mesh.append(part);
     }
     smooth_borders(&mut mesh, segments);

@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
@@ -16,6 +15,7 @@ use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
+use crate::parallel;
 use crate::render::{EngineChoice, Sampler, Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -280,7 +280,8 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
             .iter()
             .map_while(|case| unless_stopped(stop, || sampler.draw(case)));
         let clouds = clouds.collect::<Result<Vec<_>, _>>()?;
-        checks.par_extend(cases.par_iter().zip(&clouds).filter_map(check));
+        let of_part = parallel::map(clouds.len(), |place| check((&cases[place], &clouds[place])));
+        checks.extend(of_part.into_iter().flatten());
         if stop.load(Ordering::Relaxed) {
             break;
         }
@@ -360,7 +361,10 @@ fn energy(stop: &AtomicBool) -> Vec<Check> {
 /// A check of every case of the whole grid.
 fn of_all_cases(stop: &AtomicBool, check: impl Fn(&ScatterRequest) -> Check + Sync) -> Vec<Check> {
     let checked = |case: &ScatterRequest| unless_stopped(stop, || check(case));
-    sample_cases(true).par_iter().filter_map(checked).collect()
+    parallel::map_each(&sample_cases(true), checked)
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// Checks that a sample's weight equals evaluate / density of its direction.

@@ -9,6 +9,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
     ("instructions", &["named"]),
     ("panics", &[]),
+    ("parallel", &[]),
     ("console", &["panics"]),
     ("optics", &["named", "instructions"]),
     ("scene", &["named", "panics", "instructions", "optics"]),

@@ -4,14 +4,13 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use rayon::prelude::*;
-
 use super::basis::Hats;
 use super::non_negative::non_negative;
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::Vec3;
+use crate::parallel;
 
 /// Hat functions of h.
 const HATS: usize = 22;
@@ -150,7 +149,7 @@ fn rows(target: &CurveTarget, hats: &Hats, roughness: f64, horizon: Horizon, has
         }
         densities
     };
-    target.grid.points.par_iter().map(row).collect()
+    parallel::map_each(&target.grid.points, row)
 }
 
 fn dot(row: &[f64], solution: &[f64]) -> f64 {

@@ -14,7 +14,6 @@ use exr::meta::attribute::{AttributeValue, EnvironmentMap, SampleType, Text};
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
-use rayon::prelude::*;
 
 use super::canvas::Canvas;
 use super::decoded::{Picture, Source, io};
@@ -22,6 +21,7 @@ use super::error::EnvironmentError;
 use super::exr_window::{exr_error, window};
 use super::luminance_chroma;
 use crate::panics::contained;
+use crate::parallel;
 use crate::picture::exr_space::space;
 use crate::resource;
 
@@ -227,12 +227,10 @@ fn for_each_block(
         if batch.is_empty() {
             return Ok(());
         }
-        let blocks: Vec<UncompressedBlock> = batch
-            .into_par_iter()
-            .map(|chunk| UncompressedBlock::decompress_chunk(chunk, meta_data, false))
-            .collect::<Result<_, _>>()
-            .map_err(failed)?;
-        blocks.iter().for_each(&mut use_block);
+        let block = |chunk| UncompressedBlock::decompress_chunk(chunk, meta_data, false);
+        for block in parallel::map_into(batch, block) {
+            use_block(&block.map_err(failed)?);
+        }
     }
 }
 

@@ -2,13 +2,13 @@
 
 use draco_gltf::{MeshoptFilter, MeshoptMode, PackedGeometry};
 use gltf::json::accessor::ComponentType;
-use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
 use super::accessor::{decode, unsigned};
 use super::container::{Document, MESHOPT_EXTENSIONS};
 use super::draco::decompress;
+use crate::parallel;
 use crate::scene::report::{Fate, ImportReport};
 
 /// Largest expansion by meshopt: factor, and additional bytes. A block of 256 equal vertices takes a few bits per byte.
@@ -29,12 +29,9 @@ struct MeshoptView {
 
 /// Decompresses the buffer views that are compressed by meshopt.
 pub(super) fn decompress_views(document: &mut Document, report: &mut ImportReport) {
-    let views: Vec<usize> = (0..document.root.buffer_views.len()).collect();
-    let decoded: Vec<_> = views
-        .into_par_iter()
-        .filter_map(|view| Some((view, meshopt_view(document, view)?)))
-        .collect();
-    for (view, result) in decoded {
+    let decoded = parallel::map(document.root.buffer_views.len(), |view| meshopt_view(document, view));
+    for (view, result) in decoded.into_iter().enumerate() {
+        let Some(result) = result else { continue };
         match result {
             Ok(bytes) => {
                 report.note(Fate::Used, "buffer views with meshopt compression", "");

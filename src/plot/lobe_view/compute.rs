@@ -1,7 +1,5 @@
 //! The numbers of the views.
 
-use rayon::prelude::*;
-
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
 use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::curve::{curve_density, curve_distance_max};
@@ -9,6 +7,7 @@ use crate::optics::lobe::microfacet_alpha;
 use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::scattering::kept_energy;
 use crate::optics::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// Pixels along a side of a map.
 const MAP_SIZE: usize = 300;
@@ -98,10 +97,7 @@ fn against_angle<const N: usize>(
 ) -> LinePlot {
     let mut series = Vec::new();
     for (group, lobe) in lobes.iter().enumerate() {
-        let rows: Vec<[f64; N]> = view_angles_deg
-            .par_iter()
-            .map(|angle| quantities(lobe, angle.to_radians()))
-            .collect();
+        let rows = parallel::map_each(view_angles_deg, |angle| quantities(lobe, angle.to_radians()));
         series.extend(columns.iter().enumerate().map(|(column, quantity)| {
             Series {
                 lobe: lobe.name.clone(),
@@ -303,7 +299,7 @@ fn map(lobe: &LobeModel, view_angle_deg: f64) -> DiscMap {
         lobe: lobe.name.clone(),
         view_angle_deg,
         size: MAP_SIZE,
-        values: (0..MAP_SIZE * MAP_SIZE).into_par_iter().map(pixel).collect(),
+        values: parallel::map(MAP_SIZE * MAP_SIZE, pixel),
     }
 }
 
@@ -323,6 +319,6 @@ fn solid(lobe: &LobeModel, view_angle_deg: f64) -> Solid {
     Solid {
         lobe: lobe.name.clone(),
         view_angle_deg,
-        rings: directions.par_iter().map(ring).collect(),
+        rings: parallel::map_each(&directions, ring),
     }
 }

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use crate::analysis::denoised::Colors;
 use crate::analysis::halves::Distance;
 use crate::job::film::{Film, Image, luminance};
+use crate::parallel;
 
 /// Luminance of middle grey in the filter's input, and the darkest luminance that counts.
 const KEY: f64 = 0.18;
@@ -141,7 +140,7 @@ impl NoisyHalf {
             let color = half.color.map(|sum| (sum / half.samples).max(0.0) as f32);
             (color, (albedo, normal))
         };
-        let (color, (albedo, normal)) = sources.par_iter().map(of_pixel).unzip();
+        let (color, (albedo, normal)) = parallel::map_each(&sources, of_pixel).into_iter().unzip();
         Some(Self { color, albedo, normal })
     }
 }

@@ -2,8 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use rayon::prelude::*;
-
+use crate::parallel;
 use crate::scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares};
 use crate::scene::memory::in_large_pages;
 
@@ -90,20 +89,17 @@ pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
 
 /// Mean radiance of the bilinear map over the sphere, and its largest luminance.
 pub(super) fn summarise(map: &Map) -> Summary {
-    let (sum, max) = map
-        .texels
-        .par_chunks(map.width as usize)
-        .enumerate()
-        .map(|(row, texels)| {
-            let solid_angle = texel_solid_angle(row as u32, map.width, map.height);
-            let sum = [0, 1, 2]
-                .map(|channel| solid_angle * texels.iter().map(|texel| f64::from(texel[channel])).sum::<f64>());
-            (sum, texels.iter().map(luminance).fold(0.0, f64::max))
-        })
-        .reduce(
-            || ([0.0; 3], 0.0),
-            |(a, a_max), (b, b_max)| ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max)),
-        );
+    let width = map.width as usize;
+    let of_rows = parallel::map(map.texels.len() / width, |row| {
+        let texels = &map.texels[row * width..][..width];
+        let solid_angle = texel_solid_angle(row as u32, map.width, map.height);
+        let sum =
+            [0, 1, 2].map(|channel| solid_angle * texels.iter().map(|texel| f64::from(texel[channel])).sum::<f64>());
+        (sum, texels.iter().map(luminance).fold(0.0, f64::max))
+    });
+    let (sum, max) = of_rows.into_iter().fold(([0.0; 3], 0.0), |(a, a_max), (b, b_max)| {
+        ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max))
+    });
     Summary {
         mean_radiance: sum.map(|sum| (sum / (2.0 * TAU)) as f32),
         max_luminance: max as f32,
@@ -139,31 +135,26 @@ impl Distribution {
     /// All densities are 0 if none is above.
     pub(super) fn new(luminances: &Luminances, floor: f64) -> Self {
         let Luminances { width, height, .. } = *luminances;
-        let of_rows = luminances
-            .cells
-            .par_chunks(width as usize)
-            .enumerate()
-            .map(|(row, luminances)| {
-                let above: Vec<f64> = luminances
-                    .iter()
-                    .map(|luminance| (luminance - floor).max(0.0))
-                    .collect();
-                let weight = above.iter().sum::<f64>() * cell_solid_angle(row, width, height);
-                (shares(&above), weight)
-            });
-        let (of_cells, weights): (Vec<Vec<Share>>, Vec<f64>) = of_rows.unzip();
+        let columns = width as usize;
+        let of_rows = parallel::map(height as usize, |row| {
+            let luminances = luminances.cells[row * columns..][..columns].iter();
+            let above: Vec<f64> = luminances.map(|luminance| (luminance - floor).max(0.0)).collect();
+            let weight = above.iter().sum::<f64>() * cell_solid_angle(row, width, height);
+            (shares(&above), weight)
+        });
+        let (of_cells, weights): (Vec<Vec<Share>>, Vec<f64>) = of_rows.into_iter().unzip();
         let rows = shares(&weights);
         let of_rows = probabilities(&rows);
-        let cells = of_cells.par_iter().enumerate().flat_map_iter(|(row, shares)| {
-            let density = of_rows[row] / cell_solid_angle(row, width, height);
-            let cell = move |(share, probability): (&Share, f64)| Cell {
+        let cells = parallel::map(height as usize, |row| {
+            let (shares, density) = (&of_cells[row], of_rows[row] / cell_solid_angle(row, width, height));
+            let cell = |(share, probability): (&Share, f64)| Cell {
                 share: *share,
                 density: (density * probability) as f32,
             };
-            shares.iter().zip(probabilities(shares)).map(cell)
+            shares.iter().zip(probabilities(shares)).map(cell).collect::<Vec<_>>()
         });
         Self {
-            cells: in_large_pages(cells.collect()),
+            cells: in_large_pages(cells.concat()),
             rows,
             width,
             height,
@@ -222,9 +213,9 @@ pub(super) struct Luminances {
 impl Luminances {
     pub(super) fn of(map: &Map) -> Self {
         let (width, height) = cells_size(map.width, map.height);
-        let row = |row| cell_row_luminances(map, row, width, height);
+        let row = |row| cell_row_luminances(map, row as u32, width, height);
         Self {
-            cells: (0..height).into_par_iter().flat_map_iter(row).collect(),
+            cells: parallel::map(height as usize, row).concat(),
             width,
             height,
         }

@@ -9,6 +9,7 @@ use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
 use super::tree::Tree;
+use crate::parallel;
 use crate::scene::loading::{Cancelled, Loading};
 
 /// From this many triangles on, build time matters more than the last 3 % of visited nodes.
@@ -62,7 +63,7 @@ impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
         self.loading.step(format!("hierarchy of triangles, {percent} %"))?;
         let box_of = &self.box_of;
         if triangles.len() <= self.part_max {
-            let boxes: Vec<Aabb> = triangles.par_iter().map(|&triangle| box_of(triangle)).collect();
+            let boxes: Vec<Aabb> = parallel::map_each(triangles, |&triangle| box_of(triangle));
             let (part, order) = Tree::of(&build(&boxes, self.loading)?);
             let sorted: Vec<u32> = order.into_iter().map(|place| triangles[place as usize]).collect();
             triangles.copy_from_slice(&sorted);
@@ -80,14 +81,18 @@ impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
 
 /// Partitions triangles at `middle` by their centres, along the longest side of the centres' bounds.
 fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + Sync)) {
-    let centers = || triangles.par_iter().map(|&triangle| box_of(triangle).center());
-    let low = centers().reduce(|| Vec3A::INFINITY, Vec3A::min);
-    let high = centers().reduce(|| Vec3A::NEG_INFINITY, Vec3A::max);
+    let bounds = parallel::map_blocks(triangles.len(), |range| {
+        let centers = triangles[range].iter().map(|&triangle| box_of(triangle).center());
+        centers.fold([Vec3A::INFINITY, Vec3A::NEG_INFINITY], |[low, high], center| {
+            [low.min(center), high.max(center)]
+        })
+    });
+    let low = bounds.iter().fold(Vec3A::INFINITY, |low, block| low.min(block[0]));
+    let high = bounds
+        .iter()
+        .fold(Vec3A::NEG_INFINITY, |high, block| high.max(block[1]));
     let axis = (high - low).max_position();
-    let mut keyed: Vec<(f32, u32)> = triangles
-        .par_iter()
-        .map(|&triangle| (box_of(triangle).center()[axis], triangle))
-        .collect();
+    let mut keyed = parallel::map_each(triangles, |&triangle| (box_of(triangle).center()[axis], triangle));
     // Ties break by index, so that the order is deterministic.
     keyed.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     triangles
@@ -143,7 +148,7 @@ impl Clusters {
                 .to_array();
             u64::from(x) | u64::from(y) << 21 | u64::from(z) << 42
         };
-        let mut keyed: Vec<(u64, u32)> = boxes.par_iter().map(cell_of).zip(0..boxes.len() as u32).collect();
+        let mut keyed: Vec<(u64, u32)> = parallel::map(boxes.len(), |index| (cell_of(&boxes[index]), index as u32));
         keyed.par_sort_unstable();
         let is_start = |&i: &usize| i == 0 || i == keyed.len() || keyed[i].0 != keyed[i - 1].0;
         let starts = (0..=keyed.len()).filter(is_start).map(|i| i as u32).collect();

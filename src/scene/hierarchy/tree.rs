@@ -2,9 +2,9 @@
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
-use rayon::prelude::*;
 
 use super::triangle_box;
+use crate::parallel;
 
 /// A binary tree with a triangle per leaf, from left to right. It takes four bytes per triangle: boxes are recomputed from
 /// the triangles for each hierarchy.
@@ -108,13 +108,14 @@ pub(in crate::scene) struct BoxedTree<'a> {
 impl<'a> BoxedTree<'a> {
     /// The subtree of `root`; `corners` are those of the triangles as stored.
     pub fn new(tree: &'a Tree, root: Subtree, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
-        let triangles = (root.first..root.first + root.count).into_par_iter();
         let mut inner = vec![Subtree::default(); root.count as usize - 1];
         let mut boxed = Self {
             tree,
             root,
             inner_boxes: vec![Aabb::INVALID; inner.len()],
-            leaf_boxes: triangles.map(|triangle| triangle_box(corners(triangle))).collect(),
+            leaf_boxes: parallel::map(root.count as usize, |index| {
+                triangle_box(corners(root.first + index as u32))
+            }),
             inner: Vec::new(),
         };
         if let Some(first) = inner.first_mut() {

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use rayon::prelude::*;
-
 use super::report::{Entry, MaterialReport, Residual};
 use super::{ExchangeError, Format, Subject, Written};
 use crate::analysis::fit::merl::{CELLS, FILE_LENGTH, SCALES};
@@ -12,6 +10,7 @@ use crate::document::MaterialSettings;
 use crate::optics::layer::{material_evaluate, material_is_mirror, material_layers};
 use crate::optics::material::{Material, Surface};
 use crate::optics::vector::{Vec3, vec3};
+use crate::parallel;
 
 /// `.binary` files.
 pub struct Measured;
@@ -26,10 +25,7 @@ impl Format for Measured {
             path: path.to_owned(),
             reason,
         })?;
-        let cells: Vec<[Vec3<f64>; 2]> = (0..CELLS.iter().product())
-            .into_par_iter()
-            .map(|cell| reflectance.both_ways(cell))
-            .collect();
+        let cells = parallel::map(CELLS.iter().product(), |cell| reflectance.both_ways(cell));
         let mut bytes = Vec::with_capacity(FILE_LENGTH);
         bytes.extend(CELLS.iter().flat_map(|count| (*count as i32).to_le_bytes()));
         for (channel, scale) in SCALES.into_iter().enumerate() {

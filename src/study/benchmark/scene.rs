@@ -7,11 +7,11 @@ use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
 use crate::document::{Document, MaterialSettings};
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
+use crate::parallel;
 use crate::scene::camera::PixelFilter;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::mesh::Mesh;
@@ -119,10 +119,7 @@ fn sky_at(column: usize, row: usize) -> [f32; 3] {
 /// Writes the sky.
 fn write_sky(path: &Path) -> exr::error::UnitResult {
     let [width, height] = SKY;
-    let texels: Vec<[f32; 3]> = (0..width * height)
-        .into_par_iter()
-        .map(|index| sky_at(index % width, index / width))
-        .collect();
+    let texels = parallel::map(width * height, |index| sky_at(index % width, index / width));
     exr::prelude::write_rgb_file(path, width, height, |x, y| {
         let [red, green, blue] = texels[y * width + x];
         (red, green, blue)

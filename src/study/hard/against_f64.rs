@@ -2,8 +2,6 @@
 
 use std::sync::atomic::Ordering;
 
-use rayon::prelude::*;
-
 use super::{HardCase, HardError, Stage};
 use crate::compile::compile;
 use crate::cpu::probe::probe_material;
@@ -15,6 +13,7 @@ use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
 use crate::optics::random::hash_bits;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
+use crate::parallel;
 use crate::scene::surface::bent_normal;
 
 /// Pairs a lobe: of a thorough run and of a quick one.
@@ -141,7 +140,7 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
         };
         random_question(&mut numbers, material as u32, &shape)
     };
-    let questions: Vec<MaterialQuestion> = (0..pairs).into_par_iter().map(question).collect();
+    let questions: Vec<MaterialQuestion> = parallel::map(pairs, question);
     let scene = ProbeScene {
         tables: &tables,
         materials: &materials,
@@ -149,14 +148,10 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
     };
     let answers = stage.prober.materials(&scene, &questions)?;
     let stop = stage.stop();
-    let errors: Vec<Option<f64>> = questions
-        .par_iter()
-        .zip(&answers)
-        .map(|(question, answer)| match stop.load(Ordering::Relaxed) {
-            true => None,
-            false => error(&scene, question, answer),
-        })
-        .collect();
+    let errors = parallel::map(pairs, |pair| match stop.load(Ordering::Relaxed) {
+        true => None,
+        false => error(&scene, &questions[pair], &answers[pair]),
+    });
     stage.check_stop()?;
     let singular = errors.iter().filter(|error| error.is_none()).count();
     log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());

@@ -1,7 +1,6 @@
 //! Sums over many samples and many bounces, and the random numbers behind them.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use serde_json::json;
 
 use super::glb::Glb;
@@ -190,9 +189,8 @@ fn not_invertible(stage: &Stage) -> Result<f64, HardError> {
         let questions: Vec<_> = (0..count).map(question).collect();
         let key = random_state(pixel[0], pixel[1], seed, 0, *sequence).key;
         let answers = stage.prober.random(&questions)?;
-        lost += questions
-            .par_iter()
-            .zip(&answers)
+        let pairs = questions.iter().zip(&answers);
+        lost += pairs
             .filter(|(question, bits)| sample_from_bits(key, dimension, *sequence, bits[0]) != question.sample)
             .count();
     }

@@ -11,7 +11,6 @@ use json::extensions::texture::TextureTransform;
 use json::material::Material;
 use json::mesh::Primitive;
 use json::validation::Checked;
-use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
@@ -24,6 +23,7 @@ use super::material_extensions::{
 };
 use super::sheen;
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
+use crate::parallel;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
 use crate::scene::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
@@ -233,24 +233,19 @@ impl<'a> Materials<'a> {
                 self.report.note(Fate::Approximated, mean.what, &slots[mean.slot].name);
             }
         }
-        let converted: HashMap<usize, [Texture; 2]> = self
-            .conversions
-            .par_iter()
-            .map(|conversion| {
-                let image = |image: Option<usize>| decoded.get(&image?);
-                let name = format!("material {}", conversion.material);
-                let [diffuse, specular] = [conversion.diffuse, conversion.specular].map(image);
-                (
-                    conversion.material,
-                    convert_textures(&name, conversion.factors, diffuse, specular),
-                )
-            })
-            .collect();
-        let of_sheens: HashMap<PictureKey, Texture> = self
-            .sheens
-            .par_iter()
-            .flat_map_iter(|sheen| sheen.converted(&decoded))
-            .collect();
+        let converted: HashMap<usize, [Texture; 2]> = parallel::map_each(&self.conversions, |conversion| {
+            let image = |image: Option<usize>| decoded.get(&image?);
+            let name = format!("material {}", conversion.material);
+            let [diffuse, specular] = [conversion.diffuse, conversion.specular].map(image);
+            (
+                conversion.material,
+                convert_textures(&name, conversion.factors, diffuse, specular),
+            )
+        })
+        .into_iter()
+        .collect();
+        let of_sheens = parallel::map_each(&self.sheens, |sheen| sheen.converted(&decoded));
+        let of_sheens: HashMap<PictureKey, Texture> = of_sheens.into_iter().flatten().collect();
         for sheen in &self.sheens {
             if of_sheens.contains_key(&PictureKey::FuzzColor(sheen.slot)) {
                 // Its tint is in the texture.

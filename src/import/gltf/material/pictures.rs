@@ -6,11 +6,11 @@ use gltf::json;
 use json::extensions::texture::TextureTransform;
 use json::texture::WrappingMode;
 use json::validation::Checked;
-use rayon::prelude::*;
 
 use super::{Materials, Reference};
 use crate::files::Import;
 use crate::gltf::image;
+use crate::parallel;
 use crate::picture::{Encoded, Wanted};
 use crate::scene::report::Fate;
 use crate::scene::texture::TextureTarget;
@@ -72,7 +72,7 @@ impl Materials<'_> {
             let scaled = loading.check().map_err(|cancelled| cancelled.to_string());
             (image, scaled.and_then(|()| encoded.texture(wanted, budget)))
         };
-        let results: Vec<_> = pictures.into_par_iter().map(decode).collect();
+        let results: Vec<_> = parallel::map_into(pictures, decode);
         for (image, result) in results {
             let kept = result.and_then(|scaled| {
                 let taken = budget.take(scaled.texture.bytes() as u64);

@@ -5,10 +5,9 @@ mod sky;
 mod soft_box;
 mod studio;
 
-use rayon::prelude::*;
-
 use super::{Environment, MapError, environment_direction};
 use crate::optics::vector::Vec3;
+use crate::parallel;
 
 pub use rooms::{overcast, portrait, product, rim, warehouse};
 pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};
@@ -26,8 +25,7 @@ pub fn furnace() -> Result<Environment, MapError> {
 /// The texels of a map whose radiance is a function of the direction, taken at the texels' centres.
 fn texels_of(width: u32, height: u32, radiance: impl Fn(Vec3<f64>) -> [f32; 3] + Sync) -> Vec<[f32; 4]> {
     let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize];
-    let rows = texels.par_chunks_mut(width as usize).enumerate();
-    rows.for_each(|(row, texels)| {
+    parallel::for_rows(&mut texels, width as usize, |row, texels| {
         for (column, texel) in texels.iter_mut().enumerate() {
             let uv = [
                 (column as f64 + 0.5) / f64::from(width),
