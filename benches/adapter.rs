@@ -4,9 +4,12 @@
 //! `cargo bench --bench adapter`. The model's dispatch takes 10 µs and its samples' time, a read-back 0.2 ms. The host's parts
 //! run and are timed on this machine; the model's time is added to theirs.
 
+mod bumpy;
+
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use bumpy::bumpy_sphere;
 use bytemuck::Zeroable;
 use glossmith::analysis::adaptive::{Round, next_goals};
 use glossmith::analysis::noise::noise;
@@ -18,7 +21,6 @@ use glossmith::job::film::Film;
 use glossmith::job::tiles::{Order, Schedule, SliceLimits, TileGrid};
 use glossmith::render::display::display;
 use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::shapes::bumpy_sphere;
 use glossmith::scene::{Model, ModelSource, Slot};
 
 /// The model's rate in samples per second, and its times in seconds.

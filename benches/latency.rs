@@ -4,15 +4,25 @@
 //! `cargo bench --bench latency [-- light]`. The viewport of a window of 1440 × 900, the default scene, and a light over a
 //! model of 600 000 triangles. Reduced resolutions count, as they do in the window.
 
+mod bumpy;
+
 use std::time::{Duration, Instant};
 
+use bumpy::bumpy_sphere;
 use glossmith::document::{AreaLight, Document};
 use glossmith::render::EngineChoice;
-use glossmith::render::worker::Worker;
-use glossmith::scene::shapes::bumpy_sphere;
+use glossmith::render::worker::{Activity, Pace, Worker};
+use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
-use glossmith::study::benchmark::latency::{INTERVAL, VIEWPORT, await_kernel, first_image, viewport};
 
+/// Viewport of a window of 1440 × 900, in pixels.
+const VIEWPORT: [u32; 2] = [806, 780];
+/// Least time that a hand needs between two edits.
+const INTERVAL: Duration = Duration::from_millis(16);
+/// Polling interval of the worker.
+const GLANCE: Duration = Duration::from_millis(1);
+/// Samples of a render that is always interrupted.
+const SAMPLES: u32 = 1 << 20;
 /// Steps of a drag.
 const STEPS: u32 = 60;
 /// Longer than any kernel is compiled.
@@ -27,9 +37,9 @@ fn main() -> std::io::Result<()> {
             continue;
         }
         let worker = Worker::spawn(engine, || {})?;
-        let mut document = viewport(VIEWPORT);
+        let mut document = viewport();
         first_picture(&worker, &document);
-        await_kernel(&worker, PATIENCE);
+        await_kernel(&worker);
         let name = name(&worker);
         let drag = (0..STEPS).map(|step| {
             document.materials[0].roughness = 0.1 + 0.8 * step as f32 / STEPS as f32;
@@ -54,7 +64,7 @@ fn main() -> std::io::Result<()> {
             cross(&mut document);
             let milliseconds = first_picture(&worker, &document);
             let begun = Instant::now();
-            await_kernel(&worker, PATIENCE);
+            await_kernel(&worker);
             eprintln!(
                 "  {milliseconds:.0} ms, kernel after {:.1} s",
                 begun.elapsed().as_secs_f64()
@@ -69,7 +79,7 @@ fn main() -> std::io::Result<()> {
 /// Drags an area light over a large model.
 fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     let worker = Worker::spawn(engine, || {})?;
-    let mut document = viewport(VIEWPORT);
+    let mut document = viewport();
     document.model = ModelSource::File("bumpy sphere of 600 000 triangles".into());
     let model = Model {
         mesh: bumpy_sphere(600_000),
@@ -79,7 +89,7 @@ fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
     worker.assets().keep_model(document.model.clone(), model);
     document.lighting.area_lights = vec![AreaLight::default()];
     first_picture(&worker, &document);
-    await_kernel(&worker, PATIENCE);
+    await_kernel(&worker);
     let drag = (0..STEPS).map(|step| {
         document.lighting.area_lights[0].yaw_deg = f64::from(step);
         let milliseconds = first_picture(&worker, &document);
@@ -95,9 +105,45 @@ fn name(worker: &Worker) -> String {
     snapshot.engine.as_ref().map_or_else(String::new, ToString::to_string)
 }
 
+/// The default scene under the studio in a viewport.
+fn viewport() -> Document {
+    let mut document = Document::default();
+    document.lighting.environment = EnvironmentSource::Studio;
+    [document.render.width, document.render.height] = VIEWPORT;
+    document.render.samples = SAMPLES;
+    document
+}
+
 /// Milliseconds from submitting a document to its first picture.
 fn first_picture(worker: &Worker, document: &Document) -> f64 {
-    first_image(worker, document, PATIENCE).unwrap_or(f64::INFINITY)
+    let revision = worker.submit(document, Pace::Moving);
+    let shown = || {
+        let snapshot = worker.snapshot();
+        let image = snapshot.picture.as_ref();
+        let is_shown = image.is_some_and(|image| image.revision == revision);
+        snapshot.first_picture.filter(|_| is_shown)
+    };
+    awaited(shown).map_or(f64::INFINITY, |time| 1e3 * time.as_secs_f64())
+}
+
+/// Waits until the engine itself renders, not the CPU engine in its place.
+fn await_kernel(worker: &Worker) {
+    awaited(|| {
+        let snapshot = worker.snapshot();
+        (snapshot.activity == Activity::Rendering && !snapshot.progress.is_fallback).then_some(())
+    });
+}
+
+fn awaited<A>(look: impl Fn() -> Option<A>) -> Option<A> {
+    let begun = Instant::now();
+    while begun.elapsed() < PATIENCE {
+        let found = look();
+        if found.is_some() {
+            return found;
+        }
+        std::thread::sleep(GLANCE);
+    }
+    None
 }
 
 fn report(engine: &str, edit: &str, mut milliseconds: Vec<f64>) {

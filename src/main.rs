@@ -26,14 +26,6 @@ fn main() -> ExitCode {
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
     );
     logger.format(log_line);
-    #[cfg(feature = "window")]
-    {
-        let logger = logger.build();
-        let level = logger.filter();
-        // Nothing has set another one before.
-        let _ = glossmith::app::listen(logger, level);
-    }
-    #[cfg(not(feature = "window"))]
     logger.init();
     let done = run(Arguments::parse());
     let printed = console::finish().context("standard output could not be written to");

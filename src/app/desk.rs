@@ -12,7 +12,6 @@ use crate::app::services::library::Library;
 use crate::app::services::lobe_plots::{LobePlots, VIEW_ANGLE_DEG};
 use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
-use crate::app::services::offers::Offers;
 use crate::app::services::recent::Recent;
 use crate::app::services::reference::ReferenceImage;
 use crate::app::services::rendering::Rendering;
@@ -53,8 +52,8 @@ pub(super) struct Shared {
     pub(super) viewing: Viewing,
     /// The pixel that is looked at closely.
     pub(super) look: Look,
-    /// What is offered to new users.
-    pub(super) offers: Offers,
+    /// The window may offer to download what it lacks.
+    pub(super) offers_downloads: bool,
     /// What the plots of lobes share.
     pub(super) lobe_plots: LobePlots,
     /// The materials to choose from.

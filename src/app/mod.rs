@@ -39,8 +39,6 @@ use services::autosave::{self, Autosave, Leftover};
 pub use services::crash::report_panics;
 use services::edits::Edits;
 use services::lobe_plots::LobePlots;
-pub use services::log_failures::listen;
-use services::offers::Offers;
 use services::recent::Recent;
 use services::rendering::Rendering;
 use services::selection::Selection;
@@ -161,8 +159,6 @@ pub struct App {
     unsaved: Unsaved,
     /// The file that a screenshot is wanted for.
     window_picture: Option<PathBuf>,
-    /// What to say once the clipboard has taken a copy.
-    copied: Option<String>,
     meter: FrameMeter,
     title: String,
     theme: egui::ThemePreference,
@@ -229,16 +225,13 @@ impl App {
                 environments,
                 recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
-                rendering: Rendering::new(engine, (kept.engine, kept.ray_queries), options.cache.as_deref()),
+                rendering: Rendering::new(engine, (kept.engine, kept.ray_queries)),
                 viewing: Viewing {
                     resolution: options.resolution.unwrap_or(kept.resolution),
                     ..Viewing::default()
                 },
                 look: services::look::Look::default(),
-                offers: Offers {
-                    hints_seen: kept.hints_seen,
-                    offers_downloads: options.offers_downloads,
-                },
+                offers_downloads: options.offers_downloads,
                 lobe_plots: LobePlots::default(),
                 library,
                 shelves: services::shelves::Shelves::new(kept.shelves),
@@ -268,7 +261,6 @@ impl App {
             leftovers: Vec::new(),
             unsaved: Unsaved::default(),
             window_picture: None,
-            copied: None,
             meter: FrameMeter::default(),
             title: String::new(),
             theme: kept.theme,
@@ -518,7 +510,6 @@ impl eframe::App for App {
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
-        self.report_clipboard();
         self.watch_files();
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
@@ -548,7 +539,6 @@ impl eframe::App for App {
         }
         self.record_and_submit(&ctx);
         self.hand_over_pictures(&ctx);
-        self.watch_copies(&ctx);
         self.hold_thumbnails(&ctx);
         self.save_for_recovery(&ctx);
         self.guard_close(&ctx);
@@ -574,7 +564,6 @@ impl eframe::App for App {
             ray_queries: self.shared.rendering.kept_ray_queries,
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
-            hints_seen: self.shared.offers.hints_seen,
             shelves: self.shared.shelves.kept.clone(),
         };
         kept.save(storage);

@@ -137,8 +137,6 @@ pub(super) struct KeptSettings {
     pub(super) denoise: Denoise,
     /// Files opened and saved, the latest first.
     pub(super) recent: Vec<PathBuf>,
-    /// How many of the hints for new users are over.
-    pub(super) hints_seen: usize,
     /// What the browser remembers.
     pub(super) shelves: KeptShelves,
     /// Files that others may name, wherever they lie.
@@ -157,7 +155,6 @@ impl Default for KeptSettings {
             ray_queries: RayQueries::Auto,
             denoise: Denoise::Off,
             recent: Vec::new(),
-            hints_seen: usize::MAX,
             shelves: KeptShelves::default(),
             allowed: Vec::new(),
         }
@@ -169,7 +166,6 @@ impl KeptSettings {
     pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
         let first = || Self {
             denoise: first_denoise(),
-            hints_seen: 0,
             ..Self::default()
         };
         let mut kept: Self = creation.storage.map_or_else(Self::default, |storage| {

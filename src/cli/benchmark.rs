@@ -10,7 +10,7 @@ use crate::console::output;
 use crate::render::EngineChoice;
 use crate::study::benchmark::compare::compare;
 use crate::study::benchmark::report::Report;
-use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark, kernel::compile_on};
+use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
 
 /// Arguments of `glossmith benchmark`.
 #[derive(Debug, Args)]
@@ -18,7 +18,7 @@ pub struct BenchmarkArguments {
     /// The engine to measure; auto stands for the CPU and every adapter of the machine.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
-    /// About how long to measure [default: 180, with --quick 20].
+    /// About how long to measure [default: 120, with --quick 20].
     #[arg(long, value_name = "SECONDS", value_parser = super::parse::number_in(1.0..=36_000.0), allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Measure little and small: to see that it works.
@@ -27,9 +27,6 @@ pub struct BenchmarkArguments {
     /// Measure nothing, and print two results side by side, with ratios and what of them is noise.
     #[arg(long, value_names = ["A.json", "B.json"], num_args = 2, conflicts_with_all = ["engine", "seconds", "quick"])]
     compare: Option<Vec<PathBuf>>,
-    /// Print the seconds that an adapter takes to compile: for the measurement itself.
-    #[arg(long, value_name = "ADAPTER", hide = true)]
-    compile_on: Option<String>,
     #[command(flatten)]
     answer: Answer,
 }
@@ -40,10 +37,6 @@ pub struct BenchmarkArguments {
 /// A file that cannot be read or written, or is no result.
 pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
     arguments.answer.check_writable()?;
-    if let Some(adapter) = &arguments.compile_on {
-        output!("{}", compile_on(adapter)?.as_secs_f64());
-        return Ok(());
-    }
     let (text, is_written) = match &arguments.compare {
         Some(paths) => {
             let reports = paths
@@ -69,7 +62,6 @@ fn measured(arguments: &BenchmarkArguments) -> anyhow::Result<Report> {
         engine: arguments.engine,
         seconds: arguments.seconds.unwrap_or(SECONDS[usize::from(arguments.quick)]),
         quick: arguments.quick,
-        program: std::env::current_exe().ok(),
     };
     let bar = Bar::new()?;
     Ok(benchmark(&options, &mut |progress| bar.show(progress))?)

@@ -56,13 +56,13 @@ pub struct Arguments {
     pub command: Option<Command>,
     /// Files to open in the editor.
     pub files: Vec<PathBuf>,
-    /// The engine that renders: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
+    /// The engine that renders: a hardware GPU if there is one, else the CPU; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub engine: EngineChoice,
     /// The instructions that the CPU engine computes with. They change how fast it is, and nothing else.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|avx512|avx2|neon|portable", value_parser = parse::instructions)]
     pub instructions: Instructions,
-    /// Whether the GPU engine uses hardware ray tracing: if measured to be faster; if available; never.
+    /// Whether the GPU engine uses hardware ray tracing: on a hardware GPU; on any adapter that has it; never.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
     pub ray_queries: RayQueries,
     /// The device that denoises: the fastest; a GPU (CUDA, HIP, SYCL, Metal), or the CPU where none works; the CPU.

@@ -111,7 +111,7 @@ pub struct SceneArguments {
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for) [default: auto].
     #[arg(long, value_name = "auto|all|LIST", allow_hyphen_values = true)]
     effects: Option<EffectSwitches>,
-    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
+    /// The engine: a hardware GPU if there is one, else the CPU; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub(super) engine: EngineChoice,
 }

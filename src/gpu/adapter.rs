@@ -1,13 +1,10 @@
 //! Adapters: selection, requirements, requested limits.
 
-use std::sync::Mutex;
-
 use pollster::block_on;
 
 use super::array::TEXEL_ROW;
 use super::device::{GpuDevice, GpuError, driver, is_software};
 use super::traversal::Traversal;
-use crate::panics::lock;
 
 /// Kinds of adapters to consider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,9 +58,6 @@ fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
     }
 }
 
-/// Key of the adapter that [`GpuAdapter::find`] prefers within a kind.
-static PREFERRED: Mutex<Option<String>> = Mutex::new(None);
-
 /// An adapter that has not been opened.
 #[derive(Debug)]
 pub struct GpuAdapter {
@@ -79,14 +73,14 @@ impl GpuAdapter {
     ///
     /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
-        let preferred = lock(&PREFERRED).clone();
-        let mut adapters = Self::of_kind(kind);
-        adapters.sort_by_key(|adapter| (Some(adapter.key()) != preferred, rank(&adapter.info)));
-        adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
-            AdapterKind::Any => "",
-            AdapterKind::Hardware => "hardware ",
-            AdapterKind::Software => "software ",
-        }))
+        let adapters = Self::of_kind(kind).into_iter();
+        adapters
+            .min_by_key(|adapter| rank(&adapter.info))
+            .ok_or(GpuError::NoAdapter(match kind {
+                AdapterKind::Any => "",
+                AdapterKind::Hardware => "hardware ",
+                AdapterKind::Software => "software ",
+            }))
     }
 
     /// All adapters, real GPUs first.
@@ -118,16 +112,6 @@ impl GpuAdapter {
         } else {
             adapters
         }
-    }
-
-    /// Has [`Self::find`] choose this adapter among those of its kind, in the whole process; `None`: the fastest again.
-    pub fn prefer(adapter: Option<&Self>) {
-        *lock(&PREFERRED) = adapter.map(Self::key);
-    }
-
-    /// Identification among the adapters of a machine: interface and name.
-    pub fn key(&self) -> String {
-        format!("{} {}", self.info.backend, self.info.name)
     }
 
     /// True for a software adapter, which runs on the CPU.

@@ -15,7 +15,6 @@ pub mod material_array;
 mod pipeline;
 pub mod probe;
 mod resources;
-pub mod sampling;
 pub mod scatter;
 pub mod scene_group;
 mod scene_pass;

@@ -5,7 +5,6 @@ use bytemuck::{Pod, Zeroable};
 use super::compute::{self, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::scene_group;
-use super::timer::Timer;
 use super::traversal::Traversal;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
@@ -43,7 +42,9 @@ pub struct Scatter {
 #[derive(Debug)]
 pub struct Scatterer {
     gpu: GpuDevice,
-    pass: LobePass,
+    pipeline: wgpu::ComputePipeline,
+    /// Layouts of the lobes' tables, and of uniforms and output.
+    groups: [wgpu::BindGroupLayout; 2],
 }
 
 impl Scatterer {
@@ -53,8 +54,15 @@ impl Scatterer {
     ///
     /// [`GpuError::Shader`] if the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let pass = LobePass::new(&gpu, "scatter", "draw", &[])?;
-        Ok(Self { gpu, pass })
+        let name = "scatter";
+        let module = compute::module(&gpu, name, Traversal::Own)?;
+        let groups = [
+            scene_group::tables_layout(&gpu),
+            compute::group_layout(&gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
+        ];
+        let layout = compute::pipeline_layout(&gpu, name, &groups.each_ref().map(Some));
+        let pipeline = compute::pipeline(&gpu, &module, &layout, "draw", &[], None)?;
+        Ok(Self { gpu, pipeline, groups })
     }
 
     /// Draws the samples.
@@ -69,8 +77,12 @@ impl Scatterer {
         for first in (0..request.count).step_by(BATCH as usize) {
             let count = (request.count - first).min(BATCH);
             let workgroups = [count.div_ceil(64), 1];
-            let uniforms = uniforms(request, first, count);
-            self.pass.dispatch(gpu, &tables, &out, &uniforms, workgroups, None);
+            let uniforms = gpu.uniforms(&uniforms(request, first, count));
+            let groups = [
+                scene_group::bind_tables(gpu, &self.groups[0], &tables),
+                compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, &out)], &[]),
+            ];
+            compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, None);
             samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
         }
         Ok(ScatterCloud::from_raw(samples))
@@ -90,53 +102,5 @@ fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
         seed: request.seed,
         first,
         count,
-    }
-}
-
-/// A pass of `shaders/pass/` that needs only the lobes of a scene: the tables in group 0, uniforms and output in group 1.
-#[derive(Debug)]
-pub(super) struct LobePass {
-    pipeline: wgpu::ComputePipeline,
-    groups: [wgpu::BindGroupLayout; 2],
-}
-
-impl LobePass {
-    /// Compiles an entry point of `shaders/pass/NAME.wgsl`.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses it.
-    pub(super) fn new(
-        gpu: &GpuDevice,
-        name: &str,
-        entry_point: &str,
-        constants: &[(&str, f64)],
-    ) -> Result<Self, GpuError> {
-        let module = compute::module(gpu, name, Traversal::Own)?;
-        let groups = [
-            scene_group::tables_layout(gpu),
-            compute::group_layout(gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
-        ];
-        let layout = compute::pipeline_layout(gpu, name, &groups.each_ref().map(Some));
-        let pipeline = compute::pipeline(gpu, &module, &layout, entry_point, constants, None)?;
-        Ok(Self { pipeline, groups })
-    }
-
-    /// Submits one dispatch.
-    pub(super) fn dispatch<U: Pod>(
-        &self,
-        gpu: &GpuDevice,
-        tables: &wgpu::TextureView,
-        out: &wgpu::Buffer,
-        uniforms: &U,
-        workgroups: [u32; 2],
-        timer: Option<&Timer>,
-    ) {
-        let uniforms = gpu.uniforms(uniforms);
-        let groups = [
-            scene_group::bind_tables(gpu, &self.groups[0], tables),
-            compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, out)], &[]),
-        ];
-        compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, timer);
     }
 }

@@ -9,7 +9,6 @@ pub mod light_sums;
 pub mod plan;
 pub mod precision;
 pub mod probe;
-pub mod sampling;
 pub mod scatter;
 pub mod tiles;
 

@@ -34,17 +34,15 @@ pub struct NamedPoint {
     pub is_best: bool,
 }
 
-/// Bars beside names, several for each.
+/// Bars beside names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarPlot {
     /// What it is.
     pub title: String,
     /// What the bars' lengths mean, with the unit.
     pub label: String,
-    /// What the first, second, … bar of each name is.
-    pub series: Vec<String>,
-    /// The names with their bars; all as many as there are series.
-    pub bars: Vec<(String, Vec<f64>)>,
+    /// The names with their values.
+    pub bars: Vec<(String, f64)>,
 }
 
 /// Width and height of a chart of points.
@@ -148,26 +146,21 @@ fn spread(heights: &[i32], gap: i32, bottom: i32) -> Vec<i32> {
 }
 
 impl BarPlot {
-    fn group_height(&self) -> f64 {
-        BAR_HEIGHT * self.series.len() as f64 + BAR_GAP
+    fn bottom(&self) -> f64 {
+        (BAR_HEIGHT + BAR_GAP) * self.bars.len() as f64
     }
 
     /// The largest and the smallest value, 0 at least among them.
     fn reach(&self) -> [f64; 2] {
-        let values = self
-            .bars
-            .iter()
-            .flat_map(|(_, values)| values)
-            .filter(|x| x.is_finite());
-        let reach = values.fold([0.0_f64; 2], |[low, high], x| [low.min(*x), high.max(*x)]);
+        let values = self.bars.iter().map(|(_, value)| *value).filter(|x| x.is_finite());
+        let reach = values.fold([0.0_f64; 2], |[low, high], x| [low.min(x), high.max(x)]);
         if reach == [0.0; 2] { [0.0, 1.0] } else { reach }
     }
 }
 
 impl Figure for BarPlot {
     fn size(&self) -> (u32, u32) {
-        let rows = (self.bars.len() as f64 * self.group_height()) as u32;
-        (BARS_WIDTH, TITLE + rows + 34 + 24 * self.series.len() as u32)
+        (BARS_WIDTH, TITLE + self.bottom() as u32 + 40)
     }
 
     fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
@@ -178,7 +171,7 @@ impl Figure for BarPlot {
         let [low, high] = self.reach();
         let width = f64::from(BARS_WIDTH) - NAMES_WIDTH - NUMBERS_WIDTH;
         let across = |value: f64| NAMES_WIDTH + width * (value - low) / (high - low);
-        let bottom = self.bars.len() as f64 * self.group_height();
+        let bottom = self.bottom();
         let at = |x: f64, y: f64| (px(x, style), px(y, style));
         let step = round_step(high - low, 6.0);
         let marks = (0..=12)
@@ -190,34 +183,21 @@ impl Figure for BarPlot {
             let label = font(13.0, style).pos(Pos::new(HPos::Center, VPos::Top));
             area.draw(&Text::new(number(mark), at(across(mark), bottom + 2.0), label))?;
         }
-        for (row, (name, values)) in self.bars.iter().enumerate() {
-            let top = row as f64 * self.group_height() + 0.5 * BAR_GAP;
-            let middle = top + 0.5 * BAR_HEIGHT * self.series.len() as f64;
+        for (row, (name, value)) in self.bars.iter().enumerate() {
+            let middle = (row as f64 + 0.5) * (BAR_HEIGHT + BAR_GAP);
             let label = font(14.0, style).pos(Pos::new(HPos::Right, VPos::Center));
             area.draw(&Text::new(name.clone(), at(NAMES_WIDTH - 8.0, middle), label))?;
-            for (index, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-                let y = top + BAR_HEIGHT * index as f64;
+            if value.is_finite() {
                 let ends = [across(value.min(0.0)), across(value.max(0.0))];
-                let bar = [at(ends[0], y + 1.0), at(ends[1], y + BAR_HEIGHT - 1.0)];
-                area.draw(&Rectangle::new(bar, PALETTE[index % PALETTE.len()].filled()))?;
+                let half = 0.5 * BAR_HEIGHT - 1.0;
+                let bar = [at(ends[0], middle - half), at(ends[1], middle + half)];
+                area.draw(&Rectangle::new(bar, PALETTE[0].filled()))?;
                 let label = font(12.0, style).pos(Pos::new(HPos::Left, VPos::Center));
-                let beside = at(ends[1] + 5.0, y + 0.5 * BAR_HEIGHT);
-                area.draw(&Text::new(three_digits(*value), beside, label))?;
+                area.draw(&Text::new(three_digits(*value), at(ends[1] + 5.0, middle), label))?;
             }
         }
         let label = font(14.0, style).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new(
-            self.label.clone(),
-            at(NAMES_WIDTH, bottom + 26.0),
-            label.clone(),
-        ))?;
-        for (index, name) in self.series.iter().enumerate() {
-            let y = bottom + 48.0 + 22.0 * index as f64 - 4.0;
-            let color = PALETTE[index % PALETTE.len()];
-            let mark = [at(NAMES_WIDTH, y - 5.0), at(NAMES_WIDTH + 18.0, y + 5.0)];
-            area.draw(&Rectangle::new(mark, color.filled()))?;
-            area.draw(&Text::new(name.clone(), at(NAMES_WIDTH + 26.0, y), label.clone()))?;
-        }
+        area.draw(&Text::new(self.label.clone(), at(NAMES_WIDTH, bottom + 26.0), label))?;
         Ok(())
     }
 }

@@ -91,7 +91,6 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
                     repaint: &repaint,
                 };
                 *lock(&of_thread.failure) = None;
-                let _at_work = super::quiet::at_work();
                 if let Err(why) = caught(|| work(query, &responder)) {
                     *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
                 }

@@ -21,7 +21,6 @@ pub mod precision_maps;
 pub mod priority;
 mod progress;
 pub mod queue;
-pub mod quiet;
 pub mod samples;
 pub mod seen_map;
 mod session;

@@ -10,7 +10,6 @@ use super::engine::EngineChoice;
 use super::error::SessionError;
 use super::mailbox::{IDLE, Mailbox};
 use super::output::{self, OutputError, Rendered};
-use super::quiet;
 use super::session::Session;
 use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
@@ -171,7 +170,6 @@ impl Queue {
             let mut session: Option<(EngineChoice, Session)> = None;
             while let Some((id, task, engine)) = of_thread.next() {
                 repaint();
-                let _at_work = quiet::at_work();
                 let mut on_progress = |share: f64| {
                     let continues = of_thread.report(id, share);
                     repaint();

@@ -27,10 +27,6 @@ use crate::store::project::{document_text, parse_document};
 /// The attribute of a file with sums: a line with the numbers of the samples, one with the world's units, and the document.
 /// One alone, as several are written in another order each time.
 const KEPT: &str = "glossmithSums";
-/// The attributes that older files have in its place.
-const DOCUMENT: &str = "glossmithDocument";
-const SAMPLES: &str = "glossmithSamples";
-const UNITS: &str = "glossmithWorldUnits";
 const HALVES: [&str; 2] = ["even", "odd"];
 const COLORS: [&str; 3] = ["R", "G", "B"];
 /// Channels of the guides, in the order of [`crate::job::guides::GuideSums`].
@@ -60,8 +56,8 @@ pub enum SumsError {
     /// Not an EXR file, or damaged.
     #[error("{}: cannot be read as an image: {reason}; render it again with --keep-sums", path.display())]
     Read { path: PathBuf, reason: String },
-    /// An image without sums.
-    #[error("{}: has no sums ({missing} is missing); render it with --keep-sums", path.display())]
+    /// An image without sums, or with those of an older version.
+    #[error("{}: has no sums that this version reads ({missing} is missing); render it with --keep-sums", path.display())]
     NoSums { path: PathBuf, missing: String },
     /// The document inside is damaged.
     #[error(transparent)]
@@ -230,17 +226,12 @@ impl KeptFilm {
         let file = Sums::open(path)?;
         let [samples, units, document] = file.kept()?;
         let document = parse_document(path, document.as_bytes())?.value;
-        let samples = ranges(&samples).ok_or_else(|| file.missing(SAMPLES))?;
-        let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
-        let mut groups = without_what_is_off(&document).light_groups();
-        let has_sums = |name: &GroupName| file.find(&format!("{}.R.high", light_sums(*name, HALVES[0]))).is_some();
-        if !groups.iter().any(has_sums) {
-            // Older files have the names of their groups alone.
-            groups.clear();
-        }
+        let samples = ranges(&samples).ok_or_else(|| file.missing(KEPT))?;
+        let world_units_per_unit = units.parse().map_err(|_| file.missing(KEPT))?;
+        let groups = without_what_is_off(&document).light_groups();
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
-            guides: file.find(&format!("{}samples", file.guides_of(HALVES[0]))).is_some(),
+            guides: file.has_guides(),
             light_groups: groups.len() as u32,
         };
         let [width, height] = file.size();
@@ -262,15 +253,14 @@ impl KeptFilm {
         if extras.guides {
             let guides: &mut [[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice_mut(&mut film.guides);
             for (half, word) in HALVES.into_iter().enumerate() {
-                let prefix = file.guides_of(word);
                 for (i, name) in GUIDES.into_iter().enumerate() {
-                    let values = file.numbers(&format!("{prefix}{name}"))?.iter();
+                    let values = file.numbers(&format!("guides.{word}.{name}"))?.iter();
                     guides
                         .iter_mut()
                         .zip(values)
                         .for_each(|(sums, value)| sums[half][i] = *value);
                 }
-                let samples = file.words(&format!("{prefix}samples"))?.iter();
+                let samples = file.words(&format!("guides.{word}.samples"))?.iter();
                 guide_samples
                     .iter_mut()
                     .zip(samples)
@@ -389,24 +379,14 @@ impl<'a> Sums<'a> {
         }
     }
 
-    fn attribute(&self, name: &str) -> Result<String, SumsError> {
-        match self.layer.attributes.other.get(&Text::from(name)) {
-            Some(AttributeValue::Text(text)) => Ok(text.to_string()),
-            _ => Err(self.missing(name)),
-        }
-    }
-
     /// The numbers of the samples, the world's units and the document.
     fn kept(&self) -> Result<[String; 3], SumsError> {
-        let Ok(text) = self.attribute(KEPT) else {
-            return Ok([
-                self.attribute(SAMPLES)?,
-                self.attribute(UNITS)?,
-                self.attribute(DOCUMENT)?,
-            ]);
+        let missing = || self.missing(KEPT);
+        let Some(AttributeValue::Text(text)) = self.layer.attributes.other.get(&Text::from(KEPT)) else {
+            return Err(missing());
         };
-        let parts: Vec<String> = text.splitn(3, '\n').map(str::to_owned).collect();
-        parts.try_into().map_err(|_| self.missing(KEPT))
+        let parts: Vec<String> = text.to_string().splitn(3, '\n').map(str::to_owned).collect();
+        parts.try_into().map_err(|_| missing())
     }
 
     fn find(&self, name: &str) -> Option<&FlatSamples> {
@@ -416,12 +396,10 @@ impl<'a> Sums<'a> {
         channels.find(is_meant).map(|channel| &channel.sample_data)
     }
 
-    /// Prefix of a half's guide channels: older files have only the sums over both halves.
-    fn guides_of(&self, half: &str) -> String {
-        match self.find("guides.samples") {
-            Some(_) => "guides.".to_owned(),
-            None => format!("guides.{half}."),
-        }
+    /// Whether it has guides. Those of an older version, over both halves, are missing in each.
+    fn has_guides(&self) -> bool {
+        let mut channels = self.layer.channel_data.list.iter();
+        channels.any(|channel| channel.name.to_string().starts_with("sums.guides."))
     }
 
     fn words(&self, name: &str) -> Result<&[u32], SumsError> {

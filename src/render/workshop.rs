@@ -106,7 +106,6 @@ impl Workshop {
         let (blank, kind, traversal) = (self.blank.take(), self.kind, self.traversal);
         let prepared = job.clone();
         let work = move || {
-            let _at_work = super::quiet::at_work();
             let prepare = || {
                 let mut engine = match blank {
                     Some(engine) => engine,

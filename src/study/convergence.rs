@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::references::{Effort, ReferenceCache};
+use super::references::{Effort, reference};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
@@ -79,7 +79,6 @@ pub struct ConvergenceReport {
 pub fn convergence(
     document: &Document,
     engine: EngineChoice,
-    cache: &ReferenceCache,
     reference_seconds: f64,
     watch: &mut Watch<'_>,
 ) -> Result<ConvergenceReport, StudyError> {
@@ -119,7 +118,7 @@ pub fn convergence(
     };
     let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
     let mut on_progress = |share: f64| steps.report("Reference", share);
-    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut on_progress)?;
+    let reference = reference(&mut other, document, Precision::Single, effort, &mut on_progress)?;
     Ok(ConvergenceReport {
         machine: Machine::of(session.engine()),
         width: document.render.width,

@@ -1,5 +1,5 @@
 //! What is found out with the renderer. Studies of cost and accuracy: a race of techniques, a ledger of effects and settings,
-//! scaling with size and a benchmark, all by the engine's own clock, in interleaved trials. Proofs: checks and hard cases.
+//! and a benchmark, all by the engine's own clock, in interleaved trials. Proofs: checks and hard cases.
 //! Questions: values of a material, single functions of an engine, and the account of a path.
 
 pub mod benchmark;
@@ -11,9 +11,7 @@ pub mod hard;
 pub mod ledger;
 pub mod probe;
 pub mod race;
-pub mod references;
-pub mod sampling;
-pub mod scaling;
+mod references;
 pub mod technique;
 
 use std::time::Duration;

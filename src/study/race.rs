@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::references::{Effort, Reference, ReferenceCache};
+use super::references::{Effort, Reference, reference};
 use super::{Machine, Steps, StudyError, Watch, warmed, without_target};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
@@ -38,8 +38,6 @@ pub struct RaceOptions {
     pub slice: Duration,
     /// Longest time for one reference, seconds.
     pub reference_seconds: f64,
-    /// Cache of references.
-    pub cache: ReferenceCache,
 }
 
 impl RaceOptions {
@@ -52,7 +50,6 @@ impl RaceOptions {
             noise: 0.02,
             slice: Duration::from_millis(250),
             reference_seconds: 60.0,
-            cache: ReferenceCache::of_user(),
         }
     }
 }
@@ -281,9 +278,7 @@ fn references_of(
         let what = format!("Reference: {what}");
         let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
         on_progress(0.0)?;
-        let reference = options
-            .cache
-            .reference(session, document, precision, effort, &mut on_progress)?;
+        let reference = reference(session, document, precision, effort, &mut on_progress)?;
         steps.finish(2.0);
         let converged = Arc::new(Converged {
             reference,

@@ -45,9 +45,7 @@ fn every_command_answers_in_json_on_standard_output() {
         ),
         ("lobe --plot polar --material gold --output l.csv".to_owned(), "lobes"),
         ("fit --target ggx:0.3 --output f.json".to_owned(), "after"),
-        ("study sampling --quick --engine cpu".to_owned(), "rows"),
         (format!("study convergence {scene} --quick"), "points"),
-        (format!("study scaling {scene} --quick"), "points"),
         (format!("study ledger {scene} --quick"), "entries"),
         (
             format!("study accuracy {scene} --quick --technique strategy=lobe --noise 0.5"),

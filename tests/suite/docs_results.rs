@@ -31,10 +31,6 @@ pub fn table_of_results() -> String {
             "M rays/s",
             "clean, s",
             "denoised, s",
-            "edit, ms",
-            "kernel, s: cold, cached",
-            "Fig. 8, ms: geometric, GGX",
-            "proofs",
         ],
         files.iter().flat_map(of_file),
     )
@@ -45,10 +41,6 @@ fn result_row(file: &str, report: &Report, engine: &EngineReport) -> Vec<String>
         let row = engine.row(step, case);
         row.map_or_else(|| "–".to_owned(), |row| number(row.value.median))
     };
-    let both = |step: &str, [a, b]: [&str; 2]| format!("{}, {}", value(step, a), value(step, b));
-    let [passed, failed] = engine.proofs.iter().fold([0, 0], |[passed, failed], proof| {
-        [passed + proof.passed, failed + proof.failed.len()]
-    });
     let name = match engine.engine.as_str() {
         "cpu" => format!(
             "{}, {} threads, {}",
@@ -67,9 +59,5 @@ fn result_row(file: &str, report: &Report, engine: &EngineReport) -> Vec<String>
         value("rays", "default"),
         value("to clean", "default"),
         value("to clean, denoised", "default"),
-        value("edit", "roughness dragged"),
-        both("kernel", ["cold", "from the cache"]),
-        both("sampling", ["geometric/smooth", "ggx"]),
-        format!("{passed} passed, {failed} failed"),
     ]
 }

@@ -3,7 +3,6 @@
 use std::mem::offset_of;
 
 use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
-use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
 use glossmith::job::guides::GuideSums;
 use glossmith::optics::material::{FIELDS, Material};
@@ -68,9 +67,6 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
-        }),
-        layout!(Sampling: Sampling {
-            normal, roughness, width, rows, height, samples, seed, reserved_a, reserved_b, reserved_c,
         }),
     ]
 }

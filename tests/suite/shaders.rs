@@ -350,9 +350,6 @@ const WITHOUT_TWIN: &[&str] = &[
     "MATERIAL_WORDS",
     "RANDOM_WORDS",
     "RAY_WORDS",
-    // The quad of the sampling study.
-    "LIGHT_CORNER",
-    "LIGHT_SIDES",
 ];
 
 #[test]

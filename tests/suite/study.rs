@@ -1,13 +1,8 @@
-//! Studies: the race, the ledger, what sampling costs, how time grows; in numbers small enough for a test.
+//! Studies: the race and the ledger, in numbers small enough for a test.
 
-use std::path::Path;
 use std::time::Duration;
 
 use glossmith::document::{Document, MaterialSettings, Strategy};
-use glossmith::gpu::sampling::SamplingMeter;
-use glossmith::gpu::{AdapterKind, GpuDevice};
-use glossmith::job::sampling::{SamplingRequest, SamplingStage};
-use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::{EngineChoice, Session};
@@ -15,10 +10,8 @@ use glossmith::scene::ModelSource;
 use glossmith::study::StudyError;
 use glossmith::study::ledger::{LedgerOptions, ledger};
 use glossmith::study::race::{Race, RaceOptions, Runner, race};
-use glossmith::study::references::ReferenceCache;
 use glossmith::study::technique::{Setting, Technique, techniques};
 use serde_json::Value;
-use tempfile::TempDir;
 
 use super::cli_support::Workplace;
 
@@ -31,14 +24,13 @@ fn sphere(side: u32) -> Document {
     document
 }
 
-fn quick(names: &[&str], cache: ReferenceCache) -> RaceOptions {
+fn quick(names: &[&str]) -> RaceOptions {
     let techniques = names.iter().map(|name| name.parse().unwrap()).collect();
     RaceOptions {
         seconds: 0.3,
         noise: 0.05,
         slice: Duration::from_millis(10),
         reference_seconds: 1.0,
-        cache,
         ..RaceOptions::new(EngineChoice::Cpu, techniques)
     }
 }
@@ -60,7 +52,7 @@ fn a_race_tells_noise_from_bias() {
     let options = RaceOptions {
         // Enough to tell a bias of 2 % where other tests take their part of the processor.
         reference_seconds: 5.0,
-        ..quick(&techniques, ReferenceCache::none())
+        ..quick(&techniques)
     };
     let race = run(&document, &options);
     // What changes nothing does not take part twice.
@@ -116,7 +108,7 @@ fn a_race_shows_what_multiple_scattering_brings() {
     let material = &mut document.materials[0];
     (material.lobe, material.roughness, material.base_color) = (Lobe::Ggx, 0.9, [1.0; 3]);
     let techniques = ["scattering=multiple", "scattering=single"];
-    let race = run(&document, &quick(&techniques, ReferenceCache::none()));
+    let race = run(&document, &quick(&techniques));
     let single = &runner(&race, "scattering=single").bias;
     assert!(single.is_resolved() && single.value > 0.1, "{single:?}");
     // The document scatters so already: with it the other takes part under its own name alone.
@@ -131,7 +123,7 @@ fn a_race_shows_what_multiple_scattering_brings() {
 #[test]
 fn a_race_is_stopped_when_it_is_no_longer_wanted() {
     let mut told = 0;
-    let stopped = race(&sphere(16), &quick(&["bounces=1"], ReferenceCache::none()), &mut |_| {
+    let stopped = race(&sphere(16), &quick(&["bounces=1"]), &mut |_| {
         told += 1;
         told < 3
     });
@@ -144,7 +136,7 @@ fn a_race_is_stopped_when_it_is_no_longer_wanted() {
 fn a_race_asks_after_every_turn_whether_it_is_still_wanted() {
     let options = RaceOptions {
         seconds: 0.1,
-        ..quick(&["bounces=1"], ReferenceCache::none())
+        ..quick(&["bounces=1"])
     };
     let mut words: Vec<String> = Vec::new();
     race(&sphere(16), &options, &mut |progress| {
@@ -163,53 +155,8 @@ fn a_race_asks_after_every_turn_whether_it_is_still_wanted() {
 fn a_black_picture_has_no_relative_error() {
     let mut document = sphere(16);
     document.lighting.strength = 0.0;
-    let error = race(&document, &quick(&[], ReferenceCache::none()), &mut |_| true);
+    let error = race(&document, &quick(&[]), &mut |_| true);
     assert!(matches!(error, Err(StudyError::Black)));
-}
-
-fn references(folder: &Path) -> Vec<(std::path::PathBuf, u64)> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
-    entries
-        .map(|entry| (entry.as_ref().unwrap().path(), entry.unwrap().metadata().unwrap().len()))
-        .collect()
-}
-
-#[test]
-fn references_are_kept_by_what_they_are_of_and_within_their_space() {
-    let folder = TempDir::new().unwrap();
-    let cache = || ReferenceCache::at(folder.path().to_owned());
-    let document = sphere(16);
-    let options = RaceOptions {
-        seconds: 0.05,
-        noise: 0.5,
-        ..quick(&["strategy=lobe"], cache())
-    };
-    run(&document, &options);
-    // The exact one and the document's own, which its strategies share.
-    let first = references(folder.path());
-    assert_eq!(first.len(), 2, "{first:?}");
-    let contents: Vec<Vec<u8>> = first.iter().map(|(path, _)| std::fs::read(path).unwrap()).collect();
-    run(&document, &options);
-    let again: Vec<Vec<u8>> = first.iter().map(|(path, _)| std::fs::read(path).unwrap()).collect();
-    assert_eq!(contents, again, "they were read, not rendered anew");
-    let mut other = document.clone();
-    other.materials[0].roughness = 0.7;
-    run(&other, &options);
-    assert_eq!(references(folder.path()).len(), 4);
-    // Damaged files are rendered anew.
-    for (path, _) in references(folder.path()) {
-        std::fs::write(path, "nonsense").unwrap();
-    }
-    run(&document, &options);
-    let one = first[0].1;
-    let tight = RaceOptions {
-        cache: cache().with_limit(2 * one + one / 2),
-        ..options
-    };
-    other.materials[0].roughness = 0.9;
-    run(&other, &tight);
-    let total: u64 = references(folder.path()).iter().map(|(_, bytes)| bytes).sum();
-    assert!(total <= 2 * one + one / 2, "{total} bytes of {one} each");
 }
 
 #[test]
@@ -285,37 +232,6 @@ fn effects_to_take_out_are_those_of_the_scene() {
     assert_eq!(both.render.strategy, Strategy::Light);
 }
 
-#[test]
-fn both_engines_draw_the_same_directions_for_the_study() {
-    let mut meter = SamplingMeter::new(GpuDevice::open(AdapterKind::Any).unwrap());
-    for lobe in Lobe::ALL {
-        for stage in SamplingStage::ALL {
-            let request = SamplingRequest {
-                lobe: *lobe,
-                curve: Curve::Smooth,
-                roughness: 0.3,
-                stage,
-                width: 24,
-                rows: 16,
-                height: 20,
-                samples: 5,
-                seed: 3,
-            };
-            let (cpu, gpu) = (glossmith::cpu::sampling::run(&request), meter.run(&request).unwrap());
-            assert!(cpu.seconds > 0.0 && gpu.seconds >= 0.0);
-            // A direction at the triangle's edge may fall on either side.
-            let tolerance = if stage == SamplingStage::Rays { 3.0 } else { 0.05 };
-            assert!(
-                (cpu.sum - gpu.sum).abs() < tolerance,
-                "{lobe:?} {stage:?}: {} {}",
-                cpu.sum,
-                gpu.sum
-            );
-            assert!(cpu.sum.abs() > 1.0, "{lobe:?} {stage:?}: {}", cpu.sum);
-        }
-    }
-}
-
 fn json(workplace: &Workplace, name: &str) -> Value {
     serde_json::from_str(&workplace.read(name)).unwrap()
 }
@@ -340,7 +256,7 @@ fn accuracy_writes_the_race() {
     let workplace = Workplace::new();
     workplace.done(
         "study accuracy --quick --engine cpu --model sphere --size 24x24 --technique strategy --technique bounces=1 \
-         --cache kept --output found",
+         --output found",
     );
     let race = json(&workplace, "found/accuracy.json");
     assert_eq!(race["machine"]["engine"], "cpu");
@@ -382,71 +298,14 @@ fn accuracy_writes_the_race() {
             "{sheet}"
         );
     }
-    assert!(workplace.path("kept").read_dir().unwrap().count() >= 2);
     workplace.refused(2, "study accuracy --technique velvet", &["velvet", "strategy"]);
     workplace.refused(2, "study accuracy --technique bounces=99", &["bounces", "64"]);
 }
 
 #[test]
-fn sampling_compares_all_lobes_with_the_paper() {
-    let workplace = Workplace::new();
-    // Differences of times: where other tests take their part of the processor even their signs are chance, and they are
-    // measured again.
-    let mut measured = (0..5).map(|attempt| {
-        let folder = format!("found{attempt}");
-        let run = workplace.done(&format!("study sampling --quick --engine cpu --output {folder}"));
-        (run, json(&workplace, &format!("{folder}/sampling.json")), folder)
-    });
-    let is_of_hundred = |row: &&Value| row["samples"] == 100;
-    let is_told = |row: &Value| number(row, "sampling_ms") > 0.0 && number(row, "against_geometric") > 0.0;
-    let are_told = |report: &Value| {
-        report["rows"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .filter(is_of_hundred)
-            .all(is_told)
-    };
-    let (run, report, folder) = measured
-        .find(|(_, report, _)| are_told(report))
-        .expect("not all of them are disturbed");
-    assert_eq!((number(&report, "width"), number(&report, "height")), (48.0, 32.0));
-    let rows = report["rows"].as_array().unwrap();
-    for samples in [1, 100] {
-        let of_samples: Vec<&Value> = rows.iter().filter(|row| row["samples"] == samples).collect();
-        for name in [
-            "geometric/sqrt",
-            "geometric/smooth",
-            "ggx",
-            "ggx-2018",
-            "ggx-ndf",
-            "phong",
-            "blinn-phong",
-        ] {
-            let row = of_samples
-                .iter()
-                .find(|row| row["name"] == name)
-                .unwrap_or_else(|| panic!("{name}"));
-            assert!(number(row, "frame_ms") > 0.0);
-        }
-    }
-    let is_unit = |row: &&Value| row["name"] == "geometric/smooth";
-    for row in rows.iter().filter(is_of_hundred).filter(is_unit) {
-        assert_eq!(number(row, "against_geometric"), 1.0);
-    }
-    assert!(report["numbers_ms"][1].as_f64().unwrap() > 0.0);
-    assert_eq!(report["paper"].as_array().unwrap().len(), 4);
-    assert!(report["verdict"].as_array().unwrap().len() >= 5);
-    assert!(run.stdout.contains("(the paper: 4.84 ×)"), "{}", run.stdout);
-    has_plots(&workplace, &folder, &["sampling"]);
-}
-
-#[test]
 fn convergence_writes_error_against_time() {
     let workplace = Workplace::new();
-    workplace.done(
-        "study convergence --quick --engine cpu --model sphere --size 24x24 --samples 48 --cache kept --output found",
-    );
+    workplace.done("study convergence --quick --engine cpu --model sphere --size 24x24 --samples 48 --output found");
     let report = json(&workplace, "found/convergence.json");
     let points = report["points"].as_array().unwrap();
     // How often the error is looked at depends on the time that rendering takes: after the first sample, soon after it
@@ -466,27 +325,6 @@ fn convergence_writes_error_against_time() {
         points.len() + 1
     );
     has_plots(&workplace, "found", &["convergence"]);
-}
-
-#[test]
-fn scaling_grows_one_thing_at_a_time() {
-    let workplace = Workplace::new();
-    workplace.done("study scaling --quick --engine cpu --size 24x24 --output found");
-    let report = json(&workplace, "found/scaling.json");
-    for growing in ["triangles", "pixels", "bounces", "texels"] {
-        let points: Vec<&Value> = report["points"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .filter(|point| point["growing"] == growing)
-            .collect();
-        assert_eq!(points.len(), 2, "{growing}");
-        assert!(number(points[0], "size") < number(points[1], "size"));
-        for point in points {
-            assert!(number(point, "ns_per_sample") > 0.0 && number(point, "setup_seconds") > 0.0);
-        }
-        has_plots(&workplace, "found", &[&format!("scaling-{growing}")]);
-    }
 }
 
 #[test]

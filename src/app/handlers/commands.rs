@@ -12,6 +12,7 @@ use crate::app::sheets::{book, palette};
 use crate::app::{App, denoised_by, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::EngineChoice;
+use crate::render::worker::Level;
 use crate::scene::ModelOptions;
 use crate::scene::camera::{Projection, framing_distance};
 use crate::store::examples::{EXAMPLES, Example};
@@ -31,7 +32,10 @@ impl App {
             Action::Drop(paths) => self.drop_files(paths),
             Action::CancelLoading => self.worker.cancel_loading(),
             Action::Paste(text) => self.paste(&text),
-            Action::PastePicture => self.refuse_pasted_picture(),
+            Action::PastePicture => {
+                let text = "the clipboard holds an image: save it as a file, and open or drop that";
+                self.report(Level::Warning, text);
+            }
             Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
             Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),

@@ -64,7 +64,7 @@ impl App {
         match copied {
             Ok((text, words)) => {
                 ctx.copy_text(text);
-                self.copied = Some(words);
+                self.report(Level::Info, words);
             }
             Err(error) => self.report(Level::Error, error),
         }

@@ -1,6 +1,5 @@
 //! What the window does about actions, commands, files and answers: the methods of the editor, by what they concern.
 
-mod clipboard;
 mod commands;
 mod compare;
 pub(super) mod dropped;

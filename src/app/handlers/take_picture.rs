@@ -62,7 +62,8 @@ impl App {
     fn copy_picture(&mut self, ctx: &egui::Context, picture: &Picture) {
         let size = [picture.width as usize, picture.height as usize];
         ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-        self.copied = Some(format!("copied the image ({} × {})", picture.width, picture.height));
+        let words = format!("copied the image ({} × {})", picture.width, picture.height);
+        self.report(Level::Info, words);
     }
 
     /// Writes the layers that the renderer made.

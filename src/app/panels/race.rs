@@ -64,11 +64,7 @@ impl Panel for RacePanel {
         let state = self;
         choices(ui, state);
         let help = "Renders each technique in turn; measures noise and bias.";
-        let (chosen, seconds, cache) = (
-            state.chosen.clone(),
-            state.seconds,
-            desk.shared.rendering.references.clone(),
-        );
+        let (chosen, seconds) = (state.chosen.clone(), state.seconds);
         let takes = desk.snapshot.scene.as_ref().map(|scene| {
             let most = seconds_at_most(&techniques(&chosen, &scene.job.plan), seconds);
             format!("takes at most {}", about(most))
@@ -84,7 +80,6 @@ impl Panel for RacePanel {
                 seconds,
                 slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
                 reference_seconds: REFERENCE_TIMES * seconds,
-                cache,
                 ..RaceOptions::new(engine(desk), techniques(&chosen, &plan))
             };
             Box::new(move |watch| race(&document, &options, watch))

@@ -1,9 +1,6 @@
 //! What the viewport's renderer is set to beside the document.
 
-use std::path::Path;
-
 use crate::render::{EngineChoice, RayQueries};
-use crate::study::references::ReferenceCache;
 
 /// The engine that renders, and when it rests.
 pub(in crate::app) struct Rendering {
@@ -16,22 +13,18 @@ pub(in crate::app) struct Rendering {
     pub(in crate::app) is_paused: bool,
     /// A study measures, for which it rests.
     pub(in crate::app) is_measuring: bool,
-    /// Converged images to measure against.
-    pub(in crate::app) references: ReferenceCache,
 }
 
 impl Rendering {
-    /// Renders with an engine; `kept` is remembered. Converged images are kept in the folder `cache`.
-    pub(in crate::app) fn new(engine: EngineChoice, kept: (EngineChoice, RayQueries), cache: Option<&Path>) -> Self {
+    /// Renders with an engine; `kept` is remembered.
+    pub(in crate::app) fn new(engine: EngineChoice, kept: (EngineChoice, RayQueries)) -> Self {
         let (kept_engine, kept_ray_queries) = kept;
-        let references = cache.map(|cache| ReferenceCache::at(cache.join("references")));
         Self {
             engine,
             kept_engine,
             kept_ray_queries,
             is_paused: false,
             is_measuring: false,
-            references: references.unwrap_or_else(ReferenceCache::none),
         }
     }
 }

@@ -9,7 +9,6 @@ use std::time::{Duration, Instant};
 use egui::{Key, Ui};
 
 use crate::app::kit::{theme, widgets};
-use crate::app::services::log_failures;
 use crate::render::output::FORMATS;
 use crate::scene::texture::TextureTarget;
 use crate::store::exchange;
@@ -187,8 +186,6 @@ impl Dialogs {
             self.open_field(purpose, &suggestion, why);
             return;
         }
-        // What an earlier one has said.
-        log_failures::dialog_failed();
         match self.open_dialog(purpose, &suggestion, ctx) {
             Some(answer) => {
                 self.pending = Some(Pending {
@@ -257,7 +254,7 @@ impl Dialogs {
     /// where the system's dialog was left without a choice. `recent` are the folders of files opened and saved last.
     pub(in crate::app) fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
         let chosen = self
-            .poll(log_failures::dialog_failed)
+            .poll()
             .or_else(|| self.show_field(ui, recent).map(|(purpose, path)| (purpose, Some(path))))?;
         if let Some(folder) = chosen.1.as_ref().and_then(|path| path.parent()) {
             self.folder = Some(folder.to_owned());
@@ -265,9 +262,8 @@ impl Dialogs {
         Some(chosen)
     }
 
-    /// Takes the system's dialog's answer. `failed` says whether the dialog could not be opened: it answers then as if it
-    /// had been cancelled, sooner or later.
-    fn poll(&mut self, failed: impl FnOnce() -> bool) -> Option<(Purpose, Option<PathBuf>)> {
+    /// Takes the system's dialog's answer. A dialog that could not be opened answers as if it had been cancelled, soon.
+    fn poll(&mut self) -> Option<(Purpose, Option<PathBuf>)> {
         let answer = self.pending.as_ref()?.answer.try_recv();
         if answer == Err(TryRecvError::Empty) {
             return None;
@@ -277,7 +273,7 @@ impl Dialogs {
         if path.is_some() {
             // The same file need not be typed any more.
             self.field.take_if(|field| field.purpose == pending.purpose);
-        } else if failed() || pending.since.elapsed() < NO_DIALOG {
+        } else if pending.since.elapsed() < NO_DIALOG {
             self.typed = Some(Why::Missing);
             if self.field.is_none() {
                 self.open_field(pending.purpose, &pending.suggestion, Why::Missing);
@@ -511,34 +507,16 @@ mod tests {
     }
 
     #[test]
-    fn a_dialog_that_fails_late_is_followed_by_the_path_field() {
-        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
-        assert_eq!(dialogs.poll(|| true), None);
-        assert!(!dialogs.is_open(), "it has not answered");
-        sender.send(None).expect("somebody listens");
-        assert_eq!(dialogs.poll(|| true), None);
-        let field = dialogs.field.take().expect("the path field");
-        assert_eq!((field.purpose, field.why), (Purpose::SaveProject, Why::Missing));
-        assert!(field.text.ends_with("untitled.glossmith.json"));
-        // From now on without trying.
-        dialogs.ask(Purpose::Open, String::new(), &egui::Context::default());
-        assert!(dialogs.is_open() && dialogs.pending.is_none());
-    }
-
-    #[test]
     fn a_dialog_left_without_a_choice_is_told_and_one_that_hangs_can_be_done_without() {
         let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
         sender.send(None).expect("somebody listens");
-        assert_eq!(dialogs.poll(|| false), Some((Purpose::SaveProject, None)));
+        assert_eq!(dialogs.poll(), Some((Purpose::SaveProject, None)));
         let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
         dialogs.ask(Purpose::SaveProject, String::new(), &egui::Context::default());
         assert_eq!(dialogs.field.as_ref().map(|field| field.why), Some(Why::Waiting));
         // The file that is chosen there after all.
         sender.send(Some("/a.json".into())).expect("somebody listens");
-        assert_eq!(
-            dialogs.poll(|| false),
-            Some((Purpose::SaveProject, Some("/a.json".into())))
-        );
+        assert_eq!(dialogs.poll(), Some((Purpose::SaveProject, Some("/a.json".into()))));
         assert!(!dialogs.is_asking());
     }
 }

@@ -2,7 +2,7 @@
 
 use egui::{Rect, Ui, vec2};
 
-use super::{LOADING_MARGIN, hints};
+use super::LOADING_MARGIN;
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::services::beside::started;
@@ -30,7 +30,7 @@ impl DenoiserOffer {
     /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
     pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         if self.is_declined
-            || !desk.shared.offers.offers_downloads
+            || !desk.shared.offers_downloads
             || !can_fetch()
             || (self.worker.is_none() && !Library::is_missing())
         {
@@ -45,7 +45,7 @@ impl DenoiserOffer {
             }
             return;
         }
-        let up = LOADING_MARGIN + ABOVE + HEIGHT + hints::raised(area, desk);
+        let up = LOADING_MARGIN + ABOVE + HEIGHT;
         let corner = area.left_bottom() + vec2(LOADING_MARGIN, -up);
         let builder = egui::UiBuilder::new()
             .scope_id(egui::Id::unique("denoiser offer"))

@@ -2,7 +2,7 @@
 
 use egui::{Rect, Ui, Vec2, pos2, vec2};
 
-use super::{LOADING_MARGIN, hints};
+use super::LOADING_MARGIN;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
@@ -79,7 +79,7 @@ pub(super) fn open_model(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     if is_own || desk.shared.compare.is_on || area.width() < OPEN_MODEL_FROM {
         return;
     }
-    let up = LOADING_MARGIN + theme::ROW_HEIGHT + hints::raised(area, desk);
+    let up = LOADING_MARGIN + theme::ROW_HEIGHT;
     let corner = area.left_bottom() + vec2(LOADING_MARGIN, -up);
     let builder = egui::UiBuilder::new()
         .scope_id(egui::Id::unique("open your model"))

@@ -7,7 +7,6 @@
 mod compare;
 mod denoiser;
 mod header;
-mod hints;
 mod legend;
 mod light_handles;
 mod loading;
@@ -254,7 +253,6 @@ impl Viewport {
         }
         messages::open_model(ui, area, desk);
         self.denoiser.show(ui, area, desk);
-        hints::show(ui, area, desk);
         messages::show(ui, area, desk);
         drop_hint(ui, area);
     }

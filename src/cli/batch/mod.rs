@@ -58,7 +58,7 @@ pub struct BatchArguments {
     /// Where a line of JSON goes for each image; - is standard output.
     #[arg(long, value_name = "FILE|-", default_value = "-")]
     json: Destination,
-    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the CPU.
+    /// The engine: a hardware GPU if there is one, else the CPU; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
 }

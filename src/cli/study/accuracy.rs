@@ -6,7 +6,7 @@ use clap::Args;
 use image::RgbImage;
 
 use super::folder::Folder;
-use super::{Bar, CacheArguments, CommonArguments, digits};
+use super::{Bar, CommonArguments, digits};
 use crate::console::{message, output};
 use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;
@@ -37,8 +37,9 @@ pub(super) struct AccuracyArguments {
     /// sequence, adaptive, bounces, fresnel and lobe].
     #[arg(long = "technique", value_name = "SETTINGS|KIND", value_parser = parse_techniques)]
     techniques: Vec<String>,
-    #[command(flatten)]
-    cache: CacheArguments,
+    /// Longest time for one converged image.
+    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
+    reference_time: Option<f64>,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -69,8 +70,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         seconds,
         noise: noise.unwrap_or(NOISE),
         slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
-        reference_seconds: arguments.cache.reference_time.unwrap_or(REFERENCE_TIMES * seconds),
-        cache: arguments.cache.cache(),
+        reference_seconds: arguments.reference_time.unwrap_or(REFERENCE_TIMES * seconds),
         ..RaceOptions::new(common.scene.engine, runners)
     };
     message!(

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::folder::Folder;
-use super::{Bar, CacheArguments, CommonArguments, digits};
+use super::{Bar, CommonArguments, digits};
 use crate::console::output;
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
@@ -18,8 +18,9 @@ const QUICK_SAMPLES: u32 = 64;
 /// Arguments of `glossmith study convergence`.
 #[derive(Debug, Args)]
 pub(super) struct ConvergenceArguments {
-    #[command(flatten)]
-    cache: CacheArguments,
+    /// Longest time for one converged image.
+    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
+    reference_time: Option<f64>,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -36,11 +37,10 @@ pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
     } else {
         REFERENCE_SECONDS
     };
-    let seconds = arguments.cache.reference_time.unwrap_or(seconds);
+    let seconds = arguments.reference_time.unwrap_or(seconds);
     let report = {
         let bar = Bar::new()?;
-        let cache = arguments.cache.cache();
-        convergence(&document, common.scene.engine, &cache, seconds, &mut |progress| {
+        convergence(&document, common.scene.engine, seconds, &mut |progress| {
             bar.show(progress)
         })?
     };

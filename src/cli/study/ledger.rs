@@ -94,11 +94,10 @@ fn print(found: &Ledger) {
 }
 
 fn plot(ledger: &Ledger) -> BarPlot {
-    let bar = |entry: &Entry| (entry.label.clone(), vec![100.0 * entry.share_of_frame]);
+    let bar = |entry: &Entry| (entry.label.clone(), 100.0 * entry.share_of_frame);
     BarPlot {
         title: format!("What is paid for what: {}", ledger.machine.adapter),
         label: "Share of the frame's time (%); below 0: time is saved".to_owned(),
-        series: vec!["time".to_owned()],
         bars: ledger.entries.iter().map(bar).collect(),
     }
 }

@@ -4,8 +4,6 @@ mod accuracy;
 mod convergence;
 mod folder;
 mod ledger;
-mod sampling;
-mod scaling;
 
 use std::path::PathBuf;
 
@@ -18,7 +16,6 @@ use super::scene::SceneArguments;
 use crate::document::Document;
 use crate::render::{EngineChoice, Session};
 use crate::study::StudyProgress;
-use crate::study::references::ReferenceCache;
 
 /// Largest side of an image of `--quick`.
 const QUICK_SIDE: u32 = 48;
@@ -36,12 +33,8 @@ pub struct StudyArguments {
 enum Study {
     /// Race techniques against each other: time to a given noise against bias, images of equal time and of equal error.
     Accuracy(Box<accuracy::AccuracyArguments>),
-    /// Measure what drawing directions costs, for all lobes: the paper's Fig. 8 on this machine.
-    Sampling(sampling::SamplingArguments),
     /// Show the error of one image against time.
     Convergence(Box<convergence::ConvergenceArguments>),
-    /// Show how time grows with triangles, pixels, bounces and the size of the environment.
-    Scaling(Box<scaling::ScalingArguments>),
     /// Report what each effect and setting costs in time and does to noise and image.
     Ledger(Box<ledger::LedgerArguments>),
 }
@@ -53,9 +46,7 @@ enum Study {
 pub fn run(arguments: &StudyArguments) -> anyhow::Result<()> {
     match &arguments.study {
         Study::Accuracy(arguments) => accuracy::run(arguments),
-        Study::Sampling(arguments) => sampling::run(arguments),
         Study::Convergence(arguments) => convergence::run(arguments),
-        Study::Scaling(arguments) => scaling::run(arguments),
         Study::Ledger(arguments) => ledger::run(arguments),
     }
 }
@@ -90,26 +81,6 @@ impl CommonArguments {
             (render.width, render.height) = (render.width.min(QUICK_SIDE), render.height.min(QUICK_SIDE));
         }
         Ok(document)
-    }
-}
-
-/// Where converged images are kept.
-#[derive(Debug, Args)]
-struct CacheArguments {
-    /// The folder that keeps converged images from one study to the next [default: the user's cache, or below the
-    /// folder in the variable GLOSSMITH_CACHE].
-    #[arg(long, value_name = "FOLDER")]
-    cache: Option<PathBuf>,
-    /// Longest time for one converged image.
-    #[arg(long, value_name = "SECONDS", value_parser = super::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
-    reference_time: Option<f64>,
-}
-
-impl CacheArguments {
-    fn cache(&self) -> ReferenceCache {
-        self.cache
-            .clone()
-            .map_or_else(ReferenceCache::of_user, ReferenceCache::at)
     }
 }
 

@@ -45,7 +45,7 @@ impl Source<'_> {
     pub(super) fn check_decoding(&self, bytes: &[u8]) -> Result<(), EnvironmentError> {
         let name = self.path.to_string_lossy().into_owned();
         let bytes = bytes.into();
-        self.within(self.budget.check(Encoded { name, bytes }.cost(u32::MAX)))
+        self.within(self.budget.check(Encoded { name, bytes }.cost()))
     }
 
     /// The error for an exceeded budget.

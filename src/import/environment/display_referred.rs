@@ -7,7 +7,6 @@ use image::{DynamicImage, ImageError};
 use super::canvas::Canvas;
 use super::decoded::{Picture, Source};
 use super::error::EnvironmentError;
-use super::gain_map;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
@@ -58,23 +57,16 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let floats =
         contained(|| float_tiff::decode(&bytes)).unwrap_or_else(|| Err("its pixels contradict each other".into()));
     if let Some(floats) = floats.map_err(damaged)? {
-        let size = [floats.width, floats.height];
-        return of_light(source, size, |column, row| floats.rgb(column, row));
+        let mut canvas = Canvas::new(source, floats.width.into(), floats.height.into())?;
+        for row in 0..floats.height {
+            (0..floats.width).for_each(|column| canvas.add_color(column, row, floats.rgb(column, row)));
+        }
+        return Ok(canvas.finish());
     }
     source.loading.step("decoding the image")?;
     let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
     let image = image.unwrap_or_else(|| Err(damaged("its pixels contradict each other".to_owned())))?;
-    let light = match source.encoding {
-        EnvironmentEncoding::Display => {
-            contained(|| gain_map::light(&bytes, &image)).unwrap_or_else(|| Some(Err("it is damaged".to_owned())))
-        }
-        EnvironmentEncoding::Linear => None,
-    };
     drop(bytes);
-    if let Some(Ok(light)) = &light {
-        let size = [image.width(), image.height()];
-        return of_light(source, size, |column, row| light.rgb(column, row));
-    }
     let mut canvas = Canvas::new(source, image.width().into(), image.height().into())?;
     if matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
         for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
@@ -94,25 +86,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
     let mut picture = canvas.finish();
     picture.warnings.extend(codes.warning());
-    if let Some(Err(why)) = light {
-        picture
-            .warnings
-            .push(format!("Its gain map (Ultra HDR) can't be used: {why}."));
-    }
     Ok(picture)
-}
-
-/// A panorama of linear light by column and row.
-fn of_light(
-    source: Source<'_>,
-    [width, height]: [u32; 2],
-    rgb: impl Fn(u32, u32) -> [f32; 3],
-) -> Result<Picture, EnvironmentError> {
-    let mut canvas = Canvas::new(source, width.into(), height.into())?;
-    for row in 0..height {
-        (0..width).for_each(|column| canvas.add_color(column, row, rgb(column, row)));
-    }
-    Ok(canvas.finish())
 }
 
 fn image_error(path: &Path, error: ImageError) -> EnvironmentError {

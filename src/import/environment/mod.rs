@@ -7,7 +7,6 @@ mod decoded;
 mod display_referred;
 mod error;
 mod exr_window;
-mod gain_map;
 mod luminance_chroma;
 mod open_exr;
 mod radiance_hdr;

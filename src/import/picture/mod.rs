@@ -4,8 +4,6 @@ mod basis;
 pub(crate) mod exr_space;
 pub(crate) mod float_tiff;
 pub(crate) mod gpu;
-mod large_png;
-mod rle_bmp;
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -15,9 +13,7 @@ use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2
 use image::error::{LimitError, LimitErrorKind};
 use image::{DynamicImage, ImageDecoder as _, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
 
-use self::large_png::{Texels as Rows, size_within};
 use crate::budget::Budget;
-use crate::free_memory::LIMIT_VARIABLE;
 use crate::optics::primaries::{Matrix, NoSpace, transformed};
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
@@ -35,14 +31,8 @@ pub(super) const DECODED_MAX: u64 = 2 << 30;
 const GROWTH: [u64; 2] = [1 << 14, 1 << 20];
 /// Temporary bytes per texel of decoding: for 8-bit codes, and for deeper values.
 const TEXEL_COSTS: [u64; 2] = [12, 28];
-/// Smallest side to which images are reduced in order to fit the budget.
-const SIDE_LEAST: u32 = 1024;
-/// Temporary bytes per texel of a row while rows are reduced.
-const ROW_COST: u64 = 48;
 /// Temporary bytes per texel of decoding a GPU container.
 const CONTAINER_COST: u64 = 8;
-/// Place of the byte of a PNG file that says whether it is interlaced.
-const INTERLACE: usize = 28;
 /// The first bytes of an OpenEXR file.
 const EXR: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// Largest side of an OpenEXR image, in pixels.
@@ -130,8 +120,6 @@ pub(super) struct Scaled {
     pub texture: Texture,
     /// Size of the file's image, if reduced.
     from: Option<[u32; 2]>,
-    /// True if it was reduced more than wanted, to fit the budget.
-    is_for_memory: bool,
     note: Option<&'static str>,
 }
 
@@ -143,53 +131,28 @@ impl Scaled {
         if let Some(note) = self.note {
             report.note(Fate::Approximated, note, name);
         }
-        if let Some(reduction) = self.reduction() {
+        if let Some([width, height]) = self.from {
+            let Texture {
+                width: columns,
+                height: rows,
+                ..
+            } = self.texture;
+            let reduction = format!("a texture of {width} × {height}, used at {columns} × {rows}");
             report.note(Fate::Approximated, reduction, name);
         }
-    }
-
-    /// The reduction in words, if any.
-    fn reduction(&self) -> Option<String> {
-        let [width, height] = self.from?;
-        let size = [self.texture.width, self.texture.height]
-            .map(|side| side.to_string())
-            .join(" × ");
-        let why = match self.is_for_memory {
-            true => format!(", to fit the memory of its import; allow more by {LIMIT_VARIABLE}=MIB"),
-            false => String::new(),
-        };
-        Some(format!("a texture of {width} × {height}, used at {size}{why}"))
     }
 }
 
 impl Encoded<'_> {
-    /// Approximate memory for decoding with sides of at most `side_max` in bytes, by the header.
-    pub fn cost(&self, side_max: u32) -> u64 {
+    /// Approximate memory for decoding in bytes, by the header.
+    pub fn cost(&self) -> u64 {
         let header = header(&self.name, &self.bytes);
         // Containers say their size in many ways: their blocks hold a texel a byte at most.
         let of_container = CONTAINER_COST * self.bytes.len() as u64;
-        header.map_or(of_container, |header| header.cost(side_max).max(of_container))
+        header.map_or(of_container, |header| header.cost().max(of_container))
     }
 
-    /// The same at the size that fits the budget.
-    pub fn cost_within(&self, side_max: u32, budget: &Budget) -> u64 {
-        self.cost(self.side_within(side_max, budget))
-    }
-
-    /// The largest side at which the map leaves half of the budget to others and can be decoded, if any: `side_max`, halved.
-    fn side_within(&self, side_max: u32, budget: &Budget) -> u32 {
-        let Some(header) = header(&self.name, &self.bytes) else {
-            return side_max;
-        };
-        let left = budget.left();
-        let fits = |side: u32| header.kept(side) <= left / 2 && header.cost(side) <= left;
-        let [width, height] = header.size;
-        let sides = std::iter::successors(Some(side_max.min(width.max(height))), |side| Some(side / 2));
-        let mut sides = sides.take_while(|side| *side >= SIDE_LEAST);
-        sides.find(|side| fits(*side)).unwrap_or(side_max)
-    }
-
-    /// The texture map, if the import's budget permits. Rather than to exceed that, it is reduced.
+    /// The texture map, if the import's budget permits.
     ///
     /// # Errors
     ///
@@ -197,44 +160,11 @@ impl Encoded<'_> {
     pub fn texture(self, wanted: Wanted, budget: &Budget) -> Result<Scaled, String> {
         check_growth(&self.name, &self.bytes)?;
         let Wanted { is_color, side_max } = wanted;
-        let side = self.side_within(side_max, budget);
-        budget.check(self.cost(side)).map_err(|over| over.to_string())?;
-        let whole = header(&self.name, &self.bytes).map(|header| header.size);
-        let (decoded, by_rows) = match self.by_rows(side, is_color)? {
-            Some(decoded) => (decoded, true),
-            None => (decode_bytes(self.name, &self.bytes)?, false),
-        };
+        budget.check(self.cost()).map_err(|over| over.to_string())?;
+        let decoded = decode_bytes(self.name, &self.bytes)?;
         let note = decoded.note.filter(|_| is_color);
-        let (texture, from) = scaled_to(decoded.texture(is_color), side, is_color);
-        let from = if by_rows { whole } else { from };
-        let is_for_memory = from.is_some() && side < side_max && whole.is_some_and(|[w, h]| w.max(h) > side);
-        Ok(Scaled {
-            texture,
-            from,
-            is_for_memory,
-            note,
-        })
-    }
-
-    /// A PNG image that is larger than `side_max`, reduced row by row.
-    fn by_rows(&self, side_max: u32, is_color: bool) -> Result<Option<Decoded>, String> {
-        let is_large = |header: Header| header.is_by_rows && header.size[0].max(header.size[1]) > side_max;
-        if !header(&self.name, &self.bytes).is_some_and(is_large) {
-            return Ok(None);
-        }
-        let reduced = contained(|| large_png::reduced(&self.bytes, side_max, is_color));
-        let reduced = reduced.unwrap_or_else(|| Err("it is damaged".to_owned()))?;
-        Ok(reduced.map(|reduced| Decoded {
-            name: self.name.clone(),
-            width: reduced.size[0],
-            height: reduced.size[1],
-            texels: match reduced.texels {
-                Rows::Codes8(codes) => Numbers::Codes8(codes),
-                Rows::Codes16(codes) => Numbers::Codes16(codes),
-            },
-            rec709_from: None,
-            note: None,
-        }))
+        let (texture, from) = scaled_to(decoded.texture(is_color), side_max, is_color);
+        Ok(Scaled { texture, from, note })
     }
 }
 
@@ -243,8 +173,6 @@ struct Header {
     size: [u32; 2],
     /// True for more than 8 bits per channel.
     is_deep: bool,
-    /// True if rows are reduced one by one.
-    is_by_rows: bool,
 }
 
 impl Header {
@@ -252,18 +180,8 @@ impl Header {
         self.size.map(u64::from).iter().product()
     }
 
-    /// Bytes of the texture map with sides of at most `side_max`.
-    fn kept(&self, side_max: u32) -> u64 {
-        let texels: u64 = size_within(self.size, side_max).map(u64::from).iter().product();
-        texels * if self.is_deep { 12 } else { 4 }
-    }
-
     /// Bytes for decoding it.
-    fn cost(&self, side_max: u32) -> u64 {
-        let [width, height] = self.size;
-        if self.is_by_rows && width.max(height) > side_max {
-            return self.kept(side_max) + ROW_COST * u64::from(width);
-        }
+    fn cost(&self) -> u64 {
         let [of_codes, of_numbers] = TEXEL_COSTS;
         self.texels() * if self.is_deep { of_numbers } else { of_codes }
     }
@@ -292,24 +210,17 @@ fn header(name: &str, bytes: &[u8]) -> Option<Header> {
         return Some(Header {
             size: [side(size.0), side(size.1)],
             is_deep: true,
-            is_by_rows: false,
         });
     }
     if let Some(size) = float_tiff::size(bytes) {
-        return Some(Header {
-            size,
-            is_deep: true,
-            is_by_rows: false,
-        });
+        return Some(Header { size, is_deep: true });
     }
     let reader = reader(name, bytes).ok()?;
-    let is_png = reader.format() == Some(ImageFormat::Png);
     let decoder = contained(|| reader.into_decoder().ok())??;
     let color = decoder.color_type();
     Some(Header {
         size: decoder.dimensions().into(),
         is_deep: color.bytes_per_pixel() > color.channel_count(),
-        is_by_rows: is_png && bytes.get(INTERLACE) == Some(&0),
     })
 }
 
@@ -320,9 +231,6 @@ fn header(name: &str, bytes: &[u8]) -> Option<Header> {
 /// The reason, in a few words.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
     let scaled = read_encoded(path, budget)?.texture(Wanted { is_color, side_max }, budget)?;
-    if let Some(reduction) = scaled.reduction().filter(|_| scaled.is_for_memory) {
-        log::warn!("{}: {reduction}", path.display());
-    }
     budget
         .take(scaled.texture.bytes() as u64)
         .map_err(|over| over.to_string())?;
@@ -337,7 +245,7 @@ pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget)
 pub(super) fn whole_texture(path: &Path, is_color: bool, budget: &Budget) -> Result<Texture, String> {
     let encoded = read_encoded(path, budget)?;
     check_growth(&encoded.name, &encoded.bytes)?;
-    budget.check(encoded.cost(u32::MAX)).map_err(|over| over.to_string())?;
+    budget.check(encoded.cost()).map_err(|over| over.to_string())?;
     Ok(decode_bytes(encoded.name, &encoded.bytes)?.texture(is_color))
 }
 
@@ -423,13 +331,7 @@ fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
         let texels = places.flat_map(texel).collect();
         return Ok((picture.width, picture.height, Numbers::Light(texels)));
     }
-    let picture = match decode_image(name, bytes) {
-        Ok(picture) => picture,
-        Err(error) => {
-            let (width, height, codes) = rle_bmp::decode(bytes).ok_or_else(|| error.to_string())?;
-            return Ok((width, height, Numbers::Codes8(codes)));
-        }
-    };
+    let picture = decode_image(name, bytes).map_err(|error| error.to_string())?;
     let (width, height) = (picture.width(), picture.height());
     let texels = match picture {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {

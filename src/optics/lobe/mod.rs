@@ -72,11 +72,6 @@ macro_rules! lobes {
             )
         }
 
-        /// [`raw_sample`] of a lobe, without the choice at each call.
-        pub fn raw_sampler<T: Real>(lobe: Lobe) -> RawSampler<T> {
-            match lobe { $(Lobe::$variant => $module::sample,)* }
-        }
-
         /// The density of [`raw_sample`], per steradian, not negative.
         pub fn raw_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
             T::vectorize(
@@ -200,9 +195,6 @@ fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
     let root = (number(9.0) + number(16.0) * turn).sqrt();
     (turn + turn) / (number(3.0) + root)
 }
-
-/// Draws a direction from one lobe.
-pub type RawSampler<T> = for<'a> fn(&LobeShape<'a, T>, &Frame<T>, Vec3<T>, [T; 3]) -> Vec3<T>;
 
 named! {
     /// Horizon policy: treatment of samples below the surface.

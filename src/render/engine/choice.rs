@@ -1,6 +1,6 @@
 //! Choice and opening of the engine.
 
-use super::calibration;
+use super::ray_queries::RayQueries;
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
@@ -9,13 +9,12 @@ use crate::job::scatter::{ScatterCloud, ScatterRequest};
 /// The reason given for an engine that the user chose.
 const CHOSEN: &str = "chosen by you";
 
-/// Opens the requested engine. If the faster engine is unknown, it is measured for seconds; or, with `may_wait` false,
-/// in the background for the next start.
-pub(in crate::render) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
+/// Opens the requested engine.
+pub(in crate::render) fn open(choice: EngineChoice) -> Result<(Engine, EngineInfo), GpuError> {
     match choice {
         EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
-        EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN, may_wait),
-        EngineChoice::Auto => Ok(auto(may_wait)),
+        EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN),
+        EngineChoice::Auto => Ok(auto()),
     }
 }
 
@@ -25,9 +24,9 @@ pub(in crate::render) fn on_device(device: GpuDevice) -> Result<(Engine, EngineI
 }
 
 /// An adapter's engine, chosen for the reason `why`, with its preferred traversal; with our own if ray queries fail.
-fn on_adapter(adapter: &GpuAdapter, why: &str, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
-    let (traversal, about_it) = calibration::traversal(adapter, may_wait);
-    let reason = match about_it.as_str() {
+fn on_adapter(adapter: &GpuAdapter, why: &str) -> Result<(Engine, EngineInfo), GpuError> {
+    let (traversal, about_it) = traversal(adapter);
+    let reason = match about_it {
         "" => why.to_owned(),
         about_it => format!("{why}; {about_it}"),
     };
@@ -40,11 +39,24 @@ fn on_adapter(adapter: &GpuAdapter, why: &str, may_wait: bool) -> Result<(Engine
     }
 }
 
-fn auto(may_wait: bool) -> (Engine, EngineInfo) {
+fn auto() -> (Engine, EngineInfo) {
     let hardware = GpuAdapter::find(AdapterKind::Hardware);
-    match hardware.and_then(|adapter| on_adapter(&adapter, "a hardware GPU", may_wait)) {
-        Ok(opened) => opened,
-        Err(_) => calibration::fastest_without_hardware(may_wait),
+    let opened = hardware.and_then(|adapter| on_adapter(&adapter, "a hardware GPU"));
+    opened.unwrap_or_else(|error| match error {
+        GpuError::NoAdapter(_) => cpu("no hardware GPU".to_owned()),
+        error => cpu(format!("the hardware GPU does not work: {error}")),
+    })
+}
+
+/// Traversal on an adapter, with what there is to say about the choice. On software Vulkan, ray queries are slower than our
+/// own traversal.
+fn traversal(adapter: &GpuAdapter) -> (Traversal, &'static str) {
+    match (RayQueries::chosen(), adapter.has_ray_queries()) {
+        (RayQueries::On, true) => (Traversal::RayQueries, "with ray queries, chosen by you"),
+        (RayQueries::On, false) => (Traversal::Own, "without ray queries, which the adapter does not have"),
+        (RayQueries::Off, true) => (Traversal::Own, "without ray queries, chosen by you"),
+        (RayQueries::Auto, true) if !adapter.is_software() => (Traversal::RayQueries, "with its ray queries"),
+        _ => (Traversal::Own, ""),
     }
 }
 
@@ -56,7 +68,7 @@ fn auto(may_wait: bool) -> (Engine, EngineInfo) {
 pub(crate) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
-        adapter.open(calibration::traversal(&adapter, false).0)
+        adapter.open(traversal(&adapter).0)
     };
     match choice {
         EngineChoice::Cpu => Ok(None),

@@ -1,6 +1,5 @@
 //! The two engines behind one interface.
 
-pub(super) mod calibration;
 pub(super) mod choice;
 mod ray_queries;
 
@@ -25,7 +24,7 @@ named! {
     #[derive(Default)]
     EngineChoice {
         #[default]
-        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the faster of software Vulkan and the CPU.";
+        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the CPU.";
         Gpu, "gpu", "GPU", "The GPU, software Vulkan included.";
         Cpu, "cpu", "CPU", "The CPU.";
     }

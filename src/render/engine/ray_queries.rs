@@ -10,7 +10,7 @@ named! {
     #[derive(Default)]
     RayQueries {
         #[default]
-        Auto, "auto", "Automatic", "Where they were measured to be faster on this adapter and driver.";
+        Auto, "auto", "Automatic", "On a hardware GPU that has them.";
         On, "on", "On", "Wherever the adapter has them.";
         Off, "off", "Off", "Never.";
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, calibration, choice};
+use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, choice};
 use super::error::SessionError;
 use super::memory;
 use super::progress::{Progress, StopReason};
@@ -21,9 +21,6 @@ use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::scene::texture::UserTextureFile;
 
-/// Render time of both engines, in seconds, before their rates are compared.
-const RATE_SECONDS: f64 = 0.5;
-
 /// A session: a document, its assets, and the engine that renders it.
 pub struct Session {
     engine: Engine,
@@ -36,11 +33,8 @@ pub struct Session {
     render_time: Duration,
     /// Part of it in the engine's steps.
     step_time: Duration,
-    /// Engine time in seconds and pixel samples of the CPU fallback, before the GPU took over.
+    /// Engine time in seconds of the CPU fallback, before the GPU took over.
     fallback_seconds: f64,
-    fallback_samples: u64,
-    /// The engine was chosen automatically.
-    is_automatic: bool,
     /// Background compilation of kernels; `None` if the session waits for them.
     workshop: Option<Workshop>,
     /// True if the GPU cannot take over from the CPU fallback.
@@ -75,7 +69,7 @@ impl Session {
     ///
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        Ok(Self::around(choice::open(choice, true)?, assets))
+        Ok(Self::around(choice::open(choice)?, assets))
     }
 
     /// Opens an adapter for a kind of traversal.
@@ -101,8 +95,6 @@ impl Session {
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
             fallback_seconds: 0.0,
-            fallback_samples: 0,
-            is_automatic: false,
             workshop: None,
             keeps_fallback: false,
             is_stuck: false,
@@ -115,15 +107,14 @@ impl Session {
         }
     }
 
-    /// The same without waiting for measurements or kernel compilation: until the kernel is ready, the CPU engine renders,
+    /// The same without waiting for kernel compilation: until the kernel is ready, the CPU engine renders,
     /// and its samples count.
     ///
     /// # Errors
     ///
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        let mut session = Self::around(choice::open(choice, false)?, assets);
-        session.is_automatic = choice == EngineChoice::Auto;
+        let mut session = Self::around(choice::open(choice)?, assets);
         let fallback = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, fallback) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
@@ -151,7 +142,6 @@ impl Session {
         };
         let Some(mut engine) = engine else { return Ok(()) };
         self.fallback_seconds += self.engine_seconds();
-        self.fallback_samples = self.engine.schedule().pixel_samples();
         self.step_time = Duration::ZERO;
         if let Engine::Cpu(fallback) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
             let (film, schedule) = fallback.hand_over();
@@ -312,29 +302,7 @@ impl Session {
         self.change_over()?;
         let outcome = self.render(budget);
         self.is_stuck = outcome.is_err();
-        if let Some([software, cpu]) = self.rates() {
-            calibration::compare_rates(software, cpu);
-        }
         outcome
-    }
-
-    /// Rates in samples per second of software Vulkan and of the CPU fallback on the same image, which rendered while a
-    /// kernel was compiled on its cores. `None` unless the CPU engine is faster and both have rendered long enough.
-    fn rates(&self) -> Option<[f64; 2]> {
-        let is_of_interest = self.is_automatic && self.info.is_software && self.device().is_some();
-        let seconds = self.engine_seconds() - self.fallback_seconds;
-        if !is_of_interest || self.fallback_seconds.min(seconds) < RATE_SECONDS {
-            return None;
-        }
-        let samples = self
-            .engine
-            .schedule()
-            .pixel_samples()
-            .saturating_sub(self.fallback_samples);
-        Some([
-            samples as f64 / seconds,
-            self.fallback_samples as f64 / self.fallback_seconds,
-        ])
     }
 
     fn render(&mut self, budget: Duration) -> Result<Progress, SessionError> {

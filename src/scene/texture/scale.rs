@@ -15,7 +15,7 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
 }
 
 /// A number of a channel as texture maps store it.
-pub trait Code: Copy + PartialEq {
+trait Code: Copy + PartialEq {
     /// The largest number.
     const MOST: usize;
     /// The number as an index.
@@ -94,71 +94,8 @@ impl<C: Code> Scale<C> {
     }
 }
 
-/// Reduction of a map to half its width and height, row by row, by box filtering; colours are filtered linearly.
-pub struct Halving<C> {
-    from: [usize; 2],
-    to: [usize; 2],
-    colors: Scale<C>,
-    alphas: Scale<C>,
-    /// Rows of the next reduced row, as far as they are there.
-    rows: Vec<[C; 4]>,
-    /// Number of reduced rows.
-    made: usize,
-}
-
-impl<C: Code> Halving<C> {
-    /// The reduction of a map of width and height `from`.
-    pub fn new(from: [u32; 2], is_color: bool) -> Self {
-        Self {
-            from: from.map(|side| side as usize),
-            to: half(from).map(|side| side as usize),
-            colors: Scale::new(is_color),
-            alphas: Scale::new(false),
-            rows: Vec::new(),
-            made: 0,
-        }
-    }
-
-    /// Takes the next row; the reduced row that it completes, if any.
-    pub fn put(&mut self, row: &[[C; 4]]) -> Option<Vec<[C; 4]>> {
-        self.rows.extend_from_slice(row);
-        let [width, height] = self.from;
-        if self.rows.len() < width * span(self.made, height, self.to[1]).len() {
-            return None;
-        }
-        let reduced = (0..self.to[0]).map(|x| self.mean(span(x, width, self.to[0]))).collect();
-        self.rows.clear();
-        self.made += 1;
-        Some(reduced)
-    }
-
-    /// Mean of some columns of the collected rows.
-    fn mean(&self, columns: Range<usize>) -> [C; 4] {
-        let texels = || {
-            self.rows
-                .chunks_exact(self.from[0])
-                .flat_map(|row| &row[columns.clone()])
-        };
-        let first = self.rows[columns.start];
-        // Large maps of little content mostly have equal texels.
-        if texels().all(|texel| *texel == first) {
-            return first;
-        }
-        let (mut sums, mut count) = ([0.0; 4], 0.0);
-        for [r, g, b, a] in texels() {
-            let color = [*r, *g, *b].map(|code| self.colors.value(code));
-            sums.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
-            sums[3] += self.alphas.value(*a);
-            count += 1.0;
-        }
-        let [r, g, b, a] = sums.map(|sum| sum / count);
-        let [r, g, b] = [r, g, b].map(|value| self.colors.code(value));
-        [r, g, b, self.alphas.code(a)]
-    }
-}
-
 /// Half a width and height.
-pub fn half(size: [u32; 2]) -> [u32; 2] {
+fn half(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| (side / 2).max(1))
 }
 
@@ -189,14 +126,49 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     }
 }
 
+/// The same of one kind of codes, by box filtering; colours are filtered linearly.
 fn halved_codes<C: Code>(codes: &[C], size: [u32; 2], is_color: bool) -> Vec<C> {
     if codes.is_empty() {
         return Vec::new();
     }
-    let mut halving = Halving::new(size, is_color);
-    let rows = codes.as_chunks::<4>().0.chunks_exact(size[0] as usize);
-    let texels: Vec<[C; 4]> = rows.filter_map(|row| halving.put(row)).flatten().collect();
-    texels.into_flattened()
+    let (colors, alphas) = (Scale::new(is_color), Scale::new(false));
+    let [width, height] = size.map(|side| side as usize);
+    let [to_width, to_height] = half(size).map(|side| side as usize);
+    let texels = codes.as_chunks::<4>().0;
+    let texel = |place: usize| {
+        let (columns, rows) = (
+            span(place % to_width, width, to_width),
+            span(place / to_width, height, to_height),
+        );
+        let of_row = |row: usize| &texels[row * width..][columns.clone()];
+        mean(|| rows.clone().flat_map(of_row), &colors, &alphas)
+    };
+    (0..to_width * to_height).flat_map(texel).collect()
+}
+
+/// Mean of some texels, of which there is one at least.
+fn mean<'a, C: Code + 'a, I: Iterator<Item = &'a [C; 4]>>(
+    texels: impl Fn() -> I,
+    colors: &Scale<C>,
+    alphas: &Scale<C>,
+) -> [C; 4] {
+    let mut others = texels();
+    // Large maps of little content mostly have equal texels.
+    if let Some(first) = others.next()
+        && others.all(|texel| texel == first)
+    {
+        return *first;
+    }
+    let (mut sums, mut count) = ([0.0; 4], 0.0);
+    for [r, g, b, a] in texels() {
+        let color = [*r, *g, *b].map(|code| colors.value(code));
+        sums.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
+        sums[3] += alphas.value(*a);
+        count += 1.0;
+    }
+    let [r, g, b, a] = sums.map(|sum| sum / count);
+    let [r, g, b] = [r, g, b].map(|value| colors.code(value));
+    [r, g, b, alphas.code(a)]
 }
 
 /// A map halved until its sides are at most `side_max`, and the original size if it was larger.

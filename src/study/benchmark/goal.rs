@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use super::report::EngineReport;
 use super::scene::Scene;
-use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, StepTime, default_scene};
+use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, turns};
 use crate::analysis::error::relative_mean_squared_error;
 use crate::document::{Denoise, Document};
 use crate::job::film::Image;
@@ -80,12 +80,12 @@ fn colors(image: &Image) -> Vec<f32> {
 }
 
 /// Measures the times of all scenes with a reference.
-pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
+pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
     let mut session = place.open()?;
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];
-    for (turn, number) in slot.turns(TURNS, times.len()) {
+    for (turn, number) in turns(end, TURNS, times.len()) {
         let goal = &run.goals[number];
         let found = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
         if turn != WARM {

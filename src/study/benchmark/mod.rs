@@ -1,41 +1,34 @@
-//! The benchmark: speed and soundness of every engine and adapter of a machine, in one report.
+//! The benchmark: speed of every engine and adapter of a machine, in one report.
 //!
 //! Each step of each engine has a share of the time; what does not fit is left out and named. Turns of a step go through all
 //! scenes in order, so that the spread of a scene's turns holds the drift of the machine.
 
 pub mod compare;
 mod goal;
-pub mod kernel;
-pub mod latency;
-mod proof;
 mod rate;
 pub mod report;
 pub mod scene;
 
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 use tempfile::TempDir;
 
-use super::sampling::{SamplingOptions, sampling};
 use super::{Steps, StudyError, Watch};
 use crate::document::Document;
 use crate::gpu::{GpuAdapter, GpuError, Traversal};
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, Session, cpu_name};
 use goal::Goal;
-use report::{EngineReport, Machine, Report, SCHEMA, SCHEMA_VERSION, Spread};
+use report::{EngineReport, Machine, Report, SCHEMA, SCHEMA_VERSION};
 use scene::Scene;
 
 /// Relative mean squared error of a clean image.
 pub const GOAL: f64 = 0.003;
 /// Time of a run in seconds: a full one, and a quick one.
-pub const SECONDS: [f64; 2] = [180.0, 20.0];
+pub const SECONDS: [f64; 2] = [120.0, 20.0];
 /// Share of the time for references, which all engines use.
 const REFERENCE_SHARE: f64 = 0.08;
-/// Length of the loop that shows the machine's pace.
-const PACE: Duration = Duration::from_millis(20);
 
 /// Options of a run.
 #[derive(Clone, Debug)]
@@ -46,8 +39,6 @@ pub struct BenchmarkOptions {
     pub seconds: f64,
     /// Small images, few scenes and turns: to see that it works.
     pub quick: bool,
-    /// The program itself, which compiles kernels in processes of their own; `None` leaves that out.
-    pub program: Option<PathBuf>,
 }
 
 /// How much is measured.
@@ -61,11 +52,6 @@ struct Extent {
     /// Length of a turn, and the most turns.
     turn: Duration,
     turns: usize,
-    /// Edits of a drag, and the viewport's size in pixels.
-    edits: u32,
-    viewport: [u32; 2],
-    /// Image of the paper's Fig. 8, in pixels.
-    sampling_size: [u32; 2],
 }
 
 const FULL: Extent = Extent {
@@ -74,9 +60,6 @@ const FULL: Extent = Extent {
     scenes: 9,
     turn: Duration::from_millis(250),
     turns: 9,
-    edits: 30,
-    viewport: latency::VIEWPORT,
-    sampling_size: super::sampling::SIZE,
 };
 const QUICK: Extent = Extent {
     size: 32,
@@ -84,36 +67,13 @@ const QUICK: Extent = Extent {
     scenes: 1,
     turn: Duration::from_millis(10),
     turns: 3,
-    edits: 3,
-    viewport: [64, 48],
-    sampling_size: [48, 32],
 };
 
-/// Time of a step: it begins no turn after its end.
-#[derive(Clone, Copy, Debug)]
-struct StepTime {
-    end: Instant,
-}
-
-impl StepTime {
-    fn is_over(self) -> bool {
-        Instant::now() >= self.end
-    }
-
-    /// The same for a turn through several scenes: the first scene is warmed and measured once in any case.
-    fn is_over_at(self, turn: usize, scene: usize) -> bool {
-        self.is_over() && (turn > 1 || scene > 0)
-    }
-
-    /// Turns 0 to `last` with every scene in each; in a turn, those for which there is time.
-    fn turns(self, last: usize, scenes: usize) -> impl Iterator<Item = (usize, usize)> {
-        let of_turn = move |turn| (0..scenes).map(move |scene| (turn, scene));
-        (0..=last).flat_map(move |turn| of_turn(turn).take_while(move |(turn, scene)| !self.is_over_at(*turn, *scene)))
-    }
-
-    fn left(self) -> Duration {
-        self.end.saturating_duration_since(Instant::now())
-    }
+/// Turns 0 to `last` with every scene in each, as long as there is time. The first scene is warmed and measured once in any
+/// case.
+fn turns(end: Instant, last: usize, scenes: usize) -> impl Iterator<Item = (usize, usize)> {
+    let is_due = move |&(turn, scene): &(usize, usize)| Instant::now() < end || (turn <= 1 && scene == 0);
+    (0..=last).flat_map(move |turn| (0..scenes).map(move |scene| (turn, scene)).take_while(is_due))
 }
 
 /// An engine to measure.
@@ -128,22 +88,6 @@ impl Place {
             Self::Cpu => Session::open(EngineChoice::Cpu)?,
             Self::Adapter(adapter) => Session::on_adapter(adapter, Traversal::Own)?,
         })
-    }
-
-    fn choice(&self) -> EngineChoice {
-        match self {
-            Self::Cpu => EngineChoice::Cpu,
-            Self::Adapter(_) => EngineChoice::Gpu,
-        }
-    }
-}
-
-/// Ends the preference of an adapter, however a run ends.
-struct Preference;
-
-impl Drop for Preference {
-    fn drop(&mut self) {
-        GpuAdapter::prefer(None);
     }
 }
 
@@ -161,19 +105,14 @@ struct Run<'a, 'b> {
     steps: Steps<'a, 'b>,
     cases: Vec<Case>,
     goals: Vec<Goal>,
-    pace: Vec<f64>,
 }
 
-/// Steps of an engine, with their weights in its time.
-type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, StepTime) -> Result<(), StudyError>;
-const STEPS: [(&str, f64, Step); 7] = [
-    ("rate", 0.32, rate::rates),
-    ("to clean", 0.20, goal::goals),
-    ("edit", 0.06, latency::edits),
-    ("kernel", 0.10, kernel::kernels),
-    ("ray queries", 0.06, rate::ray_queries),
-    ("sampling", 0.12, sampling_times),
-    ("proof", 0.14, proof::proofs),
+/// Steps of an engine, with their weights in its time. Each begins no turn after its end.
+type Step = fn(&mut Run<'_, '_>, &Place, &mut EngineReport, Instant) -> Result<(), StudyError>;
+const STEPS: [(&str, f64, Step); 3] = [
+    ("rate", 0.55, rate::rates),
+    ("to clean", 0.35, goal::goals),
+    ("ray queries", 0.10, rate::ray_queries),
 ];
 
 /// Measures the machine. `watch` receives the progress and may stop the run.
@@ -190,7 +129,6 @@ pub fn benchmark(options: &BenchmarkOptions, watch: &mut Watch<'_>) -> Result<Re
         steps: Steps::new(watch, options.seconds),
         cases: Vec::new(),
         goals: Vec::new(),
-        pace: Vec::new(),
     };
     run.report("the scenes")?;
     Scene::write_files(folder.path()).map_err(|error| StudyError::Folder(error.to_string()))?;
@@ -201,13 +139,11 @@ pub fn benchmark(options: &BenchmarkOptions, watch: &mut Watch<'_>) -> Result<Re
     if places.is_empty() {
         return Err(GpuError::NoAdapter("").into());
     }
-    let _preference = Preference;
     for (number, place) in places.iter().enumerate() {
         let left = Duration::from_secs_f64(options.seconds).saturating_sub(run.begun.elapsed());
         let share = left.div_f64((places.len() - number) as f64);
         report.engines.push(run.engine(place, share)?);
     }
-    report.pace = Spread::of(&run.pace);
     report.peak_memory_mib = peak_memory_mib();
     report.seconds = run.begun.elapsed().as_secs_f64();
     Ok(report)
@@ -263,16 +199,12 @@ impl Run<'_, '_> {
             machine: machine(),
             denoiser: Library::get().ok().map(ToString::to_string),
             peak_memory_mib: None,
-            pace: None,
             engines: Vec::new(),
         }
     }
 
     /// All steps of an engine within a time.
     fn engine(&mut self, place: &Place, time: Duration) -> Result<EngineReport, StudyError> {
-        if let Place::Adapter(adapter) = place {
-            GpuAdapter::prefer(Some(adapter));
-        }
         let mut report = described(place);
         let begun = Instant::now();
         let mut share = 0.0;
@@ -280,32 +212,13 @@ impl Run<'_, '_> {
             share += weight;
             let end = begun + time.mul_f64(share);
             self.report(&format!("{}, {name}", report.name()))?;
-            match step(self, place, &mut report, StepTime { end }) {
+            match step(self, place, &mut report, end) {
                 Err(StudyError::Stopped) => return Err(StudyError::Stopped),
                 Err(error) => report.leave_out(name, "", error.to_string()),
                 Ok(()) => {}
             }
-            self.measure_pace();
         }
         Ok(report)
-    }
-
-    /// Measures the pace of the machine with a fixed loop on all threads, in million steps per second.
-    fn measure_pace(&mut self) {
-        let begun = Instant::now();
-        let steps: u64 = rayon::broadcast(|_| {
-            let (mut state, mut steps) = (1_u64, 0);
-            while begun.elapsed() < PACE {
-                for _ in 0..10_000 {
-                    state = std::hint::black_box(state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1));
-                }
-                steps += 10_000;
-            }
-            steps
-        })
-        .into_iter()
-        .sum();
-        self.pace.push(steps as f64 / begun.elapsed().as_secs_f64() / 1e6);
     }
 }
 
@@ -323,7 +236,6 @@ fn described(place: &Place) -> EngineReport {
         backend,
         driver,
         is_software: !matches!(place, Place::Adapter(adapter) if !adapter.is_software()),
-        proofs: Vec::new(),
         rows: Vec::new(),
         left_out: Vec::new(),
     }
@@ -351,37 +263,3 @@ fn peak_memory_mib() -> Option<f64> {
 
 /// What a step comes to.
 type Done = Result<(), StudyError>;
-
-/// Times of the paper's Fig. 8, without whole frames.
-fn sampling_times(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
-    let mut options = SamplingOptions {
-        size: run.extent.sampling_size,
-        turns: 5,
-        has_frames: false,
-        ..SamplingOptions::new(place.choice())
-    };
-    // Each of about ten lobes draws in three stages, with few and with many directions.
-    let measurements = 10.0 * 3.0 * 2.0 * (options.turns + 1) as f64;
-    options.budget = slot.left().div_f64(measurements).min(options.budget);
-    let begun = run.begun;
-    let steps = &mut run.steps;
-    let found = sampling(&options, &mut |progress| {
-        steps.report(progress.what, begun.elapsed().as_secs_f64()).is_ok()
-    })?;
-    let samples = super::sampling::SAMPLES[1];
-    for row in found.rows.iter().filter(|row| row.samples == samples) {
-        let value = Spread {
-            median: row.sampling_ms,
-            quartiles: row.sampling_quartiles_ms,
-            turns: options.turns,
-        };
-        report.rows.push(report::Row {
-            step: "sampling".to_owned(),
-            case: row.name.clone(),
-            unit: "ms".to_owned(),
-            more_is_better: false,
-            value,
-        });
-    }
-    Ok(())
-}

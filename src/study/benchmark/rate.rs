@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::report::EngineReport;
-use super::{Case, Done, Place, Run, StepTime};
+use super::{Case, Done, Place, Run, turns};
 use crate::gpu::Traversal;
 use crate::render::Session;
 use crate::study::{StudyError, UNLIMITED};
@@ -22,10 +22,10 @@ struct Rates {
 }
 
 /// Measures the rates of all scenes.
-pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
+pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
     let mut session = place.open()?;
     let mut found: Vec<Rates> = run.cases.iter().map(|_| Rates::default()).collect();
-    for (turn, number) in slot.turns(run.extent.turns, found.len()) {
+    for (turn, number) in turns(end, run.extent.turns, found.len()) {
         let (case, rates) = (&run.cases[number], &mut found[number]);
         // The first turn compiles kernels and fills caches.
         match measured(&mut session, case, turn, run.extent.turn) {
@@ -38,9 +38,6 @@ pub(super) fn rates(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineRep
         }
         let what = format!("{}, {}, turn {turn}", report.name(), case.name);
         run.report(&what)?;
-        if number == 0 {
-            run.measure_pace();
-        }
     }
     for (case, rates) in std::iter::zip(&run.cases, &found) {
         report.add("samples", &case.name, SAMPLES, &rates.samples);
@@ -77,7 +74,7 @@ fn measured(
 }
 
 /// Measures ray queries and our own traversal in turn.
-pub(super) fn ray_queries(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, slot: StepTime) -> Done {
+pub(super) fn ray_queries(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
     let Place::Adapter(adapter) = place else {
         return Ok(());
     };
@@ -92,7 +89,7 @@ pub(super) fn ray_queries(run: &mut Run<'_, '_>, place: &Place, report: &mut Eng
     }
     let count = run.cases.len().min(TRAVERSED);
     let mut found = vec![[const { Vec::new() }; 2]; count];
-    for (turn, number) in slot.turns(run.extent.turns, count) {
+    for (turn, number) in turns(end, run.extent.turns, count) {
         for (session, rates) in sessions.iter_mut().zip(&mut found[number]) {
             let [_, rays] = measured(session, &run.cases[number], turn, run.extent.turn)?;
             if turn > 0 {

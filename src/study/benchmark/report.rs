@@ -10,8 +10,9 @@ use crate::study::quantile;
 
 /// Name of the schema, in the key `schema`.
 pub const SCHEMA: &str = "glossmith-benchmark";
-/// Version of the schema, in the key `schema_version`. It grows if a key changes its meaning or disappears.
-pub const SCHEMA_VERSION: u32 = 1;
+/// Version of the schema, in the key `schema_version`. It grows if a key changes its meaning or disappears. Version 1 had
+/// `pace` and `proofs` besides.
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// Why a report cannot be read.
 #[derive(Debug, thiserror::Error)]
@@ -26,7 +27,6 @@ pub enum ReportError {
 
 /// Result of a benchmark.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Report {
     /// [`SCHEMA`].
     pub schema: String,
@@ -46,15 +46,12 @@ pub struct Report {
     pub denoiser: Option<String>,
     /// Peak memory of the process in MiB, if the system reports it.
     pub peak_memory_mib: Option<f64>,
-    /// Million steps per second of a fixed loop on all threads, repeated during the run: how even the machine's pace was.
-    pub pace: Option<Spread>,
     /// Engines in the order of measurement.
     pub engines: Vec<EngineReport>,
 }
 
 /// The machine of a report.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Machine {
     /// Name of the CPU.
     pub cpu: String,
@@ -70,7 +67,6 @@ pub struct Machine {
 
 /// Measurements on one engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct EngineReport {
     /// `cpu` or `gpu`.
     pub engine: String,
@@ -82,31 +78,14 @@ pub struct EngineReport {
     pub driver: String,
     /// True if the CPU does the work.
     pub is_software: bool,
-    /// Checks that were run.
-    pub proofs: Vec<Proof>,
     /// Measurements.
     pub rows: Vec<Row>,
     /// What was not measured, and why.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Outcome of a group of checks.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Proof {
-    /// `check` or `hard cases`.
-    pub what: String,
-    /// Number of passed checks.
-    pub passed: usize,
-    /// Names of failed checks.
-    pub failed: Vec<String>,
-    /// Number of checks for which the time was too short.
-    pub not_run: usize,
-}
-
 /// A measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Row {
     /// Step of the benchmark, such as `rate`.
     pub step: String,
@@ -122,7 +101,6 @@ pub struct Row {
 
 /// Median and quartiles of repeated measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Spread {
     /// Median.
     pub median: f64,
@@ -134,7 +112,6 @@ pub struct Spread {
 
 /// A measurement that was not made.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct LeftOut {
     /// Step of the benchmark.
     pub step: String,
@@ -205,9 +182,9 @@ impl Report {
         if parsed["schema"] != SCHEMA {
             return Err(invalid("not a result of the benchmark".to_owned()));
         }
-        if parsed["schema_version"] != SCHEMA_VERSION {
-            let version = &parsed["schema_version"];
-            let reason = format!("its schema has version {version}, this program reads {SCHEMA_VERSION}");
+        let version = &parsed["schema_version"];
+        if !(1..=SCHEMA_VERSION).any(|known| *version == known) {
+            let reason = format!("its schema has version {version}, this program reads up to {SCHEMA_VERSION}");
             return Err(invalid(reason));
         }
         serde_json::from_value(parsed).map_err(|error| invalid(error.to_string()))
@@ -228,18 +205,6 @@ impl Report {
         );
         for engine in &self.engines {
             let _ = writeln!(text, "\n{} {}", engine.name(), engine.driver);
-            for proof in &engine.proofs {
-                let (what, failed) = (&proof.what, proof.failed.len());
-                let _ = writeln!(
-                    text,
-                    "  {what}: {} passed, {failed} failed, {} not run",
-                    proof.passed, proof.not_run
-                );
-                proof
-                    .failed
-                    .iter()
-                    .for_each(|name| text += &format!("    FAILED {name}\n"));
-            }
             for row in &engine.rows {
                 let Row { step, case, unit, .. } = row;
                 let _ = writeln!(text, "  {step:16} {case:24} {:>22}  {unit}", words(&row.value));
@@ -248,11 +213,8 @@ impl Report {
                 let _ = writeln!(text, "  {step:16} {case:24} not measured: {why}");
             }
         }
-        if let Some(pace) = &self.pace {
-            let _ = writeln!(text, "\nPace of the machine: {} M steps/s", words(pace));
-        }
         if let Some(peak) = self.peak_memory_mib {
-            let _ = writeln!(text, "Peak memory: {peak:.0} MiB");
+            let _ = writeln!(text, "\nPeak memory: {peak:.0} MiB");
         }
         text
     }

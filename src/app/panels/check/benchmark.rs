@@ -1,7 +1,5 @@
 //! The benchmark: what `glossmith benchmark` does, as a table, and its result for the clipboard.
 
-use std::path::PathBuf;
-
 use egui::Ui;
 
 use crate::app::desk::Desk;
@@ -10,9 +8,6 @@ use crate::app::study::StudyWorker;
 use crate::render::EngineChoice;
 use crate::study::benchmark::report::{EngineReport, Report, number};
 use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
-
-/// Name of the program's file.
-const PROGRAM: &str = "glossmith";
 
 /// State of the section.
 #[derive(Default)]
@@ -32,13 +27,13 @@ impl BenchmarkState {
 pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
     widgets::note(
         ui,
-        "Measures every engine and adapter: rates, time to a clean image, kernels, checks.",
+        "Measures every engine and adapter: rates and time to a clean image.",
     );
     ui.checkbox(&mut state.quick, "Quick")
         .on_hover_text("Small images and few scenes, to see that it works.");
     let quick = state.quick;
     let help = "Pauses the viewport and measures this machine.";
-    let takes = (!quick).then(|| "takes three minutes".to_owned());
+    let takes = (!quick).then(|| "takes two minutes".to_owned());
     state
         .worker
         .controls(ui, desk, ("Run the benchmark", help), takes, |_| {
@@ -46,7 +41,6 @@ pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>)
                 engine: EngineChoice::Auto,
                 seconds: SECONDS[usize::from(quick)],
                 quick,
-                program: program(),
             };
             Box::new(move |watch| benchmark(&options, watch))
         });
@@ -62,19 +56,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>)
     report.engines.iter().for_each(|engine| table(ui, engine));
 }
 
-/// The program's file; `None` in another program, such as a test.
-fn program() -> Option<PathBuf> {
-    let path = std::env::current_exe().ok()?;
-    (path.file_stem()? == PROGRAM).then_some(path)
-}
-
 fn table(ui: &mut Ui, engine: &EngineReport) {
     ui.add_space(4.0);
     ui.strong(engine.name());
-    for proof in &engine.proofs {
-        let text = format!("{}: {} passed, {} failed", proof.what, proof.passed, proof.failed.len());
-        ui.label(text).on_hover_text(proof.failed.join("\n"));
-    }
     let grid = egui::Grid::new(("benchmark", engine.name()))
         .num_columns(3)
         .striped(true);

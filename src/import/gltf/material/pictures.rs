@@ -47,7 +47,7 @@ impl Materials<'_> {
             }
             match image::encoded(document, image) {
                 Ok(encoded) => {
-                    let of_this = encoded.cost_within(self.texture_side_max, budget);
+                    let of_this = encoded.cost();
                     if cost + of_this > budget.left() {
                         self.decode_beside(std::mem::take(&mut beside), &mut decoded);
                         cost = 0;

@@ -20,7 +20,6 @@ use crate::render::denoise::Denoised;
 use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::error::SessionError;
 use crate::render::output::Layers;
-use crate::render::quiet::AtWork;
 use crate::render::session::Session;
 use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
@@ -67,8 +66,6 @@ struct State<'a> {
     denoising: Denoising,
     /// The latest denoised image of the current render.
     denoised: Option<Denoised>,
-    /// Held while the thread has work.
-    at_work: Option<AtWork<'static>>,
 }
 
 /// A session for the window, which keeps guides: denoising and layers may be requested for samples already rendered.
@@ -104,7 +101,6 @@ impl<'a> State<'a> {
                 move || shared.commands.change(|_| ())
             }),
             denoised: None,
-            at_work: None,
         }
     }
 }

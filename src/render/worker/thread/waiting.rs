@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use super::State;
 use crate::render::mailbox::IDLE;
-use crate::render::quiet::at_work;
 use crate::render::session::Session;
 use crate::render::worker::stage::Stage;
 use crate::render::worker::{Activity, CommandQueue, Commands};
@@ -20,10 +19,8 @@ impl State<'_> {
             let wait = self.longest_wait();
             let has_news = self.activity(queue.is_paused) != self.snapshot.activity || self.denoising.has_outcome();
             if !(is_busy || has_news || self.has_commands(queue) || wait.is_zero()) {
-                self.at_work = None;
                 return ControlFlow::Continue(wait);
             }
-            self.at_work.get_or_insert_with(at_work);
             let mut commands = std::mem::take(&mut queue.commands);
             if self.keeps_stage(queue.is_paused) {
                 queue.commands.submission = commands.submission.take();
