@@ -48,9 +48,6 @@ pub(crate) fn print_bytes(bytes: &[u8]) {
 }
 
 /// How printing went, asked when the work is done. That the reader had enough is no error.
-///
-/// # Errors
-/// What the system said, such as that a disk is full.
 pub fn finish() -> io::Result<()> {
     match lock(&FAILED).take() {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => Err(error),

@@ -15,8 +15,6 @@ pub mod scene;
 
 pub mod job;
 
-// Unit tests have none of it, and it is most of what the package takes to compile.
-#[cfg(not(test))]
 pub mod cpu;
 pub mod gpu;
 

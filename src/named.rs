@@ -51,7 +51,6 @@ macro_rules! named {
                 match self { $(Self::$variant => $label,)* }
             }
 
-            /// What it means.
             pub const fn help(self) -> &'static str {
                 match self { $(Self::$variant => $help,)* }
             }

@@ -15,9 +15,6 @@ pub fn lock<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Runs work that should not panic; where it does, what the panic said.
-///
-/// # Errors
-/// The panic's message.
 pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| message(&*panic))
 }
@@ -40,22 +37,4 @@ pub fn message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| panic.downcast_ref::<String>().cloned())
         .unwrap_or_else(|| "for an unknown reason".to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn panics_are_caught_with_their_message_and_contained_ones_are_known() {
-        assert_eq!(caught(|| 3), Ok(3));
-        let why = caught(|| -> u32 { panic!("number {} on purpose", 7) });
-        assert_eq!(why, Err("number 7 on purpose".to_owned()));
-        let mut was_known = false;
-        let gave_up = contained(|| {
-            was_known = is_contained();
-            panic!("on purpose");
-        });
-        assert!(gave_up.is_none() && was_known && !is_contained());
-    }
 }

@@ -1,5 +1,5 @@
 //! The integration tests, in one binary: see docs/ARCHITECTURE.md.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use std::sync::LazyLock;
 
@@ -67,6 +67,8 @@ mod cli_support;
 mod coat;
 #[path = "suite/coat_base.rs"]
 mod coat_base;
+#[path = "suite/colors.rs"]
+mod colors;
 #[path = "suite/compare.rs"]
 mod compare;
 #[path = "suite/crashed.rs"]
@@ -107,6 +109,8 @@ mod environment_files;
 mod environment_sampling;
 #[path = "suite/environment_shapes.rs"]
 mod environment_shapes;
+#[path = "suite/estimates.rs"]
+mod estimates;
 #[path = "suite/evaluate.rs"]
 mod evaluate;
 #[path = "suite/exchange.rs"]
@@ -133,6 +137,8 @@ mod file_parameters;
 mod file_scenes;
 #[path = "suite/files.rs"]
 mod files;
+#[path = "suite/film.rs"]
+mod film;
 #[path = "suite/fit.rs"]
 mod fit;
 #[path = "suite/geometry.rs"]
@@ -259,6 +265,8 @@ mod structure;
 mod study;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/technique.rs"]
+mod technique;
 #[path = "suite/terminator.rs"]
 mod terminator;
 #[path = "suite/textures.rs"]
@@ -313,6 +321,8 @@ mod ui_windows;
 mod ui_workshop;
 #[path = "suite/ui_workspaces.rs"]
 mod ui_workspaces;
+#[path = "suite/video.rs"]
+mod video;
 #[path = "suite/walk.rs"]
 mod walk;
 #[path = "suite/walk_look.rs"]

@@ -69,38 +69,3 @@ pub fn diverging(share: f32) -> [u8; 3] {
     let size = share.abs().min(1.0);
     [0, 1, 2].map(|i| (NEUTRAL[i] + size * (end[i] - NEUTRAL[i])) as u8)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn image(values: &[f32]) -> Image {
-        Image {
-            width: values.len() as u32,
-            height: 1,
-            pixels: values.iter().map(|x| [*x, *x, *x, 1.0]).collect(),
-        }
-    }
-
-    #[test]
-    fn differences_are_signed_and_relative() {
-        let found = difference(&image(&[1.0, 2.0]), &image(&[1.5, 1.0])).expect("equal sizes");
-        assert!((found.signed[0] - 0.5).abs() < 1e-6 && (found.signed[1] + 1.0).abs() < 1e-6);
-        let expected = (0.5_f64 * (0.25 / 1.01 + 1.0 / 4.01)).sqrt();
-        assert!((found.rms_relative - expected).abs() < 1e-6, "{}", found.rms_relative);
-        assert_eq!(difference(&image(&[1.0]), &image(&[1.0, 1.0])), None);
-        let none = difference(&image(&[3.0]), &image(&[3.0])).expect("equal sizes");
-        assert_eq!((none.rms_relative, none.automatic_scale()), (0.0, SCALE_MIN));
-    }
-
-    #[test]
-    fn colours_are_neutral_in_the_middle_and_differ_by_sign() {
-        let [r, g, b] = diverging(0.0);
-        assert!(r == g && g == b);
-        assert!(diverging(0.5)[0] > diverging(0.5)[2] && diverging(-0.5)[2] > diverging(-0.5)[0]);
-        assert_eq!(diverging(7.0), diverging(1.0));
-        let found = difference(&image(&[1.0, 1.0]), &image(&[2.0, 1.0])).expect("equal sizes");
-        let rgba = found.rgba(1.0);
-        assert_eq!((&rgba[..3], &rgba[4..7]), (&diverging(1.0)[..], &diverging(0.0)[..]));
-    }
-}

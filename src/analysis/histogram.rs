@@ -81,37 +81,3 @@ pub fn angle_density(frame: &Frame<f64>, alpha_rad: f64, steps: u32, density: im
         .sum();
     sum * sine * TAU / f64::from(steps)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_density_of_an_angle_is_that_of_all_directions_around_the_axis() {
-        let axis = vec3(0.6, 0.0, 0.8);
-        let frame = crate::optics::frame::frame_from_normal(axis);
-        // ∫ (t·ω)² dφ sin α = π sin³ α about the tangent t.
-        for alpha_rad in [0.3_f64, 1.2, 2.5] {
-            let found = angle_density(&frame, alpha_rad, 64, |wi| frame.tangent.dot(wi).powi(2));
-            let expected = PI * alpha_rad.sin().powi(3);
-            assert!((found - expected).abs() < 1e-12, "{alpha_rad}: {found} {expected}");
-        }
-    }
-
-    #[test]
-    fn values_are_counted_in_their_bins_and_densities_add_up() {
-        let mut histogram = Histogram::new(1.0, 3.0, 4);
-        for value in [1.0, 1.49, 2.6, 3.0, 0.99, 3.01, f64::NAN] {
-            histogram.add(value);
-        }
-        assert_eq!(histogram.counts(), [2, 0, 0, 2], "the upper end is the last bin's");
-        assert_eq!(histogram.total(), 7);
-        let density = histogram.density();
-        assert_eq!(
-            density.iter().map(|[middle, _]| *middle).collect::<Vec<_>>(),
-            [1.25, 1.75, 2.25, 2.75]
-        );
-        let within: f64 = density.iter().map(|[_, density]| density * 0.5).sum();
-        assert!((within - 4.0 / 7.0).abs() < 1e-12, "{within}");
-    }
-}

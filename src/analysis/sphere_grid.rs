@@ -7,9 +7,7 @@ use crate::parallel;
 /// Side of the surface to integrate over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// Above the horizon.
     Above,
-    /// Below it.
     Below,
 }
 

@@ -33,11 +33,9 @@ pub enum Action {
     PastePicture,
     /// Cancels what is being loaded or prepared.
     CancelLoading,
-    /// Changes the model.
     UseModel(ModelSource),
     /// Reloads a model's file to show another scene, variant or pose of it.
     ImportModel(ModelSource, ModelOptions),
-    /// Changes the environment.
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
@@ -69,7 +67,6 @@ pub enum Action {
     CompareWith(Rival),
     /// Looks from a direction: yaw and pitch in degrees.
     LookFrom(f64, f64),
-    /// Changes the engine.
     UseEngine(EngineChoice),
     /// Changes whether the GPU's engine uses ray queries.
     UseRayQueries(RayQueries),
@@ -81,7 +78,6 @@ pub enum Action {
     OpenExample(usize),
     /// Brings a panel to the front.
     Reveal(Pane),
-    /// Closes a panel.
     Close(Pane),
     /// Changes the workspaces, or which is shown.
     ChangeWorkspaces(workspaces::Change),
@@ -94,15 +90,10 @@ pub enum Action {
 /// Where a command stands in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Menu {
-    /// Files.
     File,
-    /// Changes.
     Edit,
-    /// Looking.
     View,
-    /// The renderer.
     Render,
-    /// Finding one's way.
     Help,
 }
 
@@ -134,7 +125,6 @@ macro_rules! commands {
             /// Every command, in the order of the menus.
             pub const ALL: &'static [Command] = &[$(Command::$name),*];
 
-            /// Its menu.
             pub fn menu(self) -> Menu {
                 match self { $(Self::$name => Menu::$menu,)* }
             }
@@ -142,11 +132,9 @@ macro_rules! commands {
             pub fn label(self) -> &'static str {
                 match self { $(Self::$name => $label,)* }
             }
-            /// What it does.
             pub fn help(self) -> &'static str {
                 match self { $(Self::$name => $help,)* }
             }
-            /// Its keys.
             pub fn shortcut(self) -> Option<KeyboardShortcut> {
                 match self { $(Self::$name => $shortcut,)* }
             }
@@ -259,22 +247,4 @@ fn is_function(key: Key) -> bool {
 pub(super) fn do_and_close(ui: &egui::Ui, actions: &mut Vec<Action>, action: Action) {
     actions.push(action);
     ui.close();
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_two_commands_share_keys_or_a_name() {
-        for (i, a) in Command::ALL.iter().enumerate() {
-            for b in &Command::ALL[i + 1..] {
-                assert_ne!(a.label(), b.label());
-                assert!(
-                    a.shortcut().is_none() || a.shortcut() != b.shortcut(),
-                    "{a:?} and {b:?}"
-                );
-            }
-        }
-    }
 }

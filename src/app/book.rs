@@ -162,32 +162,3 @@ fn resolved(target: &str, from: Origin<'_>) -> String {
         _ => target.to_owned(),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TUTORIAL: Origin<'static> = Origin {
-        pages: &[("PERFORMANCE.md", "")],
-        folder: "tutorials",
-    };
-
-    #[test]
-    fn links_lead_from_page_to_page() {
-        let line =
-            "See [how](../PERFORMANCE.md#estimation), ![a pot](../pictures/pot.png) and [that](https://example.org).";
-        let expected = "See [how](book:PERFORMANCE.md#estimation), (image: a pot) and [that](https://example.org).";
-        assert_eq!(linked(line, TUTORIAL), expected);
-    }
-
-    #[test]
-    fn tables_are_lists() {
-        let mut head = None;
-        let lines = ["| a | b | c |", "| --- | --- | --- |", "| x | `y\\|z` | |"];
-        let text: Vec<_> = lines
-            .iter()
-            .map(|line| row(&cells(line), &mut head, TUTORIAL))
-            .collect();
-        assert_eq!(text, ["", "", "- **x**; b: `y|z`"]);
-    }
-}

@@ -40,7 +40,6 @@ pub(super) struct Shared {
     pub(super) selection: Selection,
     /// What was said, oldest first.
     pub(super) messages: Vec<Entry>,
-    /// Thumbnails of environments.
     pub(super) environments: Environments,
     /// The files opened and saved last.
     pub(super) recent: Recent,
@@ -60,7 +59,6 @@ pub(super) struct Shared {
     pub(super) library: Library,
     /// What the browser keeps, and the folders that it watches.
     pub(super) shelves: Shelves,
-    /// The pinned states.
     pub(super) snapshots: Snapshots,
     /// The comparison of the document with something else.
     pub(super) compare: Compare,

@@ -122,7 +122,6 @@ pub(super) fn is_open(tree: &Tree<Pane>, pane: Pane) -> bool {
         .is_some_and(|tile| tree.tiles.is_visible(tile))
 }
 
-/// Closes a panel.
 pub(super) fn close(tree: &mut Tree<Pane>, pane: Pane) {
     set_open(&mut tree.tiles, pane, false);
 }
@@ -380,53 +379,5 @@ pub(super) fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
     };
     for tile in others.into_iter().filter(|tile| Some(*tile) != viewport) {
         tree.set_visible(tile, !is_maximised);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A layout that was saved before there were some of the panels keeps its shape and gets them.
-    #[test]
-    fn a_saved_layout_gets_the_panels_that_it_lacks() {
-        let mut tree = all_docked();
-        for pane in [Pane::Race, Pane::Material, Pane::Convergence] {
-            let tile = tree.tiles.find_pane(&pane).expect("it is there");
-            tree.remove_recursively(tile);
-        }
-        let whole = complete(tree).expect("the viewport is there");
-        for pane in Pane::ALL {
-            assert!(whole.tiles.find_pane(&pane).is_some(), "{pane:?}");
-        }
-        let beside = |pane: &Pane| whole.tiles.parent_of(whole.tiles.find_pane(pane)?);
-        assert_eq!(beside(&Pane::Race), beside(&Pane::Effects));
-        assert_eq!(beside(&Pane::Convergence), beside(&Pane::Curve));
-    }
-
-    #[test]
-    fn a_panel_that_is_closed_comes_back_where_it_was() {
-        let mut tree = all_docked();
-        let place = |tree: &Tree<Pane>, pane: Pane| tree.tiles.parent_of(tree.tiles.find_pane(&pane)?);
-        let tabs = place(&tree, Pane::Race).expect("it is docked");
-        for pane in panes_of(Home::LowerLeft) {
-            close(&mut tree, pane);
-            assert!(!is_open(&tree, pane), "{pane:?}");
-        }
-        assert!(!tree.tiles.is_visible(tabs), "nothing is left in it");
-        assert_eq!(titles(&tree.tiles, tabs), [""; 0]);
-        reveal(&mut tree, Pane::Race);
-        assert!(is_open(&tree, Pane::Race) && tree.tiles.is_visible(tabs));
-        assert_eq!(place(&tree, Pane::Race), Some(tabs));
-        assert_eq!(titles(&tree.tiles, tabs), [Pane::Race.title()]);
-        assert!(complete(tree).is_some_and(|tree| !is_open(&tree, Pane::Effects)));
-    }
-
-    #[test]
-    fn a_layout_without_the_picture_is_none() {
-        let mut tree = all_docked();
-        let tile = viewport_tile(&tree).expect("it is there");
-        tree.remove_recursively(tile);
-        assert!(complete(tree).is_none());
     }
 }

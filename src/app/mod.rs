@@ -71,9 +71,6 @@ const KEPT_FROM: Duration = Duration::from_secs(10);
 const MOVING: Duration = Duration::from_millis(150);
 
 /// Opens the editor with files: models, environments, materials, projects. Returns when the window is closed.
-///
-/// # Errors
-/// Where no window can be opened.
 pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> anyhow::Result<()> {
     let options = Options {
         files,
@@ -98,9 +95,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> any
 /// What the editor starts with.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Files to open.
     pub files: Vec<PathBuf>,
-    /// The engine.
     pub engine: EngineChoice,
     /// The document instead of the default one.
     pub document: Option<Document>,
@@ -136,7 +131,6 @@ pub struct App {
     submitted_resolution: Resolution,
     keep_pictures_from: Duration,
     submitted_at: Instant,
-    /// The submission's revision.
     revision: u64,
     queue: Vec<Action>,
     /// Files given at the start that are still being loaded: rendering waits for them.
@@ -182,9 +176,6 @@ fn denoised_by(denoise: Denoise, mut document: Document) -> Document {
 
 impl App {
     /// The editor in a window.
-    ///
-    /// # Errors
-    /// If no thread can be started.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> io::Result<Self> {
         theme::install(&creation.egui_ctx);
         let kept = settings::KeptSettings::load(creation);
@@ -276,7 +267,6 @@ impl App {
         &self.document
     }
 
-    /// The renderer's state.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         self.worker.snapshot()
     }

@@ -21,11 +21,9 @@ macro_rules! list {
             Presets, "Presets", UpperLeft, presets::PresetsPanel, "reference/window.md#presets";
             /// Objects, materials, lights and cameras.
             Scene, "Scene", UpperLeft, scene::ScenePanel, "reference/window.md#scene";
-            /// Pinned states.
             Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel, "how-to/compare.md#snapshots";
             /// Renders that go on beside.
             Queue, "Queue", UpperLeft, queue::QueuePanel, "reference/window.md#saving-and-queueing";
-            /// Environment, background, ground.
             Lighting, "Light", LowerLeft, lighting::LightingPanel, "how-to/lights.md";
             /// Camera, view and render settings.
             Camera, "Camera & image", LowerLeft, camera::CameraPanel, "reference/settings.md";
@@ -33,21 +31,17 @@ macro_rules! list {
             Effects, "Effects", LowerLeft, effects::EffectsPanel, "how-to/profile.md";
             /// Techniques against each other.
             Race, "Race", LowerLeft, race::RacePanel, "how-to/profile.md#race-techniques";
-            /// The material's parameters.
             Material, "Material", UpperRight, material::MaterialPanel, "reference/materials.md";
             /// The proof on this machine.
             Check, "Check", UpperRight, check::CheckPanel, "STABILITY.md";
-            /// What was said.
             Log, "Log", UpperRight, log::LogPanel, "reference/window.md#messages";
             /// The geometric lobe's curve.
             Curve, "Curve", LowerRight, curve::CurvePanel, "tutorials/geometric-lobe.md#what-dξ-does";
             /// What the lobe draws.
             Samples, "Samples", LowerRight, samples::SamplesPanel, "tutorials/geometric-lobe.md#three-formulas";
-            /// The lobe itself.
             Lobe, "Lobe", LowerRight, lobe::LobePanel, "how-to/match.md";
             /// What is known of a pixel, and how bright the image is.
             Inspector, "Inspector", LowerRight, inspector::InspectorPanel, "reference/window.md#error-and-display";
-            /// Error against time.
             Convergence, "Convergence", LowerRight, convergence::ConvergencePanel, "tutorials/accuracy.md#2-render-to-an-error";
         }
     };
@@ -59,13 +53,11 @@ macro_rules! panes {
         /// A part of the window with a tab: the viewport or a panel.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Pane {
-            /// The image.
             Viewport,
             $($(#[$doc])* $name,)*
         }
 
         impl Pane {
-            /// All of them.
             pub const ALL: [Self; 1 + [$(Self::$name),*].len()] = [Self::Viewport, $(Self::$name),*];
 
             /// What it is called.

@@ -19,7 +19,6 @@ use crate::render::{EngineChoice, RayQueries};
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
 
-/// The window's options.
 pub(super) fn native_options() -> eframe::NativeOptions {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id(app_id())
@@ -188,59 +187,5 @@ fn first_denoise() -> Denoise {
         Denoise::Auto
     } else {
         Denoise::Off
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::HashMap;
-
-    use egui::vec2;
-
-    use super::*;
-
-    #[derive(Default)]
-    struct Memory(HashMap<String, String>);
-
-    impl eframe::Storage for Memory {
-        fn get_string(&self, key: &str) -> Option<String> {
-            self.0.get(key).cloned()
-        }
-        fn set_string(&mut self, key: &str, value: String) {
-            self.0.insert(key.to_owned(), value);
-        }
-        fn remove_string(&mut self, key: &str) {
-            self.0.remove(key);
-        }
-        fn flush(&mut self) {}
-    }
-
-    #[test]
-    fn a_window_is_no_larger_than_its_screen_has_room_for() {
-        let screen = vec2(1366.0, 768.0);
-        let bars = vec2(2.0, 30.0);
-        assert_eq!(smaller(screen, vec2(1366.0, 768.0), bars), Some(vec2(1364.0, 738.0)));
-        assert_eq!(smaller(screen, vec2(1200.0, 900.0), bars), Some(vec2(1200.0, 738.0)));
-        assert_eq!(smaller(screen, vec2(1200.0, 700.0), bars), None);
-        // Without a window manager nothing is around it.
-        assert_eq!(smaller(screen, screen, vec2(0.0, 0.0)), None);
-    }
-
-    #[test]
-    fn the_engine_chosen_by_hand_is_there_at_the_next_start() {
-        let mut storage = Memory::default();
-        let kept = KeptSettings {
-            engine: EngineChoice::Gpu,
-            ray_queries: RayQueries::Off,
-            ..KeptSettings::default()
-        };
-        kept.save(&mut storage);
-        let mut creation = eframe::CreationContext::_new_kittest(egui::Context::default());
-        creation.storage = Some(&storage);
-        let loaded = KeptSettings::load(&creation);
-        assert_eq!(
-            (loaded.engine, loaded.ray_queries),
-            (EngineChoice::Gpu, RayQueries::Off)
-        );
     }
 }

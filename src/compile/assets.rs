@@ -52,9 +52,7 @@ pub struct Assets {
 pub struct Reloaded {
     /// The model before, if known.
     pub before: Option<Arc<Model>>,
-    /// The reloaded model.
     pub model: Arc<Model>,
-    /// The reloaded environment.
     pub environment: Arc<Environment>,
 }
 
@@ -110,10 +108,6 @@ impl Assets {
     }
 
     /// The model of a source, loaded if not cached.
-    ///
-    /// # Errors
-    ///
-    /// One line with the file, the fault and the remedy.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, AssetError> {
         let mut kept = self.kept();
         let model = kept.model(&(source.clone(), options.clone()), &self.loading)?;
@@ -122,10 +116,6 @@ impl Assets {
     }
 
     /// The packed textures of a source, with users' maps on its slots. Missing ones are reported.
-    ///
-    /// # Errors
-    ///
-    /// As [`Assets::model`].
     pub fn textures(
         &self,
         source: &ModelSource,
@@ -139,9 +129,6 @@ impl Assets {
     }
 
     /// The geometry of a source, on a ground, with area lights, without the objects that are hidden.
-    ///
-    /// # Errors
-    /// As [`Assets::model`].
     pub fn geometry(
         &self,
         source: &ModelSource,
@@ -158,10 +145,6 @@ impl Assets {
     }
 
     /// The environment of a source, loaded if not cached.
-    ///
-    /// # Errors
-    ///
-    /// One line with the file, the fault and the remedy.
     pub fn environment(
         &self,
         source: &EnvironmentSource,
@@ -194,10 +177,6 @@ impl Assets {
 
     /// Reloads a model and an environment and drops all others. Returns them, and the model before. If either fails, nothing
     /// changes.
-    ///
-    /// # Errors
-    ///
-    /// As [`Assets::model`] and [`Assets::environment`].
     pub fn reload(
         &self,
         source: &ModelSource,

@@ -479,38 +479,3 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         holds: if is_inside { Holds::InnerAlbedo } else { Holds::Albedo },
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::PI;
-
-    use super::*;
-    use crate::document::AreaLight;
-    use crate::scene::light::spot_share;
-
-    /// The flux of a spot against the integral of what it sends in each direction.
-    #[test]
-    fn the_power_of_a_spot_is_what_its_cone_holds() {
-        for (cone_deg, softness) in [(40.0, 0.2), (120.0, 1.0), (5.0, 0.0)] {
-            let light = AreaLight {
-                cone_deg,
-                softness,
-                ..AreaLight::spot()
-            };
-            let mut material = compile(&[light.material()]).0[0];
-            light.shine().finish(&mut material);
-            let steps = 200_000;
-            let shares = (0..steps).map(|step| {
-                let cosine = (f64::from(step) + 0.5) / f64::from(steps);
-                2.0 * PI * cosine * spot_share(&material.cast::<f64>(), cosine)
-            });
-            let projected = shares.sum::<f64>() / f64::from(steps);
-            let expected = projected * light.radiance() * 0.25 * PI * 0.09 * 4.0;
-            let power = light.power(2.0);
-            assert!(
-                (power / expected - 1.0).abs() < 5e-3,
-                "{cone_deg} {softness}: {power} for {expected}"
-            );
-        }
-    }
-}

@@ -154,7 +154,6 @@ impl CpuEngine {
         taken.into_inner().min(works.len())
     }
 
-    /// The accumulated film.
     pub fn film(&self) -> &Film {
         &self.film
     }

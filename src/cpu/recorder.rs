@@ -57,7 +57,6 @@ pub enum Purpose {
     Below,
     /// Direction to a light.
     Light,
-    /// Russian roulette.
     Roulette,
     /// Whether the shadow catcher mirrors the ray.
     Catcher,
@@ -90,7 +89,6 @@ pub enum End {
     Bounces,
     /// The sampled direction carries no light, or NaN.
     Absorbed,
-    /// Russian roulette.
     Roulette,
 }
 
@@ -189,7 +187,6 @@ pub enum Event {
     },
     /// A direction to a light was sampled.
     Light {
-        /// The sampled source.
         source: Source,
         /// Unit vector.
         direction: [f32; 3],
@@ -206,7 +203,6 @@ pub enum Event {
     },
     /// The path continues in a direction sampled from the material.
     Scattered {
-        /// The sampled layer.
         layer: Layer,
         /// Probability of each layer. If the specular lobe passes on what it does not reflect: its mean.
         probabilities: Vec<LayerChance>,
@@ -239,9 +235,7 @@ pub enum Event {
         /// The contribution after the firefly clamp.
         added: [f32; 3],
     },
-    /// The path ended.
     Ended {
-        /// Reason.
         why: End,
     },
 }

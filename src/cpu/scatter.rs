@@ -5,7 +5,6 @@ use crate::optics::lobe::{lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::parallel;
 
-/// Samples the lobe.
 pub fn scatter(request: &ScatterRequest) -> ScatterCloud {
     let shape = request.model.shape::<f32>();
     let frame = ScatterRequest::frame();

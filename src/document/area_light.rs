@@ -37,7 +37,6 @@ pub struct AreaLight {
     pub width: f64,
     /// Other side, bounding radii.
     pub height: f64,
-    /// Its shape.
     pub shape: AreaLightShape,
     /// The angle across a spot's cone, degrees.
     pub cone_deg: f64,
@@ -336,78 +335,5 @@ named! {
         Spot = 3, "spot", "Spot", "A disc that sends its light into a cone around its target.";
         Sphere = 5, "sphere", "Sphere", "A ball that shines in all directions alike: the width is its diameter.";
         Sun = 4, "sun", "Sun", "A disc so far away that its light is parallel.";
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::camera::orbit_direction;
-
-    #[test]
-    fn a_highlight_is_where_the_lights_middle_is_mirrored() {
-        for (place, mirrored) in [
-            (DVec3::new(0.3, 0.5, 0.6), DVec3::new(-0.6, 0.64, 0.48)),
-            (DVec3::ZERO, DVec3::Y),
-            (DVec3::new(8.0, -1.0, 3.0), DVec3::new(0.0, 1.0, 0.0)),
-        ] {
-            for target in [[0.0; 3], [0.2, -0.4, 0.1]] {
-                for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
-                    let mut light = AreaLight { target, ..start };
-                    light.put_highlight(place, mirrored);
-                    let seen = (light.shape().frame().middle - place).normalize();
-                    let tolerance = if light.is_sun() { 2e-3 } else { 1e-9 };
-                    assert!(seen.distance(mirrored) < tolerance, "{place} {mirrored}: {light:?}");
-                    assert!(light.distance >= AreaLight::default().distance);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_light_looks_at_its_target() {
-        let light = AreaLight {
-            target: [0.5, -1.0, 2.0],
-            turn_deg: 30.0,
-            ..AreaLight::default()
-        };
-        let frame = light.shape().frame();
-        let outwards = orbit_direction(light.yaw_deg, light.pitch_deg);
-        assert!((frame.middle - 3.0 * outwards).distance(DVec3::new(0.5, -1.0, 2.0)) < 1e-12);
-        // To the right of who looks at it, and turned clockwise: downwards.
-        let untilted = AreaLight { turn_deg: 0.0, ..light }.shape().frame();
-        assert!(untilted.across.cross(untilted.up).distance(-outwards) < 1e-12);
-        assert!(frame.across.dot(untilted.across) > 0.0 && frame.across.dot(untilted.up) < 0.0);
-    }
-
-    #[test]
-    fn power_and_strength_are_the_same_said_twice() {
-        for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
-            let mut light = AreaLight {
-                color: [1.0, 0.5, 0.2],
-                ..start
-            };
-            light.set_power(800.0, 0.3);
-            assert!((light.power(0.3) - 800.0).abs() < 1e-3, "{light:?}");
-        }
-        // A square metre of 1 cd/m² sends π lm to each side.
-        let square = AreaLight {
-            strength: 1.0,
-            ..AreaLight::default()
-        };
-        assert!((square.power(1.0) - 2.0 * PI).abs() < 1e-9);
-        // A ball of radius 1 m sends 4π² of it.
-        let ball = AreaLight {
-            shape: AreaLightShape::Sphere,
-            width: 2.0,
-            ..square
-        };
-        assert!((ball.power(1.0) - 4.0 * PI * PI).abs() < 1e-9);
-        let mut black = AreaLight {
-            color: [0.0; 3],
-            ..square
-        };
-        black.set_power(5.0, 1.0);
-        assert_eq!(black.strength, 1.0);
     }
 }

@@ -7,11 +7,9 @@ use super::{AreaLight, Document, PARAMETERS, Parameter, SETTINGS, Stage};
 pub struct Change {
     /// Tone curve or exposure: how what has been rendered is shown.
     pub display: bool,
-    /// The camera.
     pub camera: bool,
     /// Width or height of the image.
     pub size: bool,
-    /// Another environment map.
     pub environment: bool,
     /// Rotation or strength of the environment, or the background.
     pub lighting: bool,

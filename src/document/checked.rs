@@ -7,7 +7,6 @@ use super::{AreaLight, Background, Document, range};
 
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum SettingError {
     /// Of the table.
     #[error(transparent)]

@@ -13,7 +13,6 @@ const CATCHER_ALBEDO_MIN: f32 = 1e-3;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GroundSettings {
-    /// What it is.
     pub kind: GroundKind,
     /// How much of a varnish lies on it, in [0, 1]: its reflection is that of glass, times this.
     pub reflection: f32,
@@ -71,7 +70,6 @@ impl Document {
         self.ground && self.lighting.ground.kind == GroundKind::ShadowCatcher
     }
 
-    /// The ground's material.
     pub fn ground_material(&self) -> MaterialSettings {
         let settings = &self.lighting.ground;
         let mut material = MaterialSettings::diffuse("ground", self.lighting.ground_color);

@@ -10,7 +10,6 @@ use crate::job::light_sums::LIGHT_GROUPS_MAX;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct LightMix {
-    /// The group.
     pub group: GroupName,
     /// Factor of its light, at least 0.
     pub factor: f32,
@@ -95,63 +94,4 @@ impl Document {
 /// The group of what materials emit.
 pub fn emission_group() -> GroupName {
     GroupName::new("emission")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_name_has_what_a_layer_may_be_called() {
-        for (text, name) in [
-            ("key", "key"),
-            ("Rim light 2", "Rim-light-2"),
-            ("a.b/ä", "ab"),
-            ("", ""),
-            ("0123456789012345678901234567", "012345678901234567890123"),
-        ] {
-            assert_eq!(GroupName::new(text).as_str(), name);
-        }
-    }
-
-    #[test]
-    fn groups_are_those_of_what_shines() {
-        let mut document = Document::default();
-        assert!(document.light_groups().is_empty());
-        document.lighting.light_groups = true;
-        let key = AreaLight {
-            group: GroupName::new("key"),
-            ..AreaLight::default()
-        };
-        let muted = AreaLight {
-            is_muted: true,
-            group: GroupName::new("muted"),
-            ..key
-        };
-        document.lighting.area_lights = vec![AreaLight::default(), key, muted, AreaLight::sun(), AreaLight::spot()];
-        let names: Vec<_> = document.light_groups().into_iter().map(String::from).collect();
-        assert_eq!(names, ["environment", "lights", "key", "sun"]);
-        document.materials[0].emission_strength = 1.0;
-        assert_eq!(document.light_groups()[1], emission_group());
-        document.set_light_mix(LightMix {
-            factor: 0.5,
-            color: [1.0, 0.5, 0.0],
-            ..LightMix::of(key.group)
-        });
-        assert_eq!(document.light_factors()[3], [0.5, 0.25, 0.0]);
-        document.set_light_mix(LightMix::of(key.group));
-        assert!(document.lighting.light_mix.is_empty());
-    }
-
-    #[test]
-    fn groups_beyond_the_last_share_it() {
-        let mut document = Document::default();
-        document.lighting.light_groups = true;
-        let light = |number: usize| AreaLight {
-            group: GroupName::new(&number.to_string()),
-            ..AreaLight::default()
-        };
-        document.lighting.area_lights = (0..40).map(light).collect();
-        assert_eq!(document.light_groups().len(), LIGHT_GROUPS_MAX);
-    }
 }

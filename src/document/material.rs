@@ -36,7 +36,6 @@ pub struct MaterialSettings {
     pub specular_in_index: bool,
     /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
     pub specular_on_metal: bool,
-    /// The specular lobe.
     pub lobe: Lobe,
     /// GGX gets back the light that single scattering between its facets loses.
     pub multiple_scattering: bool,
@@ -52,7 +51,6 @@ pub struct MaterialSettings {
     pub custom_curve: CustomCurve,
     /// What happens below the surface.
     pub horizon: Horizon,
-    /// The Fresnel model.
     pub fresnel: Fresnel,
     /// The dielectric's index of refraction, in [1, 4].
     pub ior: f32,

@@ -43,30 +43,3 @@ impl MaterialSettings {
         material
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::optics::fresnel::fresnel_metal;
-
-    /// Every measured metal keeps its colour head-on and at 82°, and is near between.
-    #[test]
-    fn measured_metals_keep_their_look_by_two_colours() {
-        for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
-            let measured = MaterialSettings::default().by_measured(conductor);
-            let colored = measured.by_colors();
-            assert_eq!((colored.fresnel, colored.metalness), (Fresnel::Schlick, 1.0));
-            let [f0, tint] = [colored.base_color, colored.edge_tint].map(|color| Vec3::from_f64(color.map(f64::from)));
-            for (cosine, tolerance) in [(1.0, 1e-5), (EDGE, 1e-5), (0.7, 0.03), (0.4, 0.05)] {
-                let by_colors = fresnel_metal(f0, tint, cosine).to_f64();
-                for (i, found) in by_colors.into_iter().enumerate() {
-                    let exact = fresnel_conductor(cosine, f64::from(measured.eta[i]), f64::from(measured.k[i]));
-                    // The tint only darkens: what brightens towards 82° stays Schlick's there.
-                    let slack = if tint.to_f64()[i] >= 1.0 { 0.05 } else { tolerance };
-                    let name = conductor.name();
-                    assert!((found - exact).abs() < slack, "{name} at {cosine}: {found} for {exact}");
-                }
-            }
-        }
-    }
-}

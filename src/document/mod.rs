@@ -63,7 +63,6 @@ use crate::scene::{ModelOptions, ModelSource};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Document {
-    /// What is rendered.
     pub model: ModelSource,
     /// What is shown of a file that holds more than one image.
     pub import: ModelOptions,
@@ -115,9 +114,6 @@ impl Default for Document {
 impl Document {
     /// Whether every number lies where the renderer can work with it. Materials need no check: they are set through
     /// [`PARAMETERS`].
-    ///
-    /// # Errors
-    /// The first setting that is out of range.
     pub fn check(&self) -> Result<(), SettingError> {
         checked::check(self)
     }

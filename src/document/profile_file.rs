@@ -25,7 +25,6 @@ impl ProfileFile {
         Self(kept)
     }
 
-    /// Its name.
     pub fn path(&self) -> &'static Path {
         self.0
     }

@@ -46,7 +46,6 @@ pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
 pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
 /// Samples per pixel before an estimate of the error is believed.
 pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
-/// Longest path, bounces.
 pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
 /// The largest radiance that an indirect contribution keeps.
 pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
@@ -68,7 +67,6 @@ pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
 pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
 /// How many area lights there may be.
 pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=crate::scene::LIGHTS_MAX as f64;
-/// Shares.
 pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
 /// Linear colours of things that do not emit.
 pub const COLOR: RangeInclusive<f64> = 0.0..=1.0;

@@ -21,7 +21,6 @@ named! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Reference {
-    /// The file.
     pub file: PathBuf,
     /// Where it is shown.
     pub place: ReferencePlace,

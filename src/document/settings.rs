@@ -18,7 +18,6 @@ use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Lighting {
-    /// The environment map.
     pub environment: EnvironmentSource,
     /// What the numbers of an image for screens stand for, where the map is one.
     pub environment_encoding: EnvironmentEncoding,
@@ -78,7 +77,6 @@ impl Default for Lighting {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Background {
-    /// The environment.
     #[default]
     Environment,
     /// Nothing: opacity 0.
@@ -104,7 +102,6 @@ pub struct CameraSettings {
     pub position: Option<[f64; 3]>,
     /// Vertical field of view, degrees; of an orthographic camera what it would see of its target.
     pub fov_deg: f64,
-    /// How it projects.
     #[serde(skip_serializing_if = "is_perspective")]
     pub projection: Projection,
     /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
@@ -150,7 +147,6 @@ pub struct Bookmark {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
-    /// The tone curve.
     pub tone_map: ToneCurve,
     /// Stops by which radiance is multiplied before it: 2^exposure.
     pub exposure_ev: f32,

@@ -8,9 +8,6 @@ use super::parameter::{ParameterError, TEXTURE_PARAMETERS};
 use crate::scene::texture::UserTexture;
 
 /// An image as a material's file has it: `{"file": …, "rotation": 45, …}`; what is left out has its default.
-///
-/// # Errors
-/// A value that a parameter does not take; a file that is no text.
 pub fn texture_from_json(json: Json) -> Result<UserTexture, TextureError> {
     let Json::Object(mut values) = json else {
         return Err(TextureError::NoObject);
@@ -45,7 +42,6 @@ pub fn texture_to_json(texture: &UserTexture) -> Json {
 /// Why an image in a material's file can't be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TextureError {
-    /// A parameter's value.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// It is no object.

@@ -4,7 +4,6 @@ use super::Document;
 use crate::named::named;
 
 named! {
-    /// What turns.
     #[derive(Default)]
     Turn {
         #[default]
@@ -74,53 +73,4 @@ fn turned_about(place: [f64; 3], center: [f64; 3], angle_deg: f64) -> [f64; 3] {
 /// In [−180, 180).
 fn wrapped_deg(angle: f64) -> f64 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::document::AreaLight;
-
-    #[test]
-    fn frames_turn_by_equal_angles_from_the_document_itself() {
-        let mut document = Document::default();
-        document.camera.yaw_deg = 170.0;
-        for turn in Turn::ALL {
-            assert_eq!(turned(&document, *turn, 0, 8, [0.0; 3]), document);
-        }
-        let quarter = turned(&document, Turn::Camera, 2, 8, [0.0; 3]);
-        assert_eq!((quarter.camera.yaw_deg, quarter.lighting.rotation_deg), (-100.0, 0.0));
-    }
-
-    #[test]
-    fn places_turn_with_the_yaw() {
-        // Yaw 0 is +Z, and the yaw goes towards +X.
-        let mut document = Document::default();
-        document.camera.position = Some([1.0, 2.0, 8.0]);
-        let quarter = turned(&document, Turn::Camera, 1, 4, [1.0, 0.0, 3.0]);
-        let place = quarter.camera.position.expect("it had one");
-        let expected = [6.0, 2.0, 3.0];
-        assert!(
-            std::iter::zip(place, expected).all(|(a, b)| (a - b).abs() < 1e-12),
-            "{place:?}"
-        );
-    }
-
-    #[test]
-    fn turning_the_model_is_turning_all_else_back() {
-        let mut document = Document::default();
-        document.lighting.area_lights.push(AreaLight::default());
-        let both = turned(
-            &turned(&document, Turn::Model, 1, 6, [0.0; 3]),
-            Turn::Camera,
-            1,
-            6,
-            [0.0; 3],
-        );
-        let back = turned(&both, Turn::Light, 1, 6, [0.0; 3]);
-        assert!((back.camera.yaw_deg - document.camera.yaw_deg).abs() < 1e-9);
-        assert!((back.lighting.rotation_deg - document.lighting.rotation_deg).abs() < 1e-4);
-        let yaws = [&back, &document].map(|document| document.lighting.area_lights[0].yaw_deg);
-        assert!((yaws[0] - yaws[1]).abs() < 1e-9);
-    }
 }

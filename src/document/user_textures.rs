@@ -24,7 +24,6 @@ impl UserTextures {
         self.0[target as usize] = texture.map(Box::new);
     }
 
-    /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = (TextureTarget, &UserTexture)> {
         let targets = TextureTarget::ALL.iter();
         targets.filter_map(|&target| Some((target, self.get(target)?)))

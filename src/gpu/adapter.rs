@@ -68,10 +68,6 @@ pub struct GpuAdapter {
 
 impl GpuAdapter {
     /// The best adapter of a kind.
-    ///
-    /// # Errors
-    ///
-    /// If there is none, with what to install.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
         let adapters = Self::of_kind(kind).into_iter();
         adapters
@@ -130,10 +126,6 @@ impl GpuAdapter {
     }
 
     /// Opens the adapter for a kind of traversal.
-    ///
-    /// # Errors
-    ///
-    /// If the adapter lacks something.
     pub fn open(&self, traversal: Traversal) -> Result<GpuDevice, GpuError> {
         let unfit = |reason: String| GpuError::Unfit {
             adapter: self.info.name.clone(),
@@ -164,10 +156,6 @@ impl GpuAdapter {
 
 impl GpuDevice {
     /// Opens the best adapter of a kind without experimental features: rays use our own hierarchy.
-    ///
-    /// # Errors
-    ///
-    /// If there is none, with what to install; or with what the adapter lacks.
     pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
         GpuAdapter::find(kind)?.open(Traversal::Own)
     }
@@ -181,36 +169,5 @@ fn rank(info: &wgpu::AdapterInfo) -> u8 {
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_webgpu_grants_everywhere_is_enough() {
-        assert_eq!(lacking(&wgpu::Limits::default()), None);
-        let asked = limits_asked(&wgpu::Limits::default());
-        assert_eq!(asked.max_storage_buffers_per_shader_stage, 6);
-        assert_eq!(asked.max_storage_buffer_binding_size, 128 << 20);
-    }
-
-    #[test]
-    fn what_an_adapter_lacks_is_told_by_name() {
-        let poor = wgpu::Limits {
-            max_storage_buffers_per_shader_stage: 4,
-            max_texture_dimension_2d: 2048,
-            ..wgpu::Limits::default()
-        };
-        let message = lacking(&poor).expect("it lacks two");
-        assert!(
-            message.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
-            "{message}"
-        );
-        assert!(
-            message.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
-            "{message}"
-        );
     }
 }

@@ -94,10 +94,6 @@ pub(super) fn pipeline_layout(
 }
 
 /// A compute pipeline of an entry point with constants.
-///
-/// # Errors
-///
-/// [`GpuError::Shader`] if the driver refuses it.
 pub(super) fn pipeline(
     gpu: &GpuDevice,
     module: &wgpu::ShaderModule,

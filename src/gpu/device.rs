@@ -11,7 +11,6 @@ use crate::panics::lock;
 
 /// Errors of a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum GpuError {
     /// No adapter of the requested kind.
     #[error(
@@ -54,7 +53,6 @@ impl GpuError {
 /// An open device.
 #[derive(Clone, Debug)]
 pub struct GpuDevice {
-    /// wgpu's device.
     pub device: wgpu::Device,
     /// Command queue of the device.
     pub queue: wgpu::Queue,
@@ -199,18 +197,11 @@ impl GpuDevice {
     }
 
     /// A storage buffer of zeros.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
         self.buffer_of(what, size, wgpu::BufferUsages::empty())
     }
 
     /// The same with another usage.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub(super) fn buffer_of(
         &self,
         what: &'static str,
@@ -256,18 +247,11 @@ impl GpuDevice {
     }
 
     /// The contents of a buffer of one kind of plain value; waits for the device.
-    ///
-    /// # Errors
-    /// If the device failed.
     pub fn read<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<A>, GpuError> {
         self.read_part(buffer, 0..count)
     }
 
     /// The same for a range of the values.
-    ///
-    /// # Errors
-    ///
-    /// If the device failed.
     pub fn read_part<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
         let [first, size] = [part.start, part.len()].map(|count| (count * size_of::<A>()) as u64);
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {

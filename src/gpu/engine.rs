@@ -46,10 +46,6 @@ pub struct GpuEngine {
 
 impl GpuEngine {
     /// An engine on an open device.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses the path tracer.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pipelines = Pipelines::new(&gpu)?;
         let longest = if gpu.is_software() { DISPATCH_SOFTWARE } else { DISPATCH };
@@ -74,11 +70,6 @@ impl GpuEngine {
     }
 
     /// Begins a job. After an error the old job continues.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] if the adapter cannot hold a part of it;
-    /// [`GpuError::Shader`].
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
@@ -109,10 +100,6 @@ impl GpuEngine {
 
     /// Compiles the kernel of a job's plan, with an empty dispatch, because some drivers compile at the first one. Takes
     /// seconds.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses the kernel; [`GpuError::TooLarge`].
     pub fn prepare(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         self.submit(job)?;
         self.dispatch(&[Tile::default()])
@@ -137,19 +124,12 @@ impl GpuEngine {
     }
 
     /// Renders for about `budget`, at most up to `samples` a pixel.
-    ///
-    /// # Errors
-    /// If the device fails.
     pub fn step(&mut self, budget: Duration, samples: u32) -> Result<(), GpuError> {
         let goals = vec![samples; self.schedule.grid().tiles()];
         self.step_towards(budget, &goals)
     }
 
     /// The same up to a number of samples per pixel of each tile.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
         self.schedule.set_goals(goals);
         let start = Instant::now();
@@ -256,10 +236,6 @@ impl GpuEngine {
     }
 
     /// The accumulated film.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn film(&mut self) -> Result<&Film, GpuError> {
         self.flush()?;
         Ok(&self.film)

@@ -74,10 +74,6 @@ pub struct GeometryArrays {
 
 impl GeometryArrays {
     /// An empty geometry.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
         let buffer = || gpu.empty_storage("nothing", 0);
         let texture = || array::empty_texture::<u32>(gpu, "nothing", 0);
@@ -93,9 +89,6 @@ impl GeometryArrays {
     }
 
     /// Brings a geometry to the GPU.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`]; if the device fails.
     pub fn new(gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
         let room = room(&geometry.around);
         let model = geometry.whole_model();
@@ -133,10 +126,6 @@ impl GeometryArrays {
     }
 
     /// The same model with other surroundings, which overwrite the old ones. They must fit.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn with_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
         self.write_around(gpu, geometry)?;
         let structures = self.structures.as_ref();
@@ -152,10 +141,6 @@ impl GeometryArrays {
     }
 
     /// Uploads the surroundings over the current ones. They must fit.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn write_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<(), GpuError> {
         self.write(gpu, &geometry.around, Counts::of(geometry.whole_model()))
     }

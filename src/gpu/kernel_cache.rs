@@ -69,26 +69,3 @@ fn replace(path: &Path, data: &[u8]) -> std::io::Result<()> {
     file.persist(path)?;
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::AdapterKind;
-
-    #[test]
-    fn a_damaged_cache_is_passed_over() {
-        let gpu = GpuDevice::open(AdapterKind::Any).expect("an adapter: install mesa-vulkan-drivers");
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("cache/of.kernels");
-        let Some(cache) = KernelCache::at(&gpu, path.clone()) else {
-            assert!(!gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE));
-            return;
-        };
-        cache.save();
-        let whole = std::fs::read(&path).expect("it was saved");
-        for damaged in [&whole[..whole.len() / 2], b"not a cache".as_slice()] {
-            std::fs::write(&path, damaged).expect("written");
-            assert!(KernelCache::at(&gpu, path.clone()).is_some());
-        }
-    }
-}

@@ -34,7 +34,6 @@ pub struct Globals {
     pub image_size: [u32; 2],
     /// Reflections a path may have.
     pub bounces: u32,
-    /// Random sequence.
     pub sequence: u32,
     /// Linear background colour; for a blurred environment (sine of the blur angle, 0, 0).
     pub background: [f32; 3],
@@ -46,7 +45,6 @@ pub struct Globals {
     pub environment_cells_size: [u32; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f32,
-    /// Light strategy.
     pub strategy: u32,
     /// Changes all random numbers.
     pub seed: u32,

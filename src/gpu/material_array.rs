@@ -21,9 +21,6 @@ pub struct MaterialArray {
 
 impl MaterialArray {
     /// Brings materials to the GPU.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`].
     pub fn new(gpu: &GpuDevice, materials: &[Material<f32>]) -> Result<Self, GpuError> {
         let are_many = Self::are_many(materials);
         // Each buffer has at least the size that the shader declares, whether it is read or not.

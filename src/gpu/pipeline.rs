@@ -80,10 +80,6 @@ impl Pipelines {
     }
 
     /// The pipeline of a plan, compiled on first use.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: SceneForm) -> Result<&wgpu::ComputePipeline, GpuError> {
         let kernel = (plan.specialisation(), form);
         if !self.made.contains_key(&kernel) {

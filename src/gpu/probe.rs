@@ -31,10 +31,6 @@ pub struct Probe {
 
 impl Probe {
     /// Links the shader.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let own_layout = compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]);
         let mut passes = HashMap::new();
@@ -56,10 +52,6 @@ impl Probe {
     }
 
     /// The answers of an entry point, one per question.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails, or cannot hold the questions.
     pub fn ask<Q: Pod, A: Pod>(
         &self,
         entry_point: &'static str,

@@ -49,10 +49,6 @@ pub struct Scatterer {
 
 impl Scatterer {
     /// Compiles the shader.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let name = "scatter";
         let module = compute::module(&gpu, name, Traversal::Own)?;
@@ -66,9 +62,6 @@ impl Scatterer {
     }
 
     /// Draws the samples.
-    ///
-    /// # Errors
-    /// If the device fails.
     pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
         let gpu = &self.gpu;
         let tables = scene_group::tables(gpu, &request.model.table)?;

@@ -88,10 +88,6 @@ pub struct SceneGroup {
 
 impl SceneGroup {
     /// An empty scene.
-    ///
-    /// # Errors
-    ///
-    /// If the device fails.
     pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
         let nothing = || array::texture(gpu, "nothing", &Values::<u32>::of(&[]));
         Ok(Self {
@@ -141,9 +137,6 @@ impl SceneGroup {
 }
 
 /// The materials' custom curves and albedo tables.
-///
-/// # Errors
-/// [`GpuError::Lost`].
 pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::TextureView, GpuError> {
     let (nodes, rest) = tables.as_chunks::<NODE_LENGTH>();
     assert!(rest.is_empty(), "tables are made of whole nodes");
@@ -248,10 +241,6 @@ fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4
 }
 
 /// The alias table of emitting triangles, which are given by their positions in the hierarchy's order.
-///
-/// # Errors
-///
-/// If the device fails.
 pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Result<wgpu::TextureView, GpuError> {
     let place = geometry.places();
     let cells =
@@ -260,10 +249,6 @@ pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Res
 }
 
 /// The records and texels of a model's texture maps; unchanged ones are kept.
-///
-/// # Errors
-///
-/// If the device fails.
 pub fn textures(
     gpu: &GpuDevice,
     textures: &Textures,

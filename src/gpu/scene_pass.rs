@@ -31,10 +31,6 @@ impl ScenePass {
     }
 
     /// A pipeline of an entry point with constants.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError::Shader`] if the driver refuses it.
     pub fn pipeline(
         &self,
         gpu: &GpuDevice,

@@ -124,31 +124,3 @@ fn instance(blas: &wgpu::Blas, number: u32) -> wgpu::TlasInstance {
     let in_place = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     wgpu::TlasInstance::new(blas, in_place, number, 0xff)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
-    use crate::scene::{Model, ModelSource};
-
-    #[test]
-    fn what_is_around_the_model_is_built_anew_alone() {
-        let adapter = GpuAdapter::find(AdapterKind::Any).expect("an adapter: install mesa-vulkan-drivers");
-        let Ok(gpu) = adapter.open(Traversal::RayQueries) else {
-            assert!(!adapter.has_ray_queries(), "it has them and can't be opened");
-            return;
-        };
-        let alone = Geometry::build(&Model::built_in(&ModelSource::Sphere).expect("it is built in"), false);
-        let on_ground = alone.surrounded(true, &[]);
-        let bytes = (size_of::<Triangle>() * on_ground.triangle_count()) as u64;
-        let triangles = gpu.buffer_of("triangles", bytes, wgpu::BufferUsages::BLAS_INPUT);
-        let triangles = triangles.expect("it is small");
-        let first = Structures::new(&gpu, &alone, &triangles);
-        let second = first.with_around(&gpu, &on_ground, &triangles);
-        assert!(first.model.is_some() && first.model == second.model);
-        assert!(first.whole != second.whole, "renders in progress go on with the first");
-        let are_there = |structures: &Structures| [0, 1].map(|number| structures.whole[number].is_some());
-        assert_eq!([are_there(&first), are_there(&second)], [[true, false], [true, true]]);
-        gpu.wait().expect("both are built");
-    }
-}

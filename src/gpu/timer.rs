@@ -59,9 +59,6 @@ impl Timer {
     }
 
     /// The pass's seconds, after the wait that followed [`Timer::request`].
-    ///
-    /// # Errors
-    /// If the device failed.
     pub fn seconds(&self) -> Result<f64, GpuError> {
         let ticks: [u64; 2] = {
             let view = self

@@ -53,10 +53,6 @@ impl Budget {
     }
 
     /// Checks that `needed` bytes are left, for temporary use.
-    ///
-    /// # Errors
-    ///
-    /// [`OverBudget`].
     pub fn check(&self, needed: u64) -> Result<(), OverBudget> {
         let (left, allowed) = (self.left(), self.0.allowed);
         let over = OverBudget { needed, left, allowed };
@@ -73,24 +69,5 @@ impl Budget {
         self.check(needed)?;
         self.0.taken.fetch_add(needed, Relaxed);
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_does_not_fit_takes_nothing_and_says_what_would() {
-        let budget = Budget::new(10 << 20);
-        let same = budget.clone();
-        budget.take(7 << 20).expect("it fits");
-        assert_eq!(same.left(), 3 << 20);
-        let message = same.take(4 << 20).expect_err("it does not fit").to_string();
-        for words in ["takes 4 MiB", "3 are left of the 10 MiB", "GLOSSMITH_MEMORY"] {
-            assert!(message.contains(words), "{message}");
-        }
-        same.take(3 << 20).expect("it fits exactly");
-        assert_eq!(budget.left(), 0);
     }
 }

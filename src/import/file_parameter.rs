@@ -13,7 +13,6 @@ pub struct FileParameter {
     pub range: Option<[f32; 2]>,
     /// Weight parameter that it depends on; empty for none.
     pub layer: &'static str,
-    /// Its destination.
     pub goes: Goes,
     /// Approximation; empty for an exact import.
     pub note: &'static str,

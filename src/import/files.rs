@@ -37,7 +37,6 @@ pub(super) struct Import {
     pub asked: Seen,
     /// Memory budget of the files and images together.
     pub budget: Budget,
-    /// Progress and cancellation.
     pub loading: Loading,
 }
 
@@ -52,10 +51,6 @@ impl Import {
     }
 
     /// Contents of a file, counted against the budget.
-    ///
-    /// # Errors
-    ///
-    /// As [`resource::read`], and if the budget is exceeded or loading cancelled.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.budget.take(resource::open(path)?.metadata()?.len())?;
         resource::read_watched(path, BYTES_MAX, &self.loading)
@@ -75,7 +70,6 @@ impl Seen {
         }
     }
 
-    /// What was noted.
     pub fn take(&self) -> Vec<PathBuf> {
         std::mem::take(&mut lock(&self.0))
     }

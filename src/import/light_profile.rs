@@ -25,9 +25,6 @@ pub struct LightProfileError {
 }
 
 /// The profile in a file.
-///
-/// # Errors
-/// What is wrong with the file.
 pub fn load(path: &Path) -> Result<LightProfile, LightProfileError> {
     let read = || {
         let bytes = resource::read(path, BYTES_MAX)
@@ -94,76 +91,5 @@ fn count(kind: &str, number: f32) -> Result<usize, String> {
     match is_count {
         true => Ok(number as usize),
         false => Err(format!("it has {number} {kind} angles")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::PI;
-
-    use super::*;
-
-    const HEAD: &str = "IESNA:LM-63-2002\r\n[TEST] built by a test\r\nTILT=NONE\r\n";
-
-    #[test]
-    fn files_are_read_as_programs_write_them() {
-        let plain = parse(&format!(
-            "{HEAD}1 1000 2 3 1 1 2 0 0 0\n1 1 20\n0 45 90\n0\n50 50\n 50\n"
-        ));
-        assert!((plain.expect("a profile").lumens() - 200.0 * PI).abs() < 1e-3);
-        let tilted = "TILT=INCLUDE\n1\n2\n0 90\n1,0.9\n1 -1 1 2 1 1 1 0 0 0 0.5 1 20 0 180 0 10 10";
-        assert!((parse(tilted).expect("a profile").lumens() - 20.0 * PI).abs() < 1e-6);
-    }
-
-    #[test]
-    fn damaged_files_are_refused_in_words() {
-        for (text, words) in [
-            ("", "TILT="),
-            ("TILT=NONE", "ends too early"),
-            ("TILT=lamp.tlt\n1", "its tilt is in lamp.tlt"),
-            ("TILT=NONE\n1 1 1 1e9 1 1", "vertical angles"),
-            ("TILT=NONE\n1 1 1 2.5 1 1", "vertical angles"),
-            ("TILT=NONE\n1 1 1 2 -1 1", "horizontal angles"),
-            ("TILT=NONE\n1 1 1 2 1 3 1 0 0 0", "type A"),
-            ("TILT=NONE\n1 1 one", "\"one\" is no number"),
-            ("TILT=NONE\n1 1 nan", "no number"),
-            ("TILT=INCLUDE\n1 1e30", "tilt angles"),
-            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1", "ends too early"),
-            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1", "do not ascend"),
-            ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1 -1", "negative"),
-            ("TILT=NONE\n1 1 1e38 2 1 1 1 0 0 0 1e38 1 1 0 90 0 1 1", "above 1e9"),
-        ] {
-            let error = parse(text).expect_err(text);
-            assert!(error.contains(words), "{text}: {error}");
-        }
-    }
-
-    /// No file panics, however it is cut or whichever word is replaced.
-    #[test]
-    fn no_damage_panics() {
-        let whole = format!("{HEAD}1 1000 2 3 2 1 2 0 0 0 1 1 20 0 45 90 0 90 50 50 50 40 30 20");
-        for end in 0..whole.len() {
-            let _ = parse(&whole[..end]);
-        }
-        let words: Vec<&str> = whole.split(' ').collect();
-        for place in 0..words.len() {
-            for other in [
-                "",
-                "-1",
-                "0",
-                "1e38",
-                "1e-38",
-                "2048",
-                "99999999999",
-                "nan",
-                "inf",
-                "\u{fffd}",
-                "TILT=",
-            ] {
-                let mut damaged = words.clone();
-                damaged[place] = other;
-                let _ = parse(&damaged.join(" "));
-            }
-        }
     }
 }

@@ -30,28 +30,16 @@ const LIGHTS: [LightFate; 3] = [
 ];
 
 /// Loads a model. Blocks while reading and decoding; never panics on a damaged file.
-///
-/// # Errors
-///
-/// One line with the file, the fault and the remedy, if there is nothing to show.
 pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
     load_with(source, &ModelOptions::default())
 }
 
 /// The same with options.
-///
-/// # Errors
-///
-/// As [`load`].
 pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, ModelError> {
     load_watched(source, options, &Loading::default())
 }
 
 /// The same with progress and cancellation.
-///
-/// # Errors
-///
-/// As [`load`], and if cancelled.
 pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
     match source {
         ModelSource::File(path) => load_path(path, options, loading),
@@ -95,7 +83,6 @@ fn note_outside(model: &mut Model, path: &Path, given: &[PathBuf]) {
     }
 }
 
-/// Loads one model.
 fn load_one(path: &Path, options: &ModelOptions, import: &Import) -> Result<Model, ModelError> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     import.loading.step(format!("reading {name}"))?;

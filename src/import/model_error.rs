@@ -8,7 +8,6 @@ use crate::scene::Cancelled;
 
 /// Why a model could not be loaded.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ModelError {
     /// The file itself cannot be read.
     #[error("{}: cannot read this model: {source}; check the path and its permissions", path.display())]
@@ -42,7 +41,6 @@ pub enum ModelError {
     /// A folder or an archive without a model.
     #[error("{}: no model in it; models are {}", path.display(), MODELS.join(", "))]
     NoModelInside { path: PathBuf },
-    /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The scene has no triangles to render.

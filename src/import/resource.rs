@@ -83,10 +83,6 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 }
 
 /// The same with progress and cancellation.
-///
-/// # Errors
-///
-/// As [`read`], and if cancelled.
 pub(super) fn read_watched(path: &Path, most: u64, loading: &Loading) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("larger than {} MiB", most >> 20));
@@ -183,60 +179,5 @@ fn real(path: &Path) -> PathBuf {
     match (folder, named.file_name()) {
         (Some(folder), Some(name)) => folder.join(name),
         _ => named,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn surroundings_are_the_folder_above_and_what_is_below() {
-        let place = tempfile::tempdir().expect("a temporary folder");
-        let own = place.path().join("a/own");
-        std::fs::create_dir_all(&own).expect("made");
-        let reach = Reach::of_folder(&own);
-        for inside in ["x.png", "maps/x.png", "../x.png", "../b/x.png", "./../own/x.png"] {
-            assert!(reach.has(&own.join(inside)), "{inside}");
-        }
-        for outside in ["../../x.png", "/etc/passwd", "maps/../../../x.png", "//host/x.png"] {
-            assert!(!reach.has(&own.join(outside)), "{outside}");
-        }
-        let named = place.path().join("x.png");
-        std::fs::write(&named, b"x").expect("written");
-        // Two loads side by side: each hears of what it was refused.
-        let (loading, other) = (Loading::default(), Loading::default());
-        assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
-        assert!(reach.check(&own.join("../../x.png"), &loading).is_err());
-        assert!(other.take_refused().is_empty());
-        assert_eq!(loading.take_refused(), [own.join("../../x.png")]);
-        assert!(loading.take_refused().is_empty());
-        allow(std::slice::from_ref(&named));
-        assert!(reach.check(&own.join("../../x.png"), &loading).is_ok());
-        #[cfg(unix)]
-        {
-            std::os::unix::fs::symlink("/etc/passwd", own.join("link")).expect("a link");
-            assert!(!reach.has(&own.join("link")));
-        }
-    }
-
-    #[test]
-    fn devices_and_pipes_are_not_opened_and_what_is_large_is_not_read() {
-        let place = tempfile::tempdir().expect("a temporary folder");
-        let path = place.path().join("ten");
-        std::fs::write(&path, [0; 10]).expect("written");
-        assert_eq!(read(&path, 10).expect("a file").len(), 10);
-        assert!(read(&path, 9).is_err());
-        assert!(open(place.path()).is_err());
-        #[cfg(unix)]
-        {
-            let pipe = place.path().join("pipe");
-            let made = std::process::Command::new("mkfifo")
-                .arg(&pipe)
-                .status()
-                .expect("mkfifo");
-            assert!(made.success());
-            assert!(open(&pipe).is_err() && open(Path::new("/dev/zero")).is_err());
-        }
     }
 }

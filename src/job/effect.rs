@@ -29,7 +29,6 @@ macro_rules! effects {
         /// An effect that costs time and that not every scene needs. `document::effect` describes each: its meaning, the
         /// scenes that need it, and how it is switched off.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        #[allow(missing_docs, reason = "document::effect describes each")]
         pub enum EffectId {
             $($effect,)*
         }
@@ -154,7 +153,6 @@ pub struct Decision {
     pub is_on: bool,
     /// The value of its constant.
     pub value: u32,
-    /// Reason in words.
     pub reason: String,
 }
 
@@ -181,7 +179,6 @@ impl Decision {
         }
     }
 
-    /// On or off.
     pub fn when(is_on: bool, reason: impl Into<String>) -> Self {
         if is_on { Self::on(reason) } else { Self::off(reason) }
     }

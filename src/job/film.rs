@@ -44,7 +44,6 @@ pub struct Extras {
 /// Sums over the samples of all pixels of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileCosts {
-    /// Rays traced.
     pub rays: f64,
     /// Luminance that limiting fireflies took.
     pub clamped: f64,
@@ -61,7 +60,6 @@ pub struct HalfSums {
     pub color: [f64; 3],
     /// Squared deviations of the luminance from its mean.
     pub squared_deviations: f64,
-    /// Number of samples.
     pub samples: f64,
 }
 
@@ -96,7 +94,6 @@ impl HalfSums {
         self.luminance() / self.samples.max(1.0)
     }
 
-    /// Adds a sample.
     pub fn add(&mut self, color: [f64; 3]) {
         self.add_to_mean(self.mean_luminance(), color);
     }
@@ -449,7 +446,6 @@ impl Film {
     }
 }
 
-/// Copies optional values.
 pub(super) fn copy_kept<T: Copy>(
     to: &mut [T],
     to_range: std::ops::Range<usize>,
@@ -478,115 +474,4 @@ pub struct Image {
     pub height: u32,
     /// Linear Rec. 709 red, green, blue, premultiplied by the alpha that follows; row by row from the top.
     pub pixels: Vec<[f32; 4]>,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Samples of a mean that is far larger than their spread.
-    fn values(count: u32) -> impl Iterator<Item = f64> {
-        (0..u64::from(count)).map(|i| 1000.0 + (i * 7919 % 101) as f64 / 101.0)
-    }
-
-    fn variance(count: u32) -> f64 {
-        let mean = values(count).sum::<f64>() / f64::from(count);
-        values(count).map(|y| (y - mean).powi(2)).sum::<f64>() / f64::from(count - 1)
-    }
-
-    #[test]
-    fn small_spreads_of_large_values_are_told_and_do_not_stall() {
-        // As the engines add them: in passes of some thousand, rounded at the end of each.
-        const SAMPLES: u32 = 4_000_000;
-        let mut film = Film::new(1, 1);
-        let mut all = values(SAMPLES).enumerate().peekable();
-        while all.peek().is_some() {
-            let mut halves = film.halves(0);
-            for (sample, y) in all.by_ref().take(5000) {
-                halves[sample % 2].add([y; 3]);
-            }
-            film.set_halves(0, &halves);
-        }
-        let found = film.sums(0).spread();
-        assert!((found / variance(SAMPLES) - 1.0).abs() < 1e-4, "{found}");
-        for half in film.halves(0) {
-            assert_eq!(half.samples, f64::from(SAMPLES / 2));
-            assert!((half.spread() / variance(SAMPLES) - 1.0).abs() < 1e-4, "{half:?}");
-        }
-        let mut one_by_one = Film::new(1, 1);
-        values(1000)
-            .enumerate()
-            .for_each(|(sample, y)| one_by_one.add(0, sample as u32, [y, y, y, 1.0]));
-        let found = one_by_one.variance_of_mean_at(0) * 1000.0;
-        assert!((found / variance(1000) - 1.0).abs() < 1e-4, "{found}");
-    }
-
-    /// However the samples are cut into passes, which the clock decides.
-    #[test]
-    fn sums_are_the_same_to_the_bit_in_passes_of_any_length() {
-        let film_in_passes = |length: usize| {
-            let mut film = Film::new(1, 1);
-            let all: Vec<_> = values(1000).collect();
-            for (pass, values) in all.chunks(length).enumerate() {
-                let mut halves = film.halves(0);
-                for (i, y) in values.iter().enumerate() {
-                    halves[(pass * length + i) % 2].add([*y; 3]);
-                }
-                film.set_halves(0, &halves);
-            }
-            film
-        };
-        assert_eq!(film_in_passes(1), film_in_passes(1000));
-        assert_eq!(film_in_passes(7), film_in_passes(64));
-    }
-
-    #[test]
-    fn a_plain_film_takes_72_bytes_a_pixel_and_keeps_only_what_is_called_for() {
-        assert_eq!(Extras::default().pixel_bytes(), 72 + 1);
-        let all = Extras {
-            coverage: true,
-            guides: true,
-            light_groups: 3,
-        };
-        assert_eq!(all.pixel_bytes(), 72 + 1 + 8 + 64 + 3 * 48);
-        let mut plain = Film::new(2, 1);
-        assert_eq!(plain.extras(), Extras::default());
-        plain.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
-        assert_eq!(plain.image().pixels, [[1.0, 2.0, 3.0, 1.0], [0.0; 4]]);
-        let mut film = Film::keeping(2, 1, all);
-        assert_eq!(film.extras(), all);
-        film.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
-        film.add(0, 1, [1.0, 2.0, 3.0, 0.0]);
-        assert_eq!(film.image().pixels, [[1.0, 2.0, 3.0, 0.25], [0.0; 4]]);
-    }
-
-    #[test]
-    fn parts_come_back_to_their_place() {
-        let mut film = Film::keeping(
-            21,
-            19,
-            Extras {
-                coverage: true,
-                guides: true,
-                light_groups: 2,
-            },
-        );
-        for pixel in 0..film.pixel_count() {
-            film.add(pixel, pixel as u32, [pixel as f64, 1.0, 2.0, 0.5]);
-            film.guides[pixel][1].hits = pixel as f32;
-            film.add_lights(pixel, 1, [[pixel as f64; 3], [0.5; 3]]);
-        }
-        for (tile, costs) in film.costs.iter_mut().enumerate() {
-            costs.rays = tile as f64;
-        }
-        let mut copy = Film::keeping(21, 19, film.extras());
-        for tile in 0..film.grid().tiles() {
-            let origin = film.grid().origin(tile);
-            copy.place(origin, &film.part(origin, film.grid().size(tile)));
-        }
-        assert_eq!(copy, film);
-        let mut whole = Film::keeping(21, 19, film.extras());
-        whole.place([0, 0], &film.part([0, 0], [21, 19]));
-        assert_eq!(whole, film);
-    }
 }

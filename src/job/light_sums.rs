@@ -103,28 +103,3 @@ fn mixed_half<'f>(half: &HalfSums, lights: impl Iterator<Item = ([f64; 3], &'f [
         samples: half.samples,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::job::film::Extras;
-
-    #[test]
-    fn a_mix_weighs_each_group_in_both_halves() {
-        let extras = Extras {
-            light_groups: 2,
-            ..Extras::default()
-        };
-        let mut film = Film::keeping(1, 1, extras);
-        for (sample, [first, second]) in [[1.0, 2.0], [3.0, 5.0], [2.0, 0.5]].into_iter().enumerate() {
-            film.add(0, sample as u32, [first + second, first + second, first + second, 1.0]);
-            film.add_lights(0, sample % 2, [[first; 3], [second; 3]]);
-        }
-        assert!(matches!(film.mixed(&[[1.0; 3], [1.0; 3]]), Cow::Borrowed(_)));
-        let mixed = film.mixed(&[[2.0, 0.0, 1.0], [0.0, 1.0, 1.0]]);
-        let [even, odd] = mixed.halves(0);
-        assert_eq!([even.color, odd.color], [[6.0, 2.5, 5.5], [6.0, 5.0, 8.0]]);
-        assert_eq!([even.samples, odd.samples], [2.0, 1.0]);
-        assert_eq!(film.light_image(0).pixels, [[2.0, 2.0, 2.0, 1.0]]);
-    }
-}

@@ -30,9 +30,7 @@ use plan::Plan;
 pub struct Job {
     /// Geometry of the model and its surroundings, in units of its bounding radius.
     pub geometry: Arc<Geometry>,
-    /// The environment light.
     pub environment: Arc<Environment>,
-    /// The emitting triangles.
     pub lights: Arc<Lights>,
     /// Materials by slot: the model's, the ground's, the area lights', the shadow catcher's reflection.
     pub materials: Arc<Vec<Material<f32>>>,
@@ -91,9 +89,7 @@ pub struct Settings {
     pub light_groups: u32,
     /// Largest radiance of indirect contributions; infinite for no limit.
     pub firefly_clamp: f64,
-    /// Random sequence.
     pub sequence: Sequence,
-    /// Light strategy.
     pub strategy: Strategy,
     /// Changes all random numbers.
     pub seed: u32,
@@ -137,7 +133,6 @@ impl LightPaths {
 /// A ground of which the camera sees only shadows and reflections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Catcher {
-    /// Material slot.
     pub slot: u32,
     /// The slot whose specular lobe it reflects with.
     pub reflection_slot: u32,

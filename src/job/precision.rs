@@ -37,7 +37,6 @@ pub struct Finding {
 /// Kinds of trouble, the gravest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Samples were dropped.
     Dropped,
     /// f32 and f64 differ by more than the bound.
     Differs,

@@ -182,7 +182,6 @@ pub struct DrawAnswer {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct RayQuestion {
-    /// Ray origin.
     pub origin: [f32; 3],
     /// Ray direction, of any length but 0.
     pub direction: [f32; 3],

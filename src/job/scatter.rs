@@ -48,7 +48,6 @@ impl ScatterRequest {
 pub struct ScatterCloud {
     /// Unit direction, then density per steradian; absorbed samples left out.
     pub samples: Vec<[f32; 4]>,
-    /// Samples absorbed.
     pub absorbed: u32,
 }
 

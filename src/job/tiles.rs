@@ -23,7 +23,6 @@ impl TileGrid {
         self.height.div_ceil(TILE_SIDE) as usize
     }
 
-    /// Number of tiles.
     pub fn tiles(self) -> usize {
         self.columns() * self.rows()
     }
@@ -176,7 +175,6 @@ impl Schedule {
         }
     }
 
-    /// The image's tiles.
     pub fn grid(&self) -> TileGrid {
         self.grid
     }
@@ -260,107 +258,5 @@ impl Schedule {
     pub fn pixel_samples(&self) -> u64 {
         let of_tile = |(tile, n): (usize, &u32)| self.grid.pixels(tile) * u64::from(*n);
         self.samples.iter().enumerate().map(of_tile).sum()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tiles_cover_the_picture_once() {
-        let grid = TileGrid { width: 21, height: 8 };
-        assert_eq!((grid.columns(), grid.rows()), (3, 1));
-        let mut pixels = vec![0; grid.tiles()];
-        (0..21 * 8).for_each(|pixel| pixels[grid.of_pixel(pixel)] += 1);
-        assert_eq!(pixels, [64, 64, 40]);
-        assert_eq!((0..3).map(|tile| grid.pixels(tile)).collect::<Vec<_>>(), [64, 64, 40]);
-        assert_eq!((grid.origin(2), grid.size(2)), ([16, 0], [5, 8]));
-        assert_eq!(grid.around(0).collect::<Vec<_>>(), [0, 1]);
-        let middle = TileGrid { width: 24, height: 24 }.around(4);
-        assert_eq!(middle.collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn tiles_in_a_row_are_spread_over_the_picture() {
-        for count in [1, 2, 3, 60, 61, 8160] {
-            let mut tiles = Order::Spread.arrange((0..count).collect());
-            let few = count.min(30);
-            let left = tiles[..few].iter().filter(|tile| **tile < count / 2).count();
-            assert!(
-                left.abs_diff(few / 2) <= 2,
-                "{left} of {few} are in the first half of {count}"
-            );
-            tiles.sort_unstable();
-            assert_eq!(tiles, (0..count).collect::<Vec<_>>());
-        }
-    }
-
-    #[test]
-    fn every_tile_gets_what_it_lacks_and_nothing_twice() {
-        let mut schedule = Schedule::new(20, 10);
-        let goals = [5, 0, 3, 5, 5, 1];
-        schedule.set_goals(&goals);
-        let mut had = [0_u32; 6];
-        let mut completed = 0;
-        // No more than two tiles at a time, so that passes are cut.
-        let two = SliceLimits {
-            pass_samples: [1, 2],
-            tiles: [1, 2],
-            order: Order::Rows,
-        };
-        loop {
-            let works = schedule.slice(1e9, two);
-            if works.is_empty() {
-                break;
-            }
-            for work in &works {
-                assert_eq!(work.first_sample, had[work.tile]);
-                had[work.tile] += work.count;
-            }
-            let is_end = schedule.finish(&works);
-            completed = schedule.samples_per_pixel();
-            assert!(!is_end || completed % 2 == 0 || completed == 5, "{completed}");
-        }
-        assert_eq!((had, completed), (goals, 5));
-        assert!(schedule.is_at_goal());
-        assert_eq!(schedule.pixel_samples(), 64 * 5 + 32 * 3 + 16 * (5 + 5) + 8);
-        // A tile that was left behind catches up.
-        schedule.set_goals(&[5; 6]);
-        assert!(!schedule.is_at_goal());
-        let all = SliceLimits {
-            pass_samples: [1, 8],
-            tiles: [1, 9],
-            order: Order::Rows,
-        };
-        let works = schedule.slice(1e9, all);
-        let counts: Vec<_> = works
-            .iter()
-            .map(|work| (work.tile, work.first_sample, work.count))
-            .collect();
-        assert_eq!(counts, [(1, 0, 5), (2, 3, 2), (5, 1, 4)]);
-        schedule.finish(&works);
-        assert_eq!(schedule.pixel_samples(), 20 * 10 * 5);
-    }
-    #[test]
-    fn a_pass_has_its_least_samples_however_little_is_affordable() {
-        let mut schedule = Schedule::new(20, 10);
-        schedule.set_goals(&[6; 6]);
-        let limits = SliceLimits {
-            pass_samples: [4, 8],
-            tiles: [1, 2],
-            order: Order::Rows,
-        };
-        let mut counts = Vec::new();
-        loop {
-            let works = schedule.slice(1.0, limits);
-            if works.is_empty() {
-                break;
-            }
-            counts.extend(works.iter().map(|work| (work.tile, work.count)));
-            schedule.finish(&works);
-        }
-        let of_pass = |count: u32| (0..6).map(move |tile| (tile, count));
-        assert_eq!(counts, of_pass(4).chain(of_pass(2)).collect::<Vec<_>>());
     }
 }

@@ -36,11 +36,8 @@ pub const VIEW_ANGLE_MAX_DEG: f64 = 85.0;
 /// What a look is matched to.
 #[derive(Clone, Debug)]
 pub enum Target {
-    /// Another lobe.
     Lobe(LobeModel),
-    /// A measured material.
     Measured {
-        /// Its name.
         name: String,
         /// Its reflectance.
         merl: Arc<Merl>,
@@ -49,7 +46,6 @@ pub enum Target {
 
 /// Why a look cannot be matched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MatchError {
     /// The target is a mirror.
     #[error("the target's roughness of {roughness} is a mirror's; a highlight to match needs at least {least}")]
@@ -68,7 +64,6 @@ pub enum MatchError {
 /// A lobe and how far it is from the target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The lobe.
     pub model: LobeModel,
     /// Total variation distance in [0, 1].
     pub total_variation: f64,
@@ -79,7 +74,6 @@ pub struct Candidate {
 pub struct LookMatch {
     /// Angle of the view, degrees.
     pub view_angle_deg: f64,
-    /// The target's name.
     pub target: String,
     /// The lobe with its default curve at the target's own roughness (0.3 for a measured one).
     pub before: Candidate,
@@ -87,7 +81,6 @@ pub struct LookMatch {
     pub nearest: Candidate,
     /// The best found: for the geometric lobe with a curve of its own, else `nearest`.
     pub after: Candidate,
-    /// The fitted curve.
     pub curve: Option<CustomCurve>,
     /// Colours of a measured material.
     pub colors: Option<measured::Colors>,
@@ -140,9 +133,6 @@ pub struct TargetProfile<'a> {
 
 impl<'a> TargetProfile<'a> {
     /// The profile under an angle in radians.
-    ///
-    /// # Errors
-    /// [`MatchError`].
     pub fn new(target: &'a Target, view_angle_rad: f64) -> Result<Self, MatchError> {
         let mut profile = Self {
             target,
@@ -174,9 +164,6 @@ impl<'a> TargetProfile<'a> {
 }
 
 /// Matches a lobe to a target, seen `view_angle_deg` from the normal. For the geometric lobe the curve is fitted too.
-///
-/// # Errors
-/// What is wrong with the target or the angle.
 pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<LookMatch, MatchError> {
     if !(0.0..=VIEW_ANGLE_MAX_DEG).contains(&view_angle_deg) {
         return Err(MatchError::ViewAngle(view_angle_deg));
@@ -225,17 +212,11 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
 
 /// The lobe with its default curve that comes closest to the specular lobe of a material, seen along the normal: only
 /// the roughness is looked for, as that is what `lobe` has in common with others.
-///
-/// # Errors
-/// [`MatchError`].
 pub fn matched_lobe(model: &LobeModel, lobe: Lobe) -> Result<LobeModel, MatchError> {
     matched_lobe_and_curve(model, lobe, MaterialSettings::default().curve)
 }
 
 /// The same with a curve of choice.
-///
-/// # Errors
-/// [`MatchError`].
 pub fn matched_lobe_and_curve(model: &LobeModel, lobe: Lobe, curve: Curve) -> Result<LobeModel, MatchError> {
     let target = Target::Lobe(model.clone());
     let target_profile = TargetProfile::new(&target, 0.0)?;
@@ -284,9 +265,6 @@ pub fn nearest_ggx(model: &LobeModel) -> Nearest {
 
 /// Target and candidates side by side: the normalised profiles in the plane of incidence, around the mirror direction
 /// as far as the target is not negligible.
-///
-/// # Errors
-/// [`MatchError`].
 pub fn comparison(target: &Target, found: &LookMatch) -> Result<LinePlot, MatchError> {
     let view_angle_rad = found.view_angle_deg.to_radians();
     let wo = view_direction(view_angle_rad);

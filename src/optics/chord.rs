@@ -62,9 +62,7 @@ const GAUSS_20: [[f64; 2]; 10] = [
 /// The chord of a direction through the spheres.
 #[derive(Clone, Copy, Debug)]
 struct Chord<T> {
-    /// c.
     centre: T,
-    /// s.
     spread: T,
     /// s² − c² = |a⊥|²/A.
     product: T,

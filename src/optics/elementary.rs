@@ -12,7 +12,6 @@ use super::real::Real;
 pub trait Single: Real<Scalar = f32> {
     /// Unsigned integer with the number's bits.
     type Bits: Bits;
-    /// The number's bits.
     fn to_bits(self) -> Self::Bits;
     /// The inverse of [`Single::to_bits`].
     fn from_bits(bits: Self::Bits) -> Self;
@@ -97,7 +96,6 @@ impl Bits for u32 {
     }
 }
 
-/// The sign's bit.
 const SIGN: u32 = 1 << 31;
 
 #[inline(always)]
@@ -314,34 +312,3 @@ macro_rules! by_arithmetic {
     };
 }
 pub(super) use by_arithmetic;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::optics::random::{Sequence, random_pair, random_state};
-
-    /// Off by so many units in the last place of the right value.
-    fn units_off(value: f32, right: f64) -> f64 {
-        let nearest = (right as f32).abs();
-        let unit = f64::from(f32::from_bits(nearest.to_bits() + 1)) - f64::from(nearest);
-        (f64::from(value) - right).abs() / unit
-    }
-
-    #[test]
-    fn the_angle_of_a_vector_is_within_two_units_in_the_last_place() {
-        let mut worst: f64 = 0.0;
-        for i in 0..1_000_000 {
-            let state = random_state(0, 0, 1, i, Sequence::Independent);
-            let ([a, b], [c, _]) = (random_pair::<f32>(state, 0), random_pair::<f32>(state, 1));
-            let small = 10.0_f32.powf(-8.0 * c);
-            let (x, y) = (2.0 * a - 1.0, 2.0 * b - 1.0);
-            for (x, y) in [(x, y), (x * small, y), (x, y * small)] {
-                worst = worst.max(units_off(atan2(y, x), f64::from(y).atan2(f64::from(x))));
-            }
-        }
-        assert!((0.5..2.0).contains(&worst), "{worst}");
-        assert_eq!(atan2(0.0, 0.0), 0.0);
-        assert_eq!(atan2(0.0, -1.0), PI);
-        assert_eq!(atan2(-1.0, 0.0), -FRAC_PI_2);
-    }
-}

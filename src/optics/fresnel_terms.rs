@@ -5,7 +5,6 @@ use super::vector::Vec3;
 use crate::named::named;
 
 named! {
-    /// The Fresnel model.
     Fresnel {
         None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
         Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
@@ -40,7 +39,6 @@ pub struct FresnelTerms<T> {
     pub k: Vec3<T>,
     /// True where the surface has a thin film.
     pub has_film: bool,
-    /// The thin film.
     pub film: FilmTerms<T>,
 }
 
@@ -65,7 +63,6 @@ pub struct FilmTerms<T> {
 }
 
 impl<T: Real> FilmTerms<T> {
-    /// No film.
     #[inline(always)]
     pub fn none() -> Self {
         Self {

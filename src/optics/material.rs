@@ -466,7 +466,6 @@ impl<T: Real> Material<T> {
         is_opaque & self.metalness.less(T::one()) & T::zero().less(self.base_color.max_component())
     }
 
-    /// Lanes that transmit.
     #[inline(always)]
     pub fn transmits(&self) -> T::Mask {
         T::zero().less(self.transmission_weight) & self.metalness.less(T::one())

@@ -46,7 +46,6 @@ pub trait Real:
     /// Something for each lane.
     type Each<E: Copy + Default>: Copy + AsRef<[E]>;
 
-    /// Number of lanes.
     const LANES: usize;
 
     /// The nearest value of this type, the same in each lane.
@@ -59,7 +58,6 @@ pub trait Real:
     fn min(self, other: Self) -> Self;
     /// Maximum; `other` if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// Absolute value.
     fn abs(self) -> Self;
     /// Square root of a number that is not negative.
     fn sqrt(self) -> Self;
@@ -69,7 +67,6 @@ pub trait Real:
     fn cos(self) -> Self;
     /// e to the power of `self`.
     fn exp(self) -> Self;
-    /// Natural logarithm.
     fn ln(self) -> Self;
     /// Positive `self` to the power of `exponent`.
     fn powf(self, exponent: Self) -> Self;
@@ -129,7 +126,6 @@ pub trait Real:
     fn differs(self, other: Self) -> Self::Mask {
         self.less(other) | other.less(self)
     }
-    /// Lanes with NaN.
     #[inline(always)]
     fn is_nan(self) -> Self::Mask {
         let below = self.less(Self::one());

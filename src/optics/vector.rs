@@ -72,12 +72,10 @@ impl<T: Real> Vec3<T> {
         let zero = T::zero();
         self.x.differs(zero) | self.y.differs(zero) | self.z.differs(zero)
     }
-    /// Scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
-    /// Vector product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         vec3(
@@ -86,7 +84,6 @@ impl<T: Real> Vec3<T> {
             self.x * other.y - self.y * other.x,
         )
     }
-    /// Euclidean length.
     #[inline(always)]
     pub fn length(self) -> T {
         self.dot(self).sqrt()
@@ -96,12 +93,10 @@ impl<T: Real> Vec3<T> {
     pub fn normalize(self) -> Self {
         self * (T::one() / self.length())
     }
-    /// Component by component.
     #[inline(always)]
     pub fn map(self, f: impl Fn(T) -> T) -> Self {
         vec3(f(self.x), f(self.y), f(self.z))
     }
-    /// The largest component.
     #[inline(always)]
     pub fn max_component(self) -> T {
         self.x.max(self.y).max(self.z)

@@ -11,11 +11,8 @@ use crate::plot::lobe_view::Axis;
 /// Points with names, the best of them joined by a line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointPlot {
-    /// What it is.
     pub title: String,
-    /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
     pub y: Axis,
     /// The points.
     pub points: Vec<NamedPoint>,
@@ -26,7 +23,6 @@ pub struct PointPlot {
 pub struct NamedPoint {
     /// What stands beside it.
     pub name: String,
-    /// Where it is.
     pub place: [f64; 2],
     /// How far y may be off: lower and upper end.
     pub y_range: [f64; 2],
@@ -37,7 +33,6 @@ pub struct NamedPoint {
 /// Bars beside names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BarPlot {
-    /// What it is.
     pub title: String,
     /// What the bars' lengths mean, with the unit.
     pub label: String,
@@ -216,7 +211,6 @@ fn three_digits(value: f64) -> String {
 /// Images in rows, each with its name under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSheet {
-    /// What they are.
     pub title: String,
     /// Images of the same size, red, green and blue of 8 bits a pixel.
     pub pictures: Vec<(String, image::RgbImage)>,

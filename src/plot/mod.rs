@@ -58,9 +58,6 @@ pub fn series_color(group: usize) -> [u8; 3] {
 }
 
 /// The contents of a view's file: .svg, or else .png.
-///
-/// # Errors
-/// Where it can't be drawn.
 pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<Vec<u8>, PlotError> {
     match view {
         LobeView::Lines(plot) => line_plot_file(path, plot),
@@ -82,33 +79,21 @@ pub fn lobe_view_picture(view: &LobeView, zoom: f64, is_dark: bool) -> Option<im
 }
 
 /// A line plot as the contents of a file: .svg, or else .png.
-///
-/// # Errors
-/// Where it can't be drawn.
 pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<Vec<u8>, PlotError> {
     figure::contents(path, plot)
 }
 
 /// Points with names as the contents of a file: .svg, or else .png.
-///
-/// # Errors
-/// Where it can't be drawn.
 pub fn point_plot_file(path: &Path, plot: &PointPlot) -> Result<Vec<u8>, PlotError> {
     figure::contents(path, plot)
 }
 
 /// Bars as the contents of a file: .svg, or else .png.
-///
-/// # Errors
-/// Where it can't be drawn.
 pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<Vec<u8>, PlotError> {
     figure::contents(path, plot)
 }
 
 /// Images in rows as .png, into a file that is open.
-///
-/// # Errors
-/// Where the file can't be written.
 pub fn write_picture_sheet(file: &mut (impl io::Write + io::Seek), sheet: &PictureSheet) -> io::Result<()> {
     let picture = figure::picture(sheet, Style::light(1.0)).map_err(|error| io::Error::other(error.to_string()))?;
     picture
@@ -118,9 +103,6 @@ pub fn write_picture_sheet(file: &mut (impl io::Write + io::Seek), sheet: &Pictu
 
 /// The samples seen from the lobe's middle, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of
 /// incidence (to the right: away from the normal), the circle has the radius of the lobe's roughness.
-///
-/// # Errors
-/// Where it can't be drawn.
 pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<Vec<u8>, PlotError> {
     register_fonts();
     let picture = figure::drawn((800, 810), |root| draw_scatter(root, request, cloud));

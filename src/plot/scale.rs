@@ -86,36 +86,3 @@ fn ticks(axis: &Axis, parts: f64) -> Vec<f64> {
     let [first, last] = [(low / step - 1e-9).ceil(), (high / step + 1e-9).floor()].map(|tick| tick as i64);
     (first..=last).map(|tick| step * tick as f64).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn axis(range: [f64; 2], is_logarithmic: bool) -> Axis {
-        Axis {
-            label: String::new(),
-            range,
-            is_logarithmic,
-        }
-    }
-
-    #[test]
-    fn ticks_are_round_whatever_the_range() {
-        let of = |range, is_logarithmic| ticks(&axis(range, is_logarithmic), 8.0);
-        assert_eq!(of([0.0, 1.0], false), [0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0]);
-        assert_eq!(of([0.05, 2000.0], true), [0.1, 1.0, 10.0, 100.0, 1000.0]);
-        assert_eq!(of([8.0, 120.0], true), [10.0, 20.0, 50.0, 100.0]);
-        assert_eq!(of([30.0, 110.0], true), [30.0, 40.0, 50.0, 70.0, 100.0]);
-        assert_eq!(of([93.0, 107.0], true), [94.0, 96.0, 98.0, 100.0, 102.0, 104.0, 106.0]);
-    }
-
-    #[test]
-    fn values_lie_where_the_logarithm_says() {
-        let scale = Scale::new(&axis([1.0, 100.0], true), 8.0);
-        assert_eq!(
-            [0.0, 1.0, 10.0, 100.0].map(|x| scale.map(&x, (0, 200))),
-            [0, 0, 100, 200]
-        );
-        assert_eq!(scale.map(&10.0, (500, 100)), 300);
-    }
-}

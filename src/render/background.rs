@@ -69,9 +69,6 @@ impl<Q, A> Responder<'_, Q, A> {
 
 impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
     /// Starts the thread, which gives way to the window. `repaint` is called when there is something new to show.
-    ///
-    /// # Errors
-    /// If no thread can be started.
     pub fn spawn(
         name: &str,
         repaint: impl Fn() + Send + 'static,
@@ -102,7 +99,6 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
         Ok(Self { shared })
     }
 
-    /// Submits a query.
     pub fn ask(&self, query: Q) {
         self.shared.orders.change(|orders| orders.query = Some(query));
     }
@@ -112,7 +108,6 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
         self.shared.orders.look().query = None;
     }
 
-    /// The latest answer.
     pub fn latest(&self) -> Option<A>
     where
         A: Clone,
@@ -133,22 +128,6 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
     /// The panic's message of the latest query, if the work panicked; the thread continues.
     pub fn failure(&self) -> Option<String> {
         lock(&self.shared.failure).clone()
-    }
-
-    /// The first answer that is good enough, for a test to wait for.
-    #[cfg(test)]
-    pub fn wait_for(&self, is_enough: impl Fn(&A) -> bool) -> A
-    where
-        A: Clone,
-    {
-        let begun = std::time::Instant::now();
-        loop {
-            if let Some(answer) = self.latest().filter(&is_enough) {
-                return answer;
-            }
-            assert!(begun.elapsed() < Duration::from_secs(60), "no answer came");
-            std::thread::sleep(Duration::from_millis(5));
-        }
     }
 
     /// Whether something asked for is still to come.
@@ -174,31 +153,4 @@ fn next<Q, A>(shared: &Shared<Q, A>) -> Option<Q> {
             ControlFlow::Break(query)
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_panic_is_told_and_leaves_the_thread_free() {
-        let work = |query: u32, responder: &Responder<'_, u32, u32>| {
-            assert!(query != 2, "two, on purpose");
-            responder.publish(query);
-        };
-        let background = Background::spawn("failing", || {}, work).expect("a thread");
-        background.ask(1);
-        background.wait_for(|answer| *answer == 1);
-        background.ask(2);
-        let begun = std::time::Instant::now();
-        while background.is_busy() || background.failure().is_none() {
-            assert!(begun.elapsed() < Duration::from_secs(60), "busy for ever");
-            std::thread::sleep(Duration::from_millis(2));
-        }
-        let why = background.failure().unwrap_or_default();
-        assert!(why.contains("two, on purpose"), "{why}");
-        background.ask(3);
-        background.wait_for(|answer| *answer == 3);
-        assert_eq!(background.failure(), None);
-    }
 }

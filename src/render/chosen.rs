@@ -26,7 +26,6 @@ impl<C: Named> Chosen<C> {
         self.place.store(place.unwrap_or_default(), Relaxed);
     }
 
-    /// The latest choice.
     pub fn get(&self) -> C {
         C::ALL[self.place.load(Relaxed)]
     }

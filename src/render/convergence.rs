@@ -27,7 +27,6 @@ pub struct Measurement {
     pub engine_seconds: f64,
     /// Samples per pixel at that time, averaged over the image.
     pub samples_per_pixel: f64,
-    /// Estimated error.
     pub noise: Noise,
 }
 
@@ -214,43 +213,4 @@ pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
     let grid = schedule.grid();
     let pixels = u64::from(grid.width) * u64::from(grid.height);
     schedule.pixel_samples() as f64 / pixels.max(1) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::job::tiles::{Order, SliceLimits};
-
-    const COUNTED: Pacing = Pacing {
-        engine_seconds: None,
-        is_denoised: false,
-    };
-
-    #[test]
-    fn the_first_round_ends_where_an_error_can_be_told() {
-        let mut convergence = Convergence::default();
-        let mut schedule = Schedule::new(16, 8);
-        for (samples, goal) in [(64, 2), (1, 1)] {
-            let settings = RenderSettings {
-                samples,
-                ..Default::default()
-            };
-            convergence.next_round(None, &schedule, &settings, COUNTED);
-            assert_eq!(convergence.goals, [goal; 2]);
-        }
-        schedule.set_goals(&[2; 2]);
-        let limits = SliceLimits {
-            pass_samples: [2; 2],
-            tiles: [2; 2],
-            order: Order::Rows,
-        };
-        let works = schedule.slice(0.0, limits);
-        schedule.finish(&works);
-        convergence.next_round(None, &schedule, &RenderSettings::default(), COUNTED);
-        assert!(
-            convergence.goals.iter().all(|goal| *goal > 2),
-            "{:?}",
-            convergence.goals
-        );
-    }
 }

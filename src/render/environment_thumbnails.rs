@@ -28,16 +28,11 @@ pub struct Wanted {
 
 /// A thumbnail: opaque RGBA, 8 bits each, [`SIZE`] pixels, rows from the top; `None` if the environment cannot be loaded.
 pub type EnvironmentThumbnail = Option<Arc<Vec<u8>>>;
-/// Thumbnails by source.
 pub type EnvironmentThumbnails = Arc<HashMap<EnvironmentSource, EnvironmentThumbnail>>;
 /// Background worker for the latest request, in its order; each answer has all thumbnails made so far.
 pub type EnvironmentThumbnailWorker = Background<Vec<Wanted>, EnvironmentThumbnails>;
 
 /// Starts the worker; `folder` caches thumbnails between starts. It pauses while `hold` is set, for the viewport.
-///
-/// # Errors
-///
-/// If no thread can be started.
 pub fn spawn_environment_thumbnails(
     folder: Option<PathBuf>,
     hold: Arc<AtomicBool>,
@@ -92,40 +87,4 @@ fn key(source: &EnvironmentSource) -> u64 {
         (metadata.len(), metadata.modified().ok()).hash(&mut hasher);
     }
     hasher.finish()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn wanted(source: EnvironmentSource) -> Wanted {
-        Wanted { source, loaded: None }
-    }
-
-    #[test]
-    fn thumbnails_are_made_kept_and_missing_where_a_file_is() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let cache = folder.path().join("new");
-        let missing = EnvironmentSource::File(folder.path().join("gone.hdr"));
-        let worker = spawn_environment_thumbnails(Some(cache.clone()), Arc::default(), || {}).expect("a thread");
-        worker.ask(vec![wanted(missing.clone()), wanted(EnvironmentSource::Furnace)]);
-        let made = worker.wait_for(|made| made.len() >= 2);
-        assert_eq!(made[&missing], None);
-        let white = made[&EnvironmentSource::Furnace].clone().expect("it is computed");
-        assert_eq!(white.len(), 4 * (SIZE[0] * SIZE[1]) as usize);
-        assert!(
-            white.chunks(4).all(|pixel| pixel == &white[..4]),
-            "the same from everywhere"
-        );
-        // A marked file shows that the second start reads it.
-        let marked = vec![77; white.len()];
-        let path = cache.join(format!("{:016x}.png", key(&EnvironmentSource::Furnace)));
-        picture_cache::write(&path, SIZE, &marked).expect("written");
-        let again = spawn_environment_thumbnails(Some(cache), Arc::default(), || {}).expect("a thread");
-        again.ask(vec![wanted(EnvironmentSource::Furnace)]);
-        let kept = again.wait_for(|made| !made.is_empty())[&EnvironmentSource::Furnace]
-            .clone()
-            .expect("kept");
-        assert_eq!(*kept, marked);
-    }
 }

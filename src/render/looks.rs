@@ -40,10 +40,6 @@ pub struct Compared {
 }
 
 /// Renders a ball of each material in the studio on the CPU.
-///
-/// # Errors
-///
-/// The session's.
 pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionError> {
     let mut session = Session::open(EngineChoice::Cpu)?;
     let [first, second] = [
@@ -144,49 +140,4 @@ fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Render
         image,
         film: session.film()?.clone(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::optics::random::{Sequence, random_pair, random_state};
-
-    #[test]
-    fn the_same_material_is_not_apart_and_another_is() {
-        let gold = MaterialSettings::default();
-        let rougher = MaterialSettings {
-            roughness: 0.8,
-            ..gold.clone()
-        };
-        assert_eq!(compared(&[gold.clone(), gold.clone()]).unwrap().difference, 0.0);
-        let apart = compared(&[gold, rougher]).unwrap();
-        assert!(apart.difference > 0.05, "{}", apart.difference);
-        assert!(apart.pictures[0] != apart.pictures[1]);
-        // The map shows where: on the ball, not before what both let be seen alike.
-        let at = |x, y| u32::from(apart.pictures[2].get_pixel(x, y).0[0]);
-        assert!(at(SIDE / 2, SIDE / 3) > at(2, 2) && at(2, 2) <= u32::from(scale_color(0.02)[0]));
-    }
-
-    /// Where only the noise differs, whose signs are those of chance in each half, nothing is shown; a true difference is.
-    #[test]
-    fn the_map_of_the_difference_is_free_of_noise() {
-        let side = SIDE as usize;
-        let noise = |pixel: usize, salt: u32| {
-            let state = random_state(pixel as u32, salt, 7, 0, Sequence::Independent);
-            let [a, b]: [f64; 2] = random_pair(state, 0);
-            [a - 0.5, b - 0.5]
-        };
-        let seen = |by: f64| {
-            let product = |pixel: usize| noise(pixel, 1).map(|noise| by + noise).into_iter().product();
-            let products: Vec<f64> = (0..side * side).map(product).collect();
-            let pixels = (0..side)
-                .step_by(8)
-                .flat_map(|y| (0..side).step_by(8).map(move |x| [x, y]));
-            let values: Vec<f64> = pixels.map(|at| resolved(&products, at)).collect();
-            values.iter().sum::<f64>() / values.len() as f64
-        };
-        // Of a standard deviation of 0.29.
-        assert!(seen(0.0) < 0.04, "{}", seen(0.0));
-        assert!((seen(0.4) - 0.4).abs() < 0.05, "{}", seen(0.4));
-    }
 }

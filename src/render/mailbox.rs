@@ -45,38 +45,3 @@ impl<T> Mailbox<T> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use super::*;
-
-    #[test]
-    fn the_latest_wins_and_the_sleeper_wakes() {
-        let mailbox = Arc::new(Mailbox::<Option<u32>>::default());
-        let take = |contents: &mut Option<u32>| contents.take().map_or(ControlFlow::Continue(IDLE), ControlFlow::Break);
-        (1..=3).for_each(|number| mailbox.change(|contents| *contents = Some(number)));
-        assert_eq!(mailbox.wait(take), 3);
-        let sleeper = {
-            let mailbox = mailbox.clone();
-            std::thread::spawn(move || mailbox.wait(take))
-        };
-        mailbox.change(|contents| *contents = Some(4));
-        assert_eq!(sleeper.join().ok(), Some(4));
-        assert_eq!(*mailbox.look(), None);
-    }
-
-    #[test]
-    fn a_time_ends_the_sleep() {
-        let mailbox = Mailbox::<u32>::default();
-        let asked = mailbox.wait(|times| {
-            *times += 1;
-            match *times {
-                3 => ControlFlow::Break(*times),
-                _ => ControlFlow::Continue(Duration::from_millis(1)),
-            }
-        });
-        assert_eq!(asked, 3);
-    }
-}

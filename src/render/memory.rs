@@ -49,10 +49,6 @@ pub struct TooLarge {
 }
 
 /// Refuses a job that needs more than `allowed` bytes. `is_software_gpu`: the GPU shares the CPU's memory.
-///
-/// # Errors
-///
-/// [`TooLarge`], with the remedy.
 pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), TooLarge> {
     let needs = Needs::of(job, is_software_gpu);
     let needed = needs.bytes();
@@ -75,10 +71,6 @@ pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<()
 }
 
 /// Refuses a job for a GPU engine whose instances need more than `allowed` bytes, beside the image.
-///
-/// # Errors
-///
-/// [`InstancesTooLarge`], with the remedy.
 pub(super) fn check_instances(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), InstancesTooLarge> {
     let triangles = job.geometry.triangles_to_copy() as u64;
     let needed = triangles * INSTANCED_TRIANGLE_BYTES;

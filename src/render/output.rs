@@ -25,7 +25,6 @@ use crate::store::replace::save_by;
 
 /// Errors of image output.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum OutputError {
     /// The extension is not that of a format that can be written.
     #[error("{}: images are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
@@ -78,7 +77,6 @@ impl<'a> From<&'a Layers> for Rendered<'a> {
 pub struct Layers {
     /// The linear image.
     pub image: Image,
-    /// The denoised image.
     pub denoised: Option<Arc<Image>>,
     /// First-hit features.
     pub features: Features,
@@ -135,10 +133,6 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
 /// contains the document. A denoised image replaces the samples; in an .exr file it is added as `denoised.R`, `.G`, `.B`,
 /// and so are layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`), light
 /// groups (`light.NAME.R`, `.G`, `.B`) and sums.
-///
-/// # Errors
-///
-/// [`OutputError`] naming the file.
 pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result<(), OutputError> {
     let shown = rendered.denoised.unwrap_or(rendered.image);
     let format = format_of(path)?;
@@ -152,9 +146,6 @@ pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result
 }
 
 /// Writes an .exr file with layers.
-///
-/// # Errors
-/// [`OutputError`] naming the file.
 pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
     Ok(save_by(path, |file| {
         write_exr(file, layers.into(), LayerAttributes::default())

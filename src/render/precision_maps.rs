@@ -15,9 +15,6 @@ const SIDE_MAX_PX: u32 = 320;
 pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
 
 /// Starts the thread that makes maps; `repaint` is called when one is finished.
-///
-/// # Errors
-/// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
     Background::spawn("precision", repaint, |job: Arc<Job>, responder| {
         if let Some(map) = precision(&job, map_size(job.settings.image_size), || responder.is_superseded()) {

@@ -50,25 +50,3 @@ pub fn let_rendering_give_way() {
         .start_handler(|_| lower_thread_priority())
         .build_global();
 }
-
-#[cfg(all(test, target_os = "linux"))]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn threads_of_lowered_threads_are_lowered_no_further() {
-        // SAFETY: no memory is touched.
-        let niceness = || unsafe { libc::getpriority(libc::PRIO_PROCESS, 0) };
-        let begun_with = niceness();
-        let lowered_twice = std::thread::spawn(move || {
-            lower_thread_priority();
-            let inner = std::thread::spawn(move || {
-                lower_thread_priority();
-                niceness()
-            });
-            inner.join().expect("it does not panic")
-        });
-        let wanted = begun_with.max(NICENESS);
-        assert_eq!(lowered_twice.join().expect("it does not panic"), wanted);
-    }
-}

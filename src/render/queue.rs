@@ -23,7 +23,6 @@ use crate::store::replace::check_saving;
 /// Pause of a render while something moves in the window.
 const GIVES_WAY: Duration = Duration::from_millis(50);
 
-/// A queued task.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Task {
     /// A document as an image of its own size.
@@ -78,7 +77,6 @@ pub struct Queue {
 #[derive(Default)]
 struct Book {
     entries: Vec<Entry>,
-    /// Waiting tasks.
     tasks: Vec<(u64, Task, EngineChoice)>,
     /// Ends of tasks not yet reported.
     news: Vec<Result<String, String>>,
@@ -159,9 +157,6 @@ impl Book {
 
 impl Queue {
     /// An empty queue; models and environments are shared. `repaint` is called when there is something new to show.
-    ///
-    /// # Errors
-    /// If no thread can be started.
     pub fn new(assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let book = Arc::new(Mailbox::<Book>::default());
         let of_thread = book.clone();
@@ -386,97 +381,5 @@ fn summary(table: &Turntable, frames: u32) -> String {
     match places[..] {
         [] => all,
         _ => format!("{all} in {}", places.join(" and ")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::time::Instant;
-
-    use super::*;
-
-    fn small(samples: u32) -> Box<Document> {
-        let mut document = Box::new(Document::default());
-        (document.render.width, document.render.height) = (8, 6);
-        document.render.samples = samples;
-        document
-    }
-
-    fn picture_of(samples: u32, path: PathBuf) -> Task {
-        let document = small(samples);
-        Task::Picture { document, path }
-    }
-
-    fn wait(what: &str, is_there: impl Fn() -> bool) {
-        let begun = Instant::now();
-        while !is_there() {
-            assert!(begun.elapsed() < Duration::from_secs(120), "{what} never came");
-            std::thread::sleep(Duration::from_millis(2));
-        }
-    }
-
-    fn states(queue: &Queue) -> Vec<(String, State)> {
-        queue
-            .entries()
-            .into_iter()
-            .map(|entry| (entry.name, entry.state))
-            .collect()
-    }
-
-    #[test]
-    fn tasks_are_done_in_turn_and_what_fails_does_not_stop_the_rest() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let queue = Queue::new(Assets::default(), || {}).expect("a queue");
-        queue.pause(true);
-        let path = |name: &str| folder.path().join(name);
-        queue.add(picture_of(2, path("a.png")), EngineChoice::Cpu);
-        queue.add(picture_of(2, path("nowhere/b.png")), EngineChoice::Cpu);
-        queue.add(picture_of(2, path("c.exr")), EngineChoice::Cpu);
-        queue.add(picture_of(2, path("a.png")), EngineChoice::Cpu);
-        queue.put_first(3);
-        let names: Vec<String> = states(&queue).into_iter().map(|(name, _)| name).collect();
-        assert_eq!(names, ["c.exr", "a.png", "b.png", "a.png (2)"]);
-        queue.remove(4);
-        queue.pause(false);
-        wait("the end", || !queue.is_busy());
-        let states = states(&queue);
-        assert!(
-            matches!(&states[0].1, State::Done(words) if words.contains("2 samples")),
-            "{states:?}"
-        );
-        assert!(matches!(&states[1].1, State::Done(_)), "{states:?}");
-        assert!(
-            matches!(&states[2].1, State::Failed(why) if why.contains("b.png")),
-            "{states:?}"
-        );
-        assert_eq!(queue.take_news().len(), 3);
-        assert!(path("a.png").exists() && path("c.exr").exists());
-        queue.remove_over();
-        assert_eq!(queue.entries(), []);
-    }
-
-    #[test]
-    fn a_task_under_way_is_paused_and_called_off() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let queue = Queue::new(Assets::default(), || {}).expect("a queue");
-        let path = folder.path().join("long.png");
-        queue.add(picture_of(60_000, path.clone()), EngineChoice::Cpu);
-        let share = || match queue.entries()[0].state {
-            State::Rendering(share) => share,
-            _ => 0.0,
-        };
-        wait("a start", || share() > 0.0);
-        queue.pause(true);
-        // A step may be under way.
-        std::thread::sleep(Duration::from_millis(400));
-        let before = share();
-        std::thread::sleep(Duration::from_millis(300));
-        assert_eq!(share(), before, "it went on");
-        queue.remove(1);
-        wait("the end", || !queue.is_busy());
-        assert!(matches!(queue.entries()[0].state, State::Cancelled(_)));
-        assert!(!path.exists());
-        queue.remove(1);
-        assert_eq!(queue.entries(), []);
     }
 }

@@ -26,7 +26,6 @@ const BELOW_COUNT: u32 = 1 << 16;
 pub struct SampleQuery {
     /// The engine whose function draws.
     pub engine: EngineChoice,
-    /// The samples.
     pub request: ScatterRequest,
     /// Whether to match the Phong and GGX lobes, which takes a second.
     pub compare: bool,
@@ -46,7 +45,6 @@ pub struct AnglePlot {
 /// A lobe of equal look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherLobe {
-    /// Which.
     pub lobe: Lobe,
     /// Matched roughness and remaining distance.
     pub nearest: Nearest,
@@ -59,7 +57,6 @@ pub struct OtherLobe {
 pub struct SampleReport {
     /// The query that this answers.
     pub query: SampleQuery,
-    /// The samples.
     pub cloud: ScatterCloud,
     /// Share of the samples that point below the surface before the horizon policy, in [0, 1].
     pub below_share: f64,
@@ -74,9 +71,6 @@ pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 
 /// Starts the thread; `repaint` is called when there is something new to show.
-///
-/// # Errors
-/// If no thread can be started.
 pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
     Background::spawn("samples", repaint, move |query: SampleQuery, responder| {

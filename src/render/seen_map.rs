@@ -24,20 +24,14 @@ pub type SeenMaps = Background<(Arc<Job>, [u32; 2]), Arc<SeenMap>>;
 /// Object and slot hit through each pixel's centre.
 #[derive(Clone, Debug)]
 pub struct SeenMap {
-    /// Source job.
     pub job: Arc<Job>,
-    /// Columns.
     pub width: u32,
-    /// Rows.
     pub height: u32,
     /// Object and slot, or [`NOTHING`]; rows from the top.
     pub seen: Vec<[u32; 2]>,
 }
 
 /// Starts the thread that makes maps; `repaint` is called when one is finished.
-///
-/// # Errors
-/// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
     Background::spawn("outlines", repaint, |(job, size): (Arc<Job>, [u32; 2]), responder| {
         if let Some(map) = seen_map(&job, size, || responder.is_superseded()) {
@@ -114,62 +108,5 @@ impl SeenMap {
             beside.into_iter().flatten().any(|other| other != is_inside)
         };
         parallel::map(chosen.len(), is_edge)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::compile::{Assets, Compiler};
-    use crate::document::Document;
-    use crate::scene::ModelSource;
-
-    #[test]
-    fn the_outline_goes_around_what_is_chosen() {
-        let mut document = Document {
-            model: ModelSource::Sphere,
-            ground: true,
-            ..Document::default()
-        };
-        (document.render.width, document.render.height) = (48, 48);
-        let job = Compiler::default()
-            .compile(&document, &Assets::default())
-            .expect("built-in");
-        let job = Arc::new(job);
-        let map = seen_map(&job, [48, 48], || false).expect("nobody else asks");
-        let at = |x: usize, y: usize| map.seen[y * 48 + x];
-        assert_eq!(at(24, 24), [0, 0], "the sphere");
-        assert_eq!(
-            at(24, 47),
-            [NOTHING, 1],
-            "the ground is no object, and has the slot after the model's"
-        );
-        let edges = map.edges(|[object, _]| object == 0);
-        let row: Vec<usize> = (0..48).filter(|x| edges[24 * 48 + x]).collect();
-        assert_eq!(row.len(), 4, "two pixels at either side: {row:?}");
-        assert!(!edges[24 * 48 + 24] && !edges[0]);
-        assert!(map.edges(|_| false).iter().all(|edge| !edge));
-    }
-
-    /// The line is as fine as the screen, however small the image is while the camera moves.
-    #[test]
-    fn the_outline_has_the_screen_s_pixels_whatever_the_image_s() {
-        let jobs = [[24, 24], [192, 192]].map(|[width, height]| {
-            let mut document = Document {
-                model: ModelSource::Sphere,
-                ..Document::default()
-            };
-            (document.render.width, document.render.height) = (width, height);
-            let job = Compiler::default().compile(&document, &Assets::default());
-            Arc::new(job.expect("built-in"))
-        });
-        let [small, large] = jobs
-            .each_ref()
-            .map(|job| seen_map(job, [96, 96], || false).expect("nobody else asks"));
-        assert_eq!((small.width, small.height), (96, 96));
-        assert_eq!(small.seen, large.seen);
-        let edges = small.edges(|[object, _]| object == 0);
-        let row: Vec<usize> = (0..96).filter(|x| edges[48 * 96 + x]).collect();
-        assert_eq!(row.len(), 4, "two pixels at either side: {row:?}");
     }
 }

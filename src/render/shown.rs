@@ -23,7 +23,6 @@ const NOTHING: [u8; 4] = [24, 24, 24, 255];
 /// A view of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Shown {
-    /// The image.
     #[default]
     Picture,
     /// The estimated error of each pixel.
@@ -124,11 +123,9 @@ impl Scale {
 /// Inputs of maps.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
-    /// The sums.
     pub film: &'a Film,
     /// The linear image shown.
     pub image: &'a Image,
-    /// Display settings.
     pub view: &'a ViewSettings,
     /// Length of a unit of the geometry, scene units.
     pub world_units_per_unit: f64,
@@ -304,48 +301,5 @@ impl PixelFacts {
                 .collect(),
             features: Features::of(film, source.world_units_per_unit),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn image(colors: &[[f32; 3]]) -> Image {
-        Image {
-            width: colors.len() as u32,
-            height: 1,
-            pixels: colors.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect(),
-        }
-    }
-
-    #[test]
-    fn false_colours_count_stops_from_middle_grey() {
-        let view = ViewSettings {
-            exposure_ev: 1.0,
-            ..ViewSettings::default()
-        };
-        let found = stops(&image(&[[0.09; 3], [0.18; 3], [1.44; 3]]), &view);
-        for (found, expected) in found.iter().zip([0.0, 1.0, 4.0]) {
-            assert!((found - expected).abs() < 1e-3, "{found} instead of {expected}");
-        }
-    }
-
-    #[test]
-    fn what_is_clipped_is_marked_and_the_rest_stays() {
-        let rgba = vec![0, 0, 0, 255, 10, 255, 20, 255, 90, 80, 70, 255, 0, 0, 0, 0];
-        let [bright, dark] = CLIPPED;
-        let marked = with_clipping(rgba);
-        assert_eq!(marked[..3], dark);
-        assert_eq!(marked[4..7], bright);
-        assert_eq!(marked[8..11], [90, 80, 70]);
-        assert_eq!(marked[12..15], [0, 0, 0], "nothing is there");
-    }
-
-    #[test]
-    fn what_is_not_there_has_no_colour_of_the_scale() {
-        let map = linear_map(&[0.0, 1.0, f32::INFINITY], [0.0, 1.0]);
-        assert_eq!(map.rgba[8..], NOTHING);
-        assert_ne!(map.rgba[..4], map.rgba[4..8]);
     }
 }

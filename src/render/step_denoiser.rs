@@ -39,10 +39,6 @@ impl StepDenoiser {
 
     /// Call after each step. At the end of a round, it reports the denoised image's error to the session, if that is the
     /// goal.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn attend(&mut self, session: &mut Session, progress: &Progress) -> Result<(), SessionError> {
         let is_due = progress.noise_wanted.is_some()
             && progress.targets_denoised
@@ -57,10 +53,6 @@ impl StepDenoiser {
     }
 
     /// The denoised image, if requested; its time includes earlier ones.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn finish(&mut self, session: &mut Session) -> Result<Option<Denoised>, SessionError> {
         self.next_samples = 0.0;
         let denoised = self.denoise(session)?;

@@ -37,9 +37,7 @@ const GUIDES: [&str; 8] = [
 /// A film, the document that it shows and the range of samples in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptFilm {
-    /// The sums.
     pub film: Film,
-    /// The rendered document.
     pub document: Document,
     /// Sample ranges (first, end) in order; several if films were joined.
     pub samples: Vec<[u32; 2]>,
@@ -51,7 +49,6 @@ pub struct KeptFilm {
 
 /// Why films cannot be read, joined or written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum SumsError {
     /// Not an EXR file, or damaged.
     #[error("{}: cannot be read as an image: {reason}; render it again with --keep-sums", path.display())]
@@ -162,10 +159,6 @@ impl KeptFilm {
     }
 
     /// Attributes of a file at `path`.
-    ///
-    /// # Errors
-    ///
-    /// If the document cannot be written.
     pub fn attributes(&self, path: &Path) -> Result<LayerAttributes, FileError> {
         let samples: Vec<String> = self.samples.iter().map(|[from, to]| format!("{from}-{to}")).collect();
         let document = document_text(path, &self.document)?;
@@ -218,10 +211,6 @@ impl KeptFilm {
     }
 
     /// Reads a film from a file.
-    ///
-    /// # Errors
-    ///
-    /// The fault of the file.
     pub fn read(path: &Path) -> Result<Self, SumsError> {
         let file = Sums::open(path)?;
         let [samples, units, document] = file.kept()?;
@@ -291,10 +280,6 @@ impl KeptFilm {
     }
 
     /// Adds the samples of another film of the same image. The paths are for messages.
-    ///
-    /// # Errors
-    ///
-    /// [`SumsError::Differs`], [`SumsError::Twice`].
     pub fn add(&mut self, other: &Self, path: &Path, first: &Path) -> Result<(), SumsError> {
         let differs = |differs: &str| SumsError::Differs {
             path: path.to_owned(),

@@ -51,10 +51,6 @@ pub fn key(material: &MaterialSettings) -> u64 {
 
 /// Starts the worker; `folder`, created if needed, caches thumbnails between starts. It pauses while `hold` is set, for the
 /// viewport.
-///
-/// # Errors
-///
-/// If no thread can be started.
 pub fn spawn_thumbnails(
     folder: PathBuf,
     hold: Arc<AtomicBool>,
@@ -99,7 +95,6 @@ fn document(material: &MaterialSettings) -> Document {
     document
 }
 
-/// Renderer of thumbnails.
 struct Studio {
     session: Session,
     step_denoiser: StepDenoiser,
@@ -135,63 +130,4 @@ fn make<A>(
         None => Arc::new(session.image()?),
     };
     Ok(Some(display(&image, &document.view)))
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::atomic::Ordering;
-
-    use super::*;
-    use crate::store::material_by_name;
-
-    fn mean(pixels: &[u8]) -> [f64; 3] {
-        [0, 1, 2].map(|channel| {
-            // The centre of the image: the sphere.
-            let middle = (72..120).flat_map(|y| (72..120).map(move |x| 4 * (y * SIDE as usize + x) + channel));
-            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 2304.0
-        })
-    }
-
-    #[test]
-    fn thumbnails_show_their_materials_and_are_kept() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let cache = folder.path().join("new");
-        let [gold, rubber] = ["gold", "rubber"].map(|name| material_by_name(name).expect("shipped").clone());
-        let worker = spawn_thumbnails(cache.clone(), Arc::default(), || {}).expect("a thread");
-        worker.ask(vec![gold.clone(), rubber.clone()]);
-        let made = worker.wait_for(|made| made.len() >= 2);
-        let (yellow, dark) = (mean(&made[&key(&gold)]), mean(&made[&key(&rubber)]));
-        assert!(yellow[0] > 1.2 * yellow[2], "gold is yellow: {yellow:?}");
-        assert!(dark[0] < 0.6 * yellow[0], "rubber is dark: {dark:?}");
-        assert_eq!(std::fs::read_dir(&cache).expect("made").count(), 2);
-        // A marked file shows that the second start reads it.
-        let marked = vec![77; 4 * (SIDE * SIDE) as usize];
-        let path = cache.join(format!("{:016x}.png", key(&gold)));
-        picture_cache::write(&path, [SIDE; 2], &marked).expect("written");
-        let again = spawn_thumbnails(cache, Arc::default(), || {}).expect("a thread");
-        again.ask(vec![gold.clone()]);
-        assert_eq!(*again.wait_for(|made| !made.is_empty())[&key(&gold)], marked);
-    }
-
-    #[test]
-    fn nothing_is_made_while_it_is_held() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let hold = Arc::new(AtomicBool::new(true));
-        let worker = spawn_thumbnails(folder.path().to_owned(), hold.clone(), || {}).expect("a thread");
-        worker.ask(vec![material_by_name("gold").expect("shipped").clone()]);
-        std::thread::sleep(Duration::from_millis(300));
-        assert!(worker.latest().is_none(), "held");
-        hold.store(false, Ordering::Relaxed);
-        worker.wait_for(|made| !made.is_empty());
-    }
-
-    #[test]
-    fn the_key_follows_the_look_and_not_the_name() {
-        let gold = material_by_name("gold").expect("shipped").clone();
-        let mut other = gold.clone();
-        other.name = "Or".to_owned();
-        assert_eq!(key(&gold), key(&other));
-        other.roughness += 0.01;
-        assert_ne!(key(&gold), key(&other));
-    }
 }

@@ -23,10 +23,6 @@ pub struct Ended {
 
 /// Submits a document to a session. After a lost GPU device it continues with another one; after any other GPU failure on
 /// the CPU, unless the GPU was requested by name.
-///
-/// # Errors
-///
-/// Errors of the engine, or of the files that the document names.
 pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
     let submitted = session.submit(document).map(|_| ());
     or_fall_back(submitted, session, engine, document)
@@ -34,10 +30,6 @@ pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) 
 
 /// Renders the submitted document to its end, falling back as [`submit`] does, and denoises it if requested. `on_progress`
 /// receives the progress after every step and stops the render by returning `false`.
-///
-/// # Errors
-///
-/// Errors of the engine.
 pub fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,

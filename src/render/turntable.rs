@@ -18,12 +18,10 @@ use crate::store::video::{Video, VideoError};
 /// Frames a second of a video at first.
 pub const FPS: f64 = 24.0;
 
-/// A turntable render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turntable {
     /// Frame 0; the size and the samples of all.
     pub document: Document,
-    /// What rotates.
     pub turn: Turn,
     /// Frames of a whole turn, at least 1.
     pub frames: u32,
@@ -49,7 +47,6 @@ pub struct TurntableProgress {
 /// Result of a turntable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurntableOutcome {
-    /// Frames rendered.
     pub frames: u32,
     /// The engine's own time, seconds.
     pub render_seconds: f64,

@@ -65,10 +65,6 @@ impl Workshop {
 
     /// Starts a job on the GPU if its kernel is ready, else on the CPU until [`Self::finished`] returns one. After an error
     /// the current engine continues.
-    ///
-    /// # Errors
-    ///
-    /// The GPU's objection to the job.
     pub(super) fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
         if let Engine::Gpu(engine) = current
             && engine.has_kernel(job)
@@ -131,10 +127,6 @@ impl Workshop {
     }
 
     /// The engine with this job, once its kernel is ready.
-    ///
-    /// # Errors
-    ///
-    /// The driver's objection to the kernel, or the GPU's to the job.
     pub(super) fn finished(&mut self, job: &Arc<Job>) -> Result<Option<GpuEngine>, GpuError> {
         let Some(preparation) = &self.in_work else {
             self.compile(job);

@@ -31,7 +31,6 @@ pub struct AreaShape {
 /// Outline of an area light within its width and height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outline {
-    /// The full rectangle.
     Rectangle,
     /// The width is its base; its tip is at the middle of the upper side.
     Triangle,

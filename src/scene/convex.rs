@@ -60,10 +60,6 @@ impl Cluster {
 /// True if no vertex lies above any face's plane, on the side from which its corners are anticlockwise. A ray that leaves a
 /// face on that side then misses. Most other bodies are found out by their first faces; if the proof takes too long, the
 /// body counts as not convex.
-///
-/// # Errors
-///
-/// If cancelled.
 pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]], loading: &Loading) -> Result<bool, Cancelled> {
     let effort = AtomicUsize::new(0);
     let is_proven = is_proven(positions, triangles, &effort, &|| loading.check().is_ok());
@@ -97,53 +93,4 @@ fn is_proven(
         }
     });
     !is_refuted.into_inner()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    type Grid = (Vec<[f32; 3]>, Vec<[u32; 3]>);
-
-    /// A sheet of `side`² squares within the unit ball, at this height.
-    fn sheet(side: u32, height: impl Fn(f32, f32) -> f32) -> Grid {
-        let place = |i: u32| i as f32 / side as f32 - 0.5;
-        let places = (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j)));
-        let positions = places.map(|(i, j)| [place(i), place(j), height(place(i), place(j))]);
-        let squares = (0..side).flat_map(|j| (0..side).map(move |i| j * (side + 1) + i));
-        let triangles = squares.flat_map(|a| [[a, a + 1, a + side + 2], [a, a + side + 2, a + side + 1]]);
-        (positions.collect(), triangles.collect())
-    }
-
-    fn proven((positions, triangles): &Grid) -> (bool, usize) {
-        let effort = AtomicUsize::new(0);
-        let is_proven = is_proven(positions, triangles, &effort, &|| true);
-        (is_proven, effort.into_inner())
-    }
-
-    #[test]
-    fn a_flat_sheet_takes_a_test_a_cluster() {
-        let flat = sheet(64, |_, _| 0.0);
-        let products = flat.0.len().div_ceil(CLUSTER) * flat.1.len();
-        assert_eq!(proven(&flat), (true, products));
-    }
-
-    /// A sheet aslant has no box that settles it: every place is looked at, and that is counted.
-    #[test]
-    fn a_proof_that_takes_too_long_is_given_up() {
-        let (is_proven, effort) = proven(&sheet(32, |x, _| x));
-        assert!(is_proven && effort > 32 * 2048, "{effort}");
-        let (is_proven, effort) = proven(&sheet(150, |x, _| x));
-        assert!(!is_proven, "{effort}");
-        assert!(effort < EFFORT_MAX + EFFORT_MAX / 8, "{effort}");
-    }
-
-    #[test]
-    fn a_proof_can_be_cancelled() {
-        let (positions, triangles) = sheet(8, |_, _| 0.0);
-        let loading = Loading::default();
-        assert_eq!(is_convex(&positions, &triangles, &loading), Ok(true));
-        loading.cancel();
-        assert_eq!(is_convex(&positions, &triangles, &loading), Err(Cancelled));
-    }
 }

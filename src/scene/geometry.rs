@@ -71,10 +71,6 @@ impl Geometry {
 
     /// Builds a model without surroundings, with progress and cancellation. Objects in `hidden` are left out; position and
     /// scale stay those of the whole model.
-    ///
-    /// # Errors
-    ///
-    /// If cancelled.
     pub fn of_model(model: &Model, hidden: &[usize], loading: &Loading) -> Result<Self, Cancelled> {
         loading.step("measuring the model")?;
         let mesh = &model.mesh;
@@ -160,7 +156,6 @@ impl Geometry {
         self.model_is_coarse
     }
 
-    /// Number of triangles.
     #[inline(always)]
     pub fn triangle_count(&self) -> usize {
         self.first_instanced() + self.instanced.triangle_count()

@@ -15,7 +15,6 @@ const BEND_STEPS: u32 = 48;
 /// A ground. Lengths are in bounding radii of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Ground {
-    /// Nothing.
     #[default]
     None,
     /// A horizontal square of half side 20.

@@ -61,7 +61,6 @@ impl Whole {
 pub(super) struct Traceable {
     /// Their vertices, each once.
     pub places: Vec<DVec3>,
-    /// Their number.
     pub count: usize,
     /// Number of triangles with a corner that is not finite.
     pub not_finite: usize,

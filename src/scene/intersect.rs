@@ -38,7 +38,6 @@ impl Hit {
 /// Ray/Triangle Intersection", JCGT 2013): of each axis one component is 1 and one 0.
 #[derive(Clone, Copy, Debug)]
 pub struct RayFrame {
-    /// Ray origin.
     pub origin: Vec3A,
     /// Ray direction, of any length but 0.
     pub direction: Vec3A,

@@ -23,7 +23,6 @@ pub struct Share {
 /// An entry that was drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Drawn {
-    /// Which.
     pub index: u32,
     /// The first of the numbers that draw it.
     pub lower: u32,
@@ -32,7 +31,7 @@ pub struct Drawn {
 }
 
 /// Ranges of numbers for 1 to 2²⁴ weights. Each positive weight gets at least one number, a zero weight none.
-pub(super) fn shares(weights: &[f64]) -> Vec<Share> {
+pub fn shares(weights: &[f64]) -> Vec<Share> {
     let total: f64 = weights.iter().sum();
     let mut after = weights.iter().filter(|weight| **weight > 0.0).count() as u32;
     let (mut sum, mut before) = (0.0, 0);
@@ -116,58 +115,4 @@ pub fn place_in<T: Scalar>(drawn: Drawn, number: u32, jitter: T) -> T {
     let whole = |count: u32| T::from_f64(f64::from(count));
     let numbers = whole((drawn.upper - drawn.lower).max(1));
     ((whole(number - drawn.lower) + jitter) / numbers).min(T::one())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn check(weights: &[f64]) {
-        let shares = shares(weights);
-        let count = weights.len() as u32;
-        let mut before = 0;
-        for share in &shares {
-            assert!(share.upper >= before);
-            before = share.upper;
-        }
-        assert_eq!(before, DRAWS);
-        for number in (0..DRAWS).step_by(97).chain(DRAWS - 40..DRAWS) {
-            let share = |index: u32| shares[index as usize];
-            let drawn = drawn(find(count, number, share), share);
-            assert!((drawn.lower..drawn.upper).contains(&number), "{number}: {drawn:?}");
-            let place = place_in(drawn, number, 0.5_f64);
-            assert!((0.0..=1.0).contains(&place));
-        }
-        let total: f64 = weights.iter().sum();
-        let fair = |weight: f64| weight / total * f64::from(DRAWS);
-        // Each weight of less than a number has one all the same, which others lack.
-        let raised = weights.iter().filter(|weight| fair(**weight) < 1.0).count() as f64;
-        for (index, weight) in weights.iter().enumerate() {
-            let lower = index.checked_sub(1).map_or(0, |before| shares[before].upper);
-            let own = f64::from(shares[index].upper - lower);
-            assert_eq!(own > 0.0, *weight > 0.0);
-            assert!((own - fair(*weight)).abs() <= 1.0 + raised, "{index}: {own}");
-        }
-    }
-
-    #[test]
-    fn numbers_are_shared_out_in_proportion_and_each_draws_its_entry() {
-        check(&[1.0]);
-        check(&[0.0, 3.0, 0.0, 0.0, 1.0, 0.0]);
-        check(&[1.0; 1000]);
-        let weights: Vec<f64> = (0..1501).map(|i| f64::from(i * 7919 % 83) * 0.3).collect();
-        check(&weights);
-        // A sun: all others share a slot.
-        let sun: Vec<f64> = (0..2048).map(|i| if i == 700 { 1e9 } else { 1e-3 }).collect();
-        check(&sun);
-    }
-
-    #[test]
-    fn nothing_is_drawn_where_there_is_nothing() {
-        let shares = shares(&[0.0; 5]);
-        let share = |index: u32| shares[index as usize];
-        let drawn = drawn(find(5, 77, share), share);
-        assert_eq!((drawn.lower, drawn.upper), (0, 0));
-        assert_eq!(place_in(drawn, 77, 0.5_f32), 1.0);
-    }
 }

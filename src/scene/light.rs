@@ -185,7 +185,6 @@ pub struct Emitters<'a, T> {
     pub materials: &'a [Material<T>],
     /// Textures of the materials.
     pub textures: &'a Textures,
-    /// The emitting triangles.
     pub lights: &'a Lights,
     /// Tables of the materials.
     pub tables: &'a [f32],

@@ -35,9 +35,6 @@ pub struct LightProfile {
 impl LightProfile {
     /// A profile from a grid of intensities in candela, those of all vertical angles for each horizontal angle. Horizontal
     /// angles up to 90 or 180 degrees, or from 90 to 270, are mirrored.
-    ///
-    /// # Errors
-    /// What is wrong with the angles or intensities.
     pub fn new(vertical_deg: Vec<f32>, horizontal_deg: &[f32], candela: &[f32]) -> Result<Self, String> {
         check_angles("vertical", &vertical_deg, 180.0)?;
         check_angles("horizontal", horizontal_deg, 360.0)?;
@@ -206,103 +203,4 @@ fn angle_cell<T: Scalar>(angles: &[f32], angle: T) -> (usize, T) {
     }
     let beyond = (angle - at(low)) / (at(high) - at(low));
     (low, beyond.max(T::zero()).min(T::one()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::area_shape::{AreaShape, Outline};
-
-    fn frame() -> AreaFrame {
-        AreaShape {
-            target: [0.0; 3],
-            yaw_deg: 30.0,
-            pitch_deg: 50.0,
-            distance: 2.0,
-            width: 0.1,
-            height: 0.1,
-            turn_deg: 20.0,
-            outline: Outline::Sphere,
-        }
-        .frame()
-    }
-
-    /// The direction of two angles.
-    fn direction(frame: &AreaFrame, [vertical_deg, horizontal_deg]: [f64; 2]) -> Vec3<f64> {
-        let (sine, cosine) = vertical_deg.to_radians().sin_cos();
-        let (up, across) = horizontal_deg.to_radians().sin_cos();
-        let direction = -frame.outwards * cosine + sine * (frame.across * across + frame.up * up);
-        Vec3::from_f64(direction.to_array())
-    }
-
-    fn share(profile: &LightProfile, angles: [f64; 2]) -> f64 {
-        let frame = frame();
-        profile_share(&profile.table(&frame), direction(&frame, angles)) * profile.mean_cd
-    }
-
-    #[test]
-    fn between_the_angles_intensities_are_linear() {
-        let profile = LightProfile::new(vec![0.0, 30.0, 90.0], &[0.0], &[100.0, 40.0, 10.0]).expect("a profile");
-        for (vertical, expected) in [
-            (0.0, 100.0),
-            (15.0, 70.0),
-            (30.0, 40.0),
-            (60.0, 25.0),
-            (89.9, 10.05),
-            (91.0, 0.0),
-        ] {
-            let found = share(&profile, [vertical, 77.0]);
-            assert!((found - expected).abs() < 0.01, "{vertical}: {found} for {expected}");
-        }
-        let quadrant = LightProfile::new(vec![0.0, 180.0], &[0.0, 90.0], &[8.0, 8.0, 2.0, 2.0]).expect("a profile");
-        for (horizontal, expected) in [
-            (0.0, 8.0),
-            (45.0, 5.0),
-            (90.0, 2.0),
-            (150.0, 6.0),
-            (180.0, 8.0),
-            (300.0, 4.0),
-        ] {
-            let found = share(&quadrant, [60.0, horizontal]);
-            assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
-        }
-        let sides = LightProfile::new(vec![0.0, 180.0], &[90.0, 180.0, 270.0], &[1.0, 1.0, 3.0, 3.0, 5.0, 5.0]);
-        let sides = sides.expect("a profile");
-        for (horizontal, expected) in [
-            (90.0, 1.0),
-            (135.0, 2.0),
-            (0.0, 3.0),
-            (45.0, 2.0),
-            (270.0, 5.0),
-            (315.0, 4.0),
-        ] {
-            let found = share(&sides, [60.0, horizontal]);
-            assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
-        }
-    }
-
-    #[test]
-    fn the_mean_is_that_of_all_directions() {
-        let even = LightProfile::new(vec![0.0, 180.0], &[0.0], &[7.0, 7.0]).expect("a profile");
-        assert!((even.lumens() - 28.0 * PI).abs() < 1e-9);
-        let half = LightProfile::new(vec![0.0, 90.0], &[0.0, 180.0], &[6.0, 6.0, 2.0, 2.0]).expect("a profile");
-        assert!((half.lumens() - 8.0 * PI).abs() < 1e-9);
-    }
-
-    #[test]
-    fn angles_out_of_order_are_refused() {
-        let new = |vertical: &[f32], horizontal: &[f32]| {
-            let candela = vec![1.0; vertical.len() * horizontal.len()];
-            LightProfile::new(vertical.to_vec(), horizontal, &candela)
-                .err()
-                .unwrap_or_default()
-        };
-        assert!(new(&[0.0, 90.0, 45.0], &[0.0]).contains("vertical"));
-        assert!(new(&[0.0, 190.0], &[0.0]).contains("vertical"));
-        assert!(new(&[0.0, f32::NAN], &[0.0]).contains("vertical"));
-        assert!(new(&[0.0, 90.0], &[0.0, 40.0]).contains("horizontal"));
-        assert!(new(&[0.0], &[0.0]).contains("intensities"));
-        assert!(LightProfile::new(vec![0.0, 90.0], &[0.0], &[0.0, 0.0]).is_err());
-        assert!(LightProfile::new(vec![0.0, 90.0], &[0.0], &[0.0, f32::INFINITY]).is_err());
-    }
 }

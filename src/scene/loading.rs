@@ -31,20 +31,12 @@ impl Loading {
     }
 
     /// Reports the next step.
-    ///
-    /// # Errors
-    ///
-    /// [`Cancelled`] if so.
     pub fn step(&self, doing: impl Into<String>) -> Result<(), Cancelled> {
         self.publish(doing.into());
         self.check()
     }
 
     /// Checks for cancellation.
-    ///
-    /// # Errors
-    ///
-    /// [`Cancelled`] if so.
     pub fn check(&self) -> Result<(), Cancelled> {
         match self.0.is_cancelled.load(Relaxed) {
             true => Err(Cancelled),

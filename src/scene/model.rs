@@ -94,7 +94,6 @@ pub struct Model {
     pub textures: Vec<Texture>,
     /// The objects that its triangles belong to, in the triangles' order.
     pub objects: Vec<ModelObject>,
-    /// Import report.
     pub report: ImportReport,
     /// The middle of its bounding box; 0 for built-in models, whose file has no lights or cameras.
     pub center: [f64; 3],
@@ -235,7 +234,6 @@ impl Default for ModelOptions {
 /// The parameters of one material as the file gives them (glTF's metallic-roughness model).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slot {
-    /// The material's name.
     pub name: String,
     /// The number of the material in a glTF file.
     pub file_material: Option<usize>,
@@ -249,7 +247,6 @@ pub struct Slot {
     pub emission: [f32; 3],
     /// Opacity in [0, 1]; multiplies the alpha of the base colour texture.
     pub opacity: f32,
-    /// Meaning of opacity.
     pub alpha_mode: AlphaMode,
     /// Opacity cutoff of [`AlphaMode::Mask`].
     pub alpha_cutoff: f32,
@@ -319,7 +316,6 @@ pub struct Slot {
     pub kept: serde_json::Map<String, serde_json::Value>,
 }
 
-/// glTF's default material.
 impl Default for Slot {
     fn default() -> Self {
         Self {
@@ -429,7 +425,6 @@ pub struct TextureRef {
     pub texture_from_mesh_uv: [f32; 6],
     /// Wrap modes in u and v.
     pub wrap: [Wrap; 2],
-    /// Filtering.
     pub filter: Filter,
 }
 
@@ -446,10 +441,8 @@ pub enum Filter {
 /// Wrap mode beyond a texture's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
-    /// The texture repeats.
     #[default]
     Repeat,
-    /// Back and forth.
     MirroredRepeat,
     /// Clamp to the texel at the edge.
     ClampToEdge,
@@ -460,9 +453,7 @@ pub enum Wrap {
 pub struct Texture {
     /// The image's name, its file or its number.
     pub name: String,
-    /// Columns.
     pub width: u32,
-    /// Rows.
     pub height: u32,
     /// Red, green, blue, opacity of each texel, row by row from the top.
     pub rgba8: Vec<u8>,

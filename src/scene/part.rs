@@ -93,7 +93,6 @@ pub const NO_OBJECT: u32 = u32::MAX;
 /// Triangles in one f32 coordinate system, in the order in which their hierarchy's leaves refer to them.
 #[derive(Clone, Debug, Default)]
 pub struct Part {
-    /// Vertex positions.
     pub positions: Vec<[f32; 3]>,
     /// Other vertex attributes, as many as `positions`.
     pub vertices: Vec<Vertex>,

@@ -50,9 +50,6 @@ pub fn path_of_bytes(bytes: Vec<u8>) -> PathBuf {
 }
 
 /// Serializes a path as text.
-///
-/// # Errors
-/// Those of the serializer.
 pub fn serialize<S: Serializer>(path: &Path, to: S) -> Result<S::Ok, S::Error> {
     to.serialize_str(&path_text(path))
 }
@@ -62,57 +59,13 @@ pub mod list {
     use super::*;
 
     /// Serializes paths as texts.
-    ///
-    /// # Errors
-    /// Those of the serializer.
     pub fn serialize<S: Serializer>(paths: &[PathBuf], to: S) -> Result<S::Ok, S::Error> {
         to.collect_seq(paths.iter().map(|path| path_text(path)))
     }
 
     /// The paths of texts.
-    ///
-    /// # Errors
-    /// Those of the deserializer.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<PathBuf>, D::Error> {
         let texts = Vec::<String>::deserialize(from)?;
         Ok(texts.iter().map(|text| path_of_text(text)).collect())
-    }
-}
-
-#[cfg(all(test, unix))]
-mod tests {
-    use std::ffi::OsStr;
-    use std::os::unix::ffi::OsStrExt as _;
-
-    use super::*;
-
-    #[test]
-    fn each_path_has_a_text_of_its_own_that_leads_back() {
-        let names: [&[u8]; 6] = [
-            b"a.png",
-            b"/t/a\xff b.png",
-            b"/t/a\xfe b.png",
-            b"file:///t/a%FF.png",
-            b"/t/%ff",
-            "ä".as_bytes(),
-        ];
-        let paths = names.map(|name| Path::new(OsStr::from_bytes(name)));
-        let texts = paths.map(path_text);
-        for (place, text) in texts.iter().enumerate() {
-            assert!(!texts[..place].contains(text), "{text}");
-            let whole = if text.starts_with(SCHEME) {
-                std::path::absolute(paths[place]).expect("a folder")
-            } else {
-                paths[place].to_owned()
-            };
-            assert_eq!(path_of_text(text), whole);
-        }
-        assert_eq!(
-            path_of_text("file:///my%20models/%c3%a4.glb"),
-            Path::new("/my models/ä.glb")
-        );
-        assert_eq!(path_of_text("file:///100%"), Path::new("/100%"));
-        assert_eq!(texts[1], "file:///t/a%FF%20b.png");
-        assert_eq!([&texts[0], &texts[5]], ["a.png", "ä"]);
     }
 }

@@ -41,7 +41,6 @@ pub struct Entry {
     pub fate: Fate,
     /// Description, and what is shown instead.
     pub what: String,
-    /// Number of occurrences.
     pub count: usize,
     /// The objects, materials or files concerned, each once, the first twenty of them.
     pub names: Vec<String>,

@@ -45,7 +45,6 @@ pub struct ModelLight {
     pub name: String,
     /// Kind of the light.
     pub kind: LightKind,
-    /// Position.
     pub position: [f64; 3],
     /// Unit direction of its light.
     pub forward: [f64; 3],

@@ -5,7 +5,6 @@ use crate::named::named;
 /// What the values of a texture are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureValues {
-    /// Colours.
     Color,
     /// Numbers, in this channel of a model's texture.
     Number(usize),

@@ -8,7 +8,6 @@ pub(super) const SIZE_MAX: u64 = 16 << 20;
 
 /// Why a material or project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum FileError {
     /// The system can't read it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]

@@ -14,7 +14,6 @@ pub struct Example {
     pub help: &'static str,
     /// The title of the panel that shows more.
     pub panel: &'static str,
-    /// Makes it.
     pub document: fn() -> Document,
 }
 
@@ -151,21 +150,4 @@ fn many_materials() -> Document {
         light(70.0, 35.0, 8.0, [0.4, 0.6, 1.0]),
     ];
     document
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn examples_are_made_of_materials_that_there_are() {
-        let nameless = MaterialSettings::default().name;
-        for example in EXAMPLES {
-            let document = (example.document)();
-            assert!(document.check().is_ok(), "{}", example.label);
-            for material in &document.materials {
-                assert_ne!(material.name, nameless, "{}", example.label);
-            }
-        }
-    }
 }

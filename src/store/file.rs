@@ -13,7 +13,6 @@ use crate::scene::path_text::{path_of_text, path_text};
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded<T> {
-    /// The contents.
     pub value: T,
     /// What the user should know, one sentence each.
     pub warnings: Vec<String>,

@@ -12,7 +12,6 @@ use crate::document::MaterialSettings;
 /// A file of the folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The file.
     pub path: PathBuf,
     /// Its material, or what is wrong with it.
     pub material: Result<MaterialSettings, String>,
@@ -29,9 +28,6 @@ impl Entry {
 }
 
 /// The materials in a folder by name; none where it is not there.
-///
-/// # Errors
-/// [`FileError::Read`] where the folder can't be read.
 pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
     let files = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -70,9 +66,6 @@ fn file_within(home: &Path) -> Option<PathBuf> {
 
 /// Adds a material in a file named after it; no other file is replaced. One with images gets a folder, with copies of them.
 /// The folder is made where it is not there.
-///
-/// # Errors
-/// [`FileError::Write`].
 pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileError> {
     fs::create_dir_all(folder).map_err(FileError::writing(folder))?;
     let stem = file_stem(&material.name);
@@ -151,9 +144,6 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
 }
 
 /// Adds a copy of a material under another name.
-///
-/// # Errors
-/// What is wrong with the file, or [`FileError::Write`].
 pub fn duplicate(path: &Path) -> Result<PathBuf, FileError> {
     let mut material = load_material(path)?.value;
     material.name.push_str(" copy");
@@ -170,7 +160,6 @@ pub struct Removed {
 /// What is kept of it.
 #[derive(Clone, Debug, PartialEq)]
 enum Remains {
-    /// A file's contents.
     Bytes(Vec<u8>),
     /// Its folder, hidden beside the others until the next one is removed.
     Folder(PathBuf),
@@ -183,7 +172,6 @@ const HOME: &str = "material";
 const REMOVED: &str = ".removed";
 
 impl Removed {
-    /// Where it was.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -214,9 +202,6 @@ pub fn remove(path: &Path) -> Result<Removed, FileError> {
 }
 
 /// Puts what was removed back, beside one that has taken its name meanwhile.
-///
-/// # Errors
-/// [`FileError::Write`].
 pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
     let stem = removed
         .path
@@ -271,123 +256,4 @@ pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
         .chain(others)
         .find(is_free)
         .unwrap_or(first)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::store::PRESETS;
-
-    #[test]
-    fn materials_are_added_listed_renamed_and_removed() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let folder = folder.path().join("materials");
-        assert_eq!(list(&folder).expect("nothing is no error"), []);
-        let mut material = PRESETS[3].clone();
-        material.name = "../Odd: name".to_owned();
-        let paths = [0, 1].map(|_| add(&folder, &material).expect("added"));
-        assert_ne!(paths[0], paths[1], "no file is replaced");
-        assert!(paths.iter().all(|path| path.parent() == Some(&*folder)), "{paths:?}");
-        let renamed = rename(&paths[0], "Alpha").expect("renamed");
-        fs::write(folder.join("broken.json"), "{").expect("a temporary file");
-        let names: Vec<String> = list(&folder).expect("listed").iter().map(Entry::name).collect();
-        assert_eq!(names, ["../Odd: name", "Alpha", "broken"]);
-        material.name = "Alpha".to_owned();
-        assert_eq!(load_material(&renamed).expect("whole").value, material);
-        let removed = remove(&renamed).expect("removed");
-        assert_eq!(list(&folder).expect("listed").len(), 2);
-        assert_eq!(restore(&removed).expect("restored"), renamed);
-        let copy = duplicate(&renamed).expect("copied");
-        assert_eq!(load_material(&copy).expect("whole").value.name, "Alpha copy");
-        remove(&renamed).expect("removed");
-        assert_eq!(list(&folder).expect("listed").len(), 3);
-        assert!(remove(&renamed).is_err() && rename(&renamed, "Beta").is_err());
-        // One with the name of the folder of all.
-        material.name = "Materials".to_owned();
-        let path = add(&folder, &material).expect("added");
-        rename(&path, "Alpha 2").expect("renamed");
-        assert_eq!(list(&folder).expect("listed").len(), 4);
-    }
-
-    /// A material with images is a folder of its own, which holds all that it needs and comes back whole.
-    #[test]
-    fn materials_with_images_are_folders() {
-        use crate::scene::texture::{TextureTarget, UserTexture};
-
-        let place = tempfile::tempdir().expect("a temporary folder");
-        let folder = place.path().join("materials");
-        let images = [place.path().join("a/wood.png"), place.path().join("b/wood.png")];
-        let mut material = PRESETS[0].clone();
-        material.name = "Oak floor".to_owned();
-        let targets = [TextureTarget::BaseColor, TextureTarget::Roughness, TextureTarget::Coat];
-        let files = [images[0].clone(), images[1].clone(), place.path().join("gone.png")];
-        for (number, image) in images.iter().enumerate() {
-            fs::create_dir_all(image.parent().expect("a folder")).expect("made");
-            fs::write(image, [number as u8]).expect("written");
-        }
-        for (target, file) in std::iter::zip(targets, files) {
-            material.put_texture(
-                target,
-                UserTexture {
-                    file,
-                    ..UserTexture::default()
-                },
-            );
-        }
-        let path = add(&folder, &material).expect("added");
-        assert_eq!(path, folder.join("oak-floor.material/oak-floor.json"));
-        // Nothing of it lies elsewhere but what was gone before.
-        fs::remove_dir_all(place.path().join("a")).expect("removed");
-        let load = |path: &Path| load_material(path).expect("a material").value;
-        let image = |material: &MaterialSettings, target: usize| {
-            let texture = material.user_textures.get(targets[target]).expect("it has one");
-            fs::read(&texture.file).ok()
-        };
-        let has_all = |path: &Path| [0, 1, 2].map(|target| image(&load(path), target));
-        let whole = [Some(vec![0]), Some(vec![1]), None];
-        assert_eq!(has_all(&path), whole);
-        assert!(
-            !fs::read_to_string(&path).expect("text").contains("/b/"),
-            "by a name beside it"
-        );
-        fs::write(path.with_file_name("notes.txt"), "mine").expect("written");
-        let renamed = rename(&path, "Floor").expect("renamed");
-        assert!(
-            renamed.with_file_name("notes.txt").is_file(),
-            "what else is there moves along"
-        );
-        assert_eq!(renamed, folder.join("floor.material/floor.json"));
-        assert_eq!(has_all(&renamed), whole);
-        let copy = duplicate(&renamed).expect("copied");
-        assert_eq!(has_all(&copy), whole);
-        let removed = remove(&renamed).expect("removed");
-        let names = |folder: &Path| {
-            list(folder)
-                .expect("listed")
-                .iter()
-                .map(Entry::name)
-                .collect::<Vec<_>>()
-        };
-        assert_eq!(names(&folder), ["Floor copy"]);
-        assert_eq!(restore(&removed).expect("restored"), renamed);
-        assert_eq!(has_all(&renamed), whole);
-        // Beside one that took its name meanwhile.
-        let removed = remove(&renamed).expect("removed");
-        add(&folder, &load(&copy))
-            .and_then(|path| rename(&path, "Floor"))
-            .expect("added");
-        let restored = restore(&removed).expect("restored");
-        assert_eq!(restored, folder.join("floor 2.material/floor 2.json"));
-        assert_eq!(has_all(&restored), whole);
-        assert_eq!(names(&folder), ["Floor", "Floor", "Floor copy"]);
-    }
-
-    #[test]
-    fn a_folder_that_cannot_be_written_is_an_error() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let file = folder.path().join("file");
-        fs::write(&file, "no folder").expect("a temporary file");
-        let error = add(&file.join("materials"), &PRESETS[0]).expect_err("a file is no folder");
-        assert!(error.to_string().contains("permissions"), "{error}");
-    }
 }

@@ -15,9 +15,6 @@ const SIZES: [usize; 2] = [129, 65536];
 const REMEMBERED: usize = 4;
 
 /// The table in a file.
-///
-/// # Errors
-/// What is wrong with the file, and in which line.
 pub fn load(path: &Path) -> Result<Lut, FileError> {
     let bytes = file::read(path)?;
     parse(&String::from_utf8_lossy(&bytes))
@@ -80,33 +77,4 @@ fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
 pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
     static TABLES: Remembered<Lut> = Remembered::new(REMEMBERED);
     TABLES.get(path, load, "the image is shown without it")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tables_are_read_as_programs_write_them() {
-        let curve = "# by hand\n\nLUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 2\n 0 0 0\n1 1\t1\r\n";
-        let lut = parse(curve).expect("a table");
-        assert!(lut.is_one_dimensional && lut.domain[1] == [1.0, 1.0, 2.0]);
-        let cube = format!(
-            "\u{feff}TITLE \"a\"\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0.0 4.0\n{}",
-            "0.5 0.5 0.5\n".repeat(8)
-        );
-        assert_eq!(parse(&cube).expect("a cube").domain, [[0.0; 3], [4.0; 3]]);
-        for (text, words) in [
-            ("", "does not say its size"),
-            ("LUT_3D_SIZE 2\n0 0 0\n", "1 of 8 entries"),
-            ("LUT_3D_SIZE 999\n", "line 1"),
-            ("LUT_1D_SIZE 2\n0 0\n", "line 2"),
-            ("LUT_1D_SIZE 2\n0 0 nan\n", "line 2"),
-            ("LUT_1D_SIZE 2\nDOMAIN_MAX 0 0 0\n0 0 0\n0 0 0\n", "domain is empty"),
-            ("LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n", "two tables"),
-        ] {
-            let error = parse(text).expect_err(text);
-            assert!(error.contains(words), "{text}: {error}");
-        }
-    }
 }

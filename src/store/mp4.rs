@@ -37,9 +37,6 @@ pub(super) struct Mp4 {
 
 impl Mp4 {
     /// A video of so many columns, rows, and frames a second.
-    ///
-    /// # Errors
-    /// Why it can't be.
     pub(super) fn new(size: [u32; 2], fps: f64) -> Result<Self, String> {
         let [width, height] = even(size);
         if width < SIDE_MIN || height < SIDE_MIN {
@@ -67,9 +64,6 @@ impl Mp4 {
     }
 
     /// Adds a frame of that size.
-    ///
-    /// # Errors
-    /// Why it can't be encoded.
     pub(super) fn add(&mut self, size: [u32; 2], rgba: &[u8]) -> Result<(), String> {
         let [width, height] = even(size).map(|side| side as usize);
         let rows = rgba.chunks_exact(4 * size[0] as usize).take(height);
@@ -102,9 +96,6 @@ impl Mp4 {
     }
 
     /// The file.
-    ///
-    /// # Errors
-    /// Why there is none.
     pub(super) fn bytes(self) -> Result<Vec<u8>, String> {
         let words = |error: shiguredo_mp4::mux::MuxError| error.to_string();
         let mut muxer = Mp4FileMuxer::with_options(Mp4FileMuxerOptions {

@@ -8,18 +8,13 @@ use crate::document::{Document, MaterialSettings};
 /// A file that holds what is edited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opened {
-    /// A material.
     Material(Box<Loaded<MaterialSettings>>),
-    /// A whole document.
     Document(Box<Loaded<Document>>),
     /// An image with the document that it shows.
     Picture(Box<Loaded<Document>>),
 }
 
 /// Opens a material, a project file or an image with a document inside, whichever it is.
-///
-/// # Errors
-/// What is wrong with the file.
 pub fn open(path: &Path) -> Result<Opened, FileError> {
     if picture::is_png(path) {
         let text = picture::document_text_in(path)?;

@@ -41,9 +41,6 @@ pub(super) fn leads_away(path: &Path, named: &Path) -> bool {
 
 /// What was read from a file, with warnings of what it names that was allowed. A file from elsewhere that names what lies
 /// outside of its surroundings is refused; what was saved by this user is trusted.
-///
-/// # Errors
-/// [`FileError::Outside`].
 pub(super) fn within_reach<T>(
     path: &Path,
     bytes: &[u8],
@@ -91,27 +88,4 @@ fn read_key() -> Option<[u8; 16]> {
         let _ = file.persist_noclobber(&path);
         read()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_mark_holds_for_its_names_alone() {
-        let path = Path::new("/home/ann/p/a.json");
-        let away = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
-        assert_eq!(mark(path, &away(&["/home/ann/p/x.png"])), None);
-        if key().is_none() {
-            return;
-        }
-        let known = mark(path, &away(&["/far/x.png", "/far/y.png", "/home/ann/p/z.png"]));
-        assert!(known.is_some());
-        assert_eq!(
-            known,
-            mark(Path::new("/moved/b.json"), &away(&["/far/y.png", "/far/x.png"]))
-        );
-        assert_ne!(known, mark(path, &away(&["/far/x.png", "/etc/passwd"])));
-        assert_ne!(known, mark(path, &away(&["/far/x.png"])));
-    }
 }

@@ -128,9 +128,6 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
 
 /// The material in a file's contents that may come from elsewhere: what lies outside of its surroundings is only named by the
 /// user's own.
-///
-/// # Errors
-/// As [`parse_material`], and [`FileError::Outside`].
 pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
     own::within_reach(path, bytes, parse_material(path, bytes)?, named)
 }
@@ -145,17 +142,11 @@ fn named(material: &MaterialSettings) -> Vec<PathBuf> {
 }
 
 /// The material in a file.
-///
-/// # Errors
-/// What is wrong with the file.
 pub fn load_material(path: &Path) -> Result<Loaded<MaterialSettings>, FileError> {
     parse_material(path, &file::read(path)?)
 }
 
 /// The material in a file's contents. `path` is only named in messages.
-///
-/// # Errors
-/// What is wrong with the contents.
 pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
     let mut object = file::object(path, bytes)?;
     let version = file::version(path, &object, MARK)?.unwrap_or(0);
@@ -249,7 +240,6 @@ pub fn material_text(path: &Path, material: &MaterialSettings) -> String {
 /// What makes an object no material.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MaterialError {
-    /// A parameter's value.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A texture of the user's own.

@@ -28,18 +28,12 @@ const MATERIAL_BYTES: u64 = 1 << 10;
 pub const MARK: &str = "glossmith-document";
 
 /// The document in a project file.
-///
-/// # Errors
-/// What is wrong with the file.
 pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
     parse_document(path, &file::read(path)?)
 }
 
 /// The document in a project's contents that may come from elsewhere: what lies outside of its surroundings is only named by
 /// the user's own.
-///
-/// # Errors
-/// As [`parse_document`], and [`FileError::Outside`].
 pub(super) fn open_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
     own::within_reach(path, bytes, parse_document(path, bytes)?, named)
 }
@@ -55,9 +49,6 @@ fn named(document: &Document) -> Vec<PathBuf> {
 }
 
 /// The document in a project file's contents. Relative file names are relative to `path`'s folder.
-///
-/// # Errors
-/// What is wrong with the contents.
 pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
     let mut object = file::object(path, bytes)?;
     let pictures = pictures_of_slots(&mut object);
@@ -131,9 +122,6 @@ pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> 
 }
 
 /// The contents of a document's file at `path`, with the mark of the user's own where it names files elsewhere.
-///
-/// # Errors
-/// As [`document_text`], and for a file that would be too large to be opened again.
 pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
     let count = document.materials.len();
     let too_large = || FileError::Content {
@@ -158,9 +146,6 @@ pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
 }
 
 /// The contents of a document's file at `path`, the same for every user who saves it.
-///
-/// # Errors
-/// [`FileError::Content`] for what JSON cannot hold.
 pub fn document_text(path: &Path, document: &Document) -> Result<String, FileError> {
     Ok(file::text(&document_object(path, document)?))
 }

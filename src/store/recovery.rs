@@ -30,14 +30,12 @@ const REPORTS: usize = 8;
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
-    /// Locked.
     _lock: File,
 }
 
 /// What a panic wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Report {
-    /// The text file.
     pub path: PathBuf,
     /// What the latest panic in it said.
     pub message: String,
@@ -58,9 +56,6 @@ pub struct Recovered {
 
 impl RecoveryFile {
     /// A new file in the folder, which is made where it is not there; nothing is written to it yet.
-    ///
-    /// # Errors
-    /// [`FileError::Write`] where the folder can't be written or locked.
     pub fn open(folder: &Path) -> Result<Self, FileError> {
         let _guard = guard(folder)?;
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
@@ -79,7 +74,6 @@ impl RecoveryFile {
         }
     }
 
-    /// The file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -109,9 +103,6 @@ impl RecoveryFile {
     }
 
     /// What is in the file.
-    ///
-    /// # Errors
-    /// What is wrong with the file.
     pub fn load(&self) -> Result<Recovered, FileError> {
         let at = fs::metadata(&self.path).and_then(|metadata| metadata.modified());
         let loaded = project::load_document(&self.path)?;
@@ -126,9 +117,6 @@ impl RecoveryFile {
     }
 
     /// Removes the saved document: it has been saved, or is not wanted any more. The slot can go on being used.
-    ///
-    /// # Errors
-    /// [`FileError::Write`] where the system doesn't let it.
     pub fn clear(&self) -> Result<(), FileError> {
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => Err(FileError::writing(&self.path)(error)),
@@ -137,9 +125,6 @@ impl RecoveryFile {
     }
 
     /// Removes the file and all that belongs to it.
-    ///
-    /// # Errors
-    /// [`FileError::Write`] where the system doesn't let it.
     pub fn remove(self) -> Result<(), FileError> {
         let folder = self.path.parent().unwrap_or(Path::new("."));
         let _guard = guard(folder)?;
@@ -150,9 +135,6 @@ impl RecoveryFile {
 }
 
 /// Takes over what crashes left in the folder, the newest first; what another window has taken stays with that one.
-///
-/// # Errors
-/// [`FileError::Write`] where the folder can't be read, written or locked.
 pub fn leftovers(folder: &Path) -> Result<Vec<RecoveryFile>, FileError> {
     let _guard = guard(folder)?;
     let mut found = Vec::new();
@@ -236,69 +218,4 @@ fn guard(folder: &Path) -> Result<File, FileError> {
         Ok(file)
     };
     lock().map_err(FileError::writing(&path))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn edited() -> Document {
-        Document {
-            ground: true,
-            ..Document::default()
-        }
-    }
-
-    #[test]
-    fn what_a_crash_left_comes_back_whole_and_once() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let slot = RecoveryFile::open(folder.path()).expect("a slot");
-        slot.save(&edited(), Some(Path::new("projects/pot.json")))
-            .expect("saved");
-        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "its window lives");
-        drop(slot);
-        let found = leftovers(folder.path()).expect("listed");
-        assert_eq!(found.len(), 1);
-        let recovered = found[0].load().expect("whole");
-        assert_eq!(recovered.document, edited());
-        assert_eq!(recovered.project.as_deref(), Some(Path::new("projects/pot.json")));
-        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "it is taken");
-        for slot in found {
-            slot.remove().expect("removed");
-        }
-        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the guard");
-    }
-
-    #[test]
-    fn two_windows_do_not_touch_each_other() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let [a, b] = [0, 1].map(|_| RecoveryFile::open(folder.path()).expect("a slot"));
-        assert_ne!(a.path(), b.path());
-        a.save(&edited(), None).expect("saved");
-        b.save(&Document::default(), None).expect("saved");
-        b.remove().expect("removed");
-        assert_eq!(a.load().expect("still there").document, edited());
-    }
-
-    #[test]
-    fn a_window_with_nothing_unsaved_leaves_nothing_to_offer() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let slot = RecoveryFile::open(folder.path()).expect("a slot");
-        slot.save(&edited(), None).expect("saved");
-        slot.clear().expect("removed");
-        slot.clear().expect("twice is no error");
-        drop(slot);
-        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0);
-        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the guard");
-    }
-
-    #[test]
-    fn a_folder_that_cannot_be_made_is_an_error() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let file = folder.path().join("file");
-        fs::write(&file, "no folder").expect("a temporary file");
-        let error = RecoveryFile::open(&file.join("recovery")).expect_err("a file is no folder");
-        assert!(error.to_string().contains("recovery"), "{error}");
-        assert!(leftovers(&file.join("recovery")).is_err());
-    }
 }

@@ -23,9 +23,6 @@ pub fn save_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 }
 
 /// The same with the contents that `write` writes.
-///
-/// # Errors
-/// As [`save_atomically`].
 pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), FileError> {
     let target = target_of(path);
     let saved = check_target(&target).and_then(|()| Growing::beside(&target));
@@ -40,9 +37,6 @@ pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Res
 }
 
 /// Whether a file can be replaced, asked before the work that fills it.
-///
-/// # Errors
-/// As [`save_atomically`].
 pub fn check_saving(path: &Path) -> Result<(), FileError> {
     let target = target_of(path);
     let growing = check_target(&target).and_then(|()| Growing::beside(&target));
@@ -131,56 +125,5 @@ impl Drop for Growing {
     fn drop(&mut self) {
         // Gone where it has taken the other's place.
         let _ = fs::remove_file(&self.path);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("a folder").flatten();
-        let mut names: Vec<String> = entries
-            .map(|entry| entry.file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn what_fails_leaves_the_old_contents_and_nothing_else() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("a.txt");
-        save_atomically(&path, b"old").expect("saved");
-        let failed = save_by(&path, |file| {
-            file.write_all(b"half of the n")?;
-            Err(io::Error::other("no more room"))
-        });
-        assert!(failed.is_err_and(|error| error.to_string().contains("no more room")));
-        assert_eq!(fs::read(&path).expect("the file"), b"old");
-        check_saving(&path).expect("it can be saved");
-        assert_eq!(names(folder.path()), ["a.txt"]);
-        save_by(&path, |file| file.write_all(b"new")).expect("saved");
-        assert_eq!(fs::read(&path).expect("the file"), b"new");
-        assert_eq!(names(folder.path()), ["a.txt"]);
-        assert!(check_saving(&folder.path().join("none/a.txt")).is_err());
-    }
-
-    #[test]
-    fn leftovers_go_and_what_is_being_written_stays() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let path = folder.path().join("a.txt");
-        let killed = format!(".a.txt.1-0{ENDING}");
-        fs::write(folder.path().join(&killed), b"half").expect("written");
-        save_by(&path, |file| {
-            file.write_all(b"whole")?;
-            assert_eq!(names(folder.path()).len(), 2);
-            remove_leftovers(folder.path());
-            assert!(!folder.path().join(&killed).exists());
-            Ok(())
-        })
-        .expect("saved");
-        assert_eq!(fs::read(&path).expect("the file"), b"whole");
-        assert_eq!(names(folder.path()), ["a.txt"]);
     }
 }

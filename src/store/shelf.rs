@@ -20,9 +20,7 @@ const ENVIRONMENT_BYTES_MIN: u64 = 1 << 12;
 /// A file that can be used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
-    /// The file.
     pub path: PathBuf,
-    /// What it holds.
     pub kind: ItemKind,
 }
 
@@ -38,7 +36,6 @@ pub enum ItemKind {
 /// What a folder holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// The folder.
     pub folder: PathBuf,
     /// In the order of their paths; or why there are none.
     pub items: Result<Vec<Item>, String>,
@@ -150,55 +147,4 @@ fn material(path: &Path) -> Option<ItemKind> {
             .map_err(|error| error.to_string())
     };
     Some(ItemKind::Material(read.map(Box::new)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::store::{PRESETS, save_material};
-
-    #[test]
-    fn folders_show_what_can_be_used_and_follow_changes() {
-        let place = tempfile::tempdir().expect("a folder");
-        let deep = place.path().join("metals/old");
-        fs::create_dir_all(&deep).expect("made");
-        let path = deep.join("one.json");
-        save_material(&path, &PRESETS[0]).expect("saved");
-        fs::write(place.path().join("broken.json"), r#"{"glossmith": 1, "material": 7}"#).expect("written");
-        fs::write(place.path().join("package.json"), "{}").expect("written");
-        fs::write(place.path().join("sky.hdr"), vec![0; 1 << 15]).expect("written");
-        fs::write(place.path().join("icon.hdr"), "small").expect("written");
-        let mut shelf = Shelf::default();
-        let folders = [place.path().to_owned(), place.path().join("gone")];
-        let names = |contents: &Contents| -> Vec<String> {
-            let items = contents.items.as_ref().expect("listed");
-            let name = |item: &Item| item.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            items.iter().map(name).collect()
-        };
-        let listed = shelf.list(&folders);
-        assert_eq!(names(&listed[0]), ["broken.json", "one.json", "sky.hdr"]);
-        let items = listed[0].items.as_ref().expect("listed");
-        assert!(matches!(&items[0].kind, ItemKind::Material(Err(why)) if why.contains("broken.json")));
-        assert_eq!(items[1].kind, ItemKind::Material(Ok(Box::new(PRESETS[0].clone()))));
-        assert_eq!(items[2].kind, ItemKind::Environment);
-        let why = listed[1].items.as_ref().expect_err("not there");
-        assert!(why.contains("gone") && why.contains("stop watching"), "{why}");
-        save_material(&path, &PRESETS[1]).expect("saved");
-        fs::remove_file(place.path().join("sky.hdr")).expect("removed");
-        let listed = shelf.list(&folders);
-        assert_eq!(names(&listed[0]), ["broken.json", "one.json"]);
-        let items = listed[0].items.as_ref().expect("listed");
-        assert_eq!(items[1].kind, ItemKind::Material(Ok(Box::new(PRESETS[1].clone()))));
-    }
-
-    #[test]
-    fn large_folders_end_somewhere() {
-        let place = tempfile::tempdir().expect("a folder");
-        for number in 0..FILES_MAX + 5 {
-            fs::write(place.path().join(format!("{number}.mtlx")), "").expect("written");
-        }
-        let listed = Shelf::default().list(&[place.path().to_owned()]);
-        assert!(listed[0].has_more);
-        assert_eq!(listed[0].items.as_ref().expect("listed").len(), FILES_MAX);
-    }
 }

@@ -17,11 +17,9 @@ pub const SIDE_MAX: u32 = 256;
 /// A pinned state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pinned {
-    /// Its file.
     pub path: PathBuf,
     /// What it is called: the file's name.
     pub name: String,
-    /// The document.
     pub document: Document,
     /// Columns and rows of its image.
     pub size: [u32; 2],
@@ -31,9 +29,6 @@ pub struct Pinned {
 
 /// The pinned states of a folder, the newest first, and what is wrong with files that cannot be read; none where it is
 /// not there.
-///
-/// # Errors
-/// [`FileError::Read`] where the folder can't be read.
 pub fn list(folder: &Path) -> Result<(Vec<Pinned>, Vec<String>), FileError> {
     let files = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((Vec::new(), Vec::new())),
@@ -76,9 +71,6 @@ fn read(path: &Path) -> Result<Pinned, FileError> {
 
 /// Pins a document with its image (8 bits of red, green, blue and alpha a pixel), which is made smaller; its file is
 /// named after its first material. The folder is made where it is not there.
-///
-/// # Errors
-/// [`FileError::Write`], or what is wrong with the image's size.
 pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: &[u8]) -> Result<PathBuf, FileError> {
     fs::create_dir_all(folder).map_err(FileError::writing(folder))?;
     let first = document.materials.first().map_or("", |material| material.name.as_str());
@@ -125,59 +117,5 @@ fn file_stem(name: &str) -> String {
     match name.trim_matches([' ', '.']) {
         "" => "Snapshot".to_owned(),
         name => name.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::store::PRESETS;
-    use crate::store::library::{remove, restore};
-
-    #[test]
-    fn states_are_pinned_listed_removed_and_restored() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let folder = folder.path().join("snapshots");
-        assert_eq!(list(&folder).expect("nothing is no error"), (Vec::new(), Vec::new()));
-        let mut document = Document {
-            materials: vec![PRESETS[3].clone()],
-            ..Document::default()
-        };
-        document.materials[0].name = "Odd/name".to_owned();
-        document.camera.yaw_deg = 12.0;
-        let pixels = vec![200; 4 * 600 * 300];
-        let paths = [0, 1].map(|_| add(&folder, &document, [600, 300], &pixels).expect("pinned"));
-        assert_eq!(paths[0].file_name(), Some("Odd name.png".as_ref()));
-        assert_eq!(paths[1].file_name(), Some("Odd name 2.png".as_ref()));
-        fs::write(folder.join("broken.png"), "no image").expect("a temporary file");
-        let (pinned, errors) = list(&folder).expect("listed");
-        assert!(errors.len() == 1 && errors[0].contains("broken.png"), "{errors:?}");
-        assert_eq!(pinned.len(), 2);
-        assert!(
-            pinned
-                .iter()
-                .all(|pinned| pinned.document == document && pinned.size == [256, 128])
-        );
-        let removed = remove(&paths[0]).expect("removed");
-        assert_eq!(list(&folder).expect("listed").0.len(), 1);
-        assert_eq!(restore(&removed).expect("restored"), paths[0]);
-        assert_eq!(list(&folder).expect("listed").0.len(), 2);
-        let renamed = rename(&paths[0], "../Low, red").expect("renamed");
-        assert_eq!(renamed.file_name(), Some("Low, red.png".as_ref()));
-        let both = list(&folder).expect("listed").0;
-        let names: Vec<&str> = both.iter().map(|pinned| pinned.name.as_str()).collect();
-        assert!(
-            names.contains(&"Low, red") && names.contains(&"Odd name 2"),
-            "{names:?}"
-        );
-        assert_eq!(rename(&renamed, "Low, red").expect("the same"), renamed);
-        let beside = rename(&paths[1], "Low, red").expect("renamed");
-        assert_eq!(
-            beside.file_name(),
-            Some("Low, red 2.png".as_ref()),
-            "no file is replaced"
-        );
-        assert!(rename(&paths[0], "gone").is_err());
-        assert!(add(&folder, &document, [600, 301], &pixels).is_err());
     }
 }

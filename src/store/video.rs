@@ -16,7 +16,6 @@ const OPAQUE_FROM: u8 = 128;
 
 /// Why a video can't be written.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum VideoError {
     /// The extension is not that of a format that can be written.
     #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
@@ -75,9 +74,6 @@ enum Frames {
 
 impl Video {
     /// A video of `fps` frames a second, in [`FPS`], in the format of the file's ending.
-    ///
-    /// # Errors
-    /// [`VideoError`], also for a size that the format does not take.
     pub fn begin(path: &Path, size: [u32; 2], fps: f64) -> Result<Self, VideoError> {
         let fps = fps.clamp(*FPS.start(), *FPS.end());
         let frames = match VideoFormat::of(path)? {
@@ -92,9 +88,6 @@ impl Video {
     }
 
     /// Adds a frame: red, green, blue, alpha of 8 bits as the screen shows them, row by row from the top.
-    ///
-    /// # Errors
-    /// [`VideoError::Encoder`].
     pub fn add(&mut self, rgba: &[u8]) -> Result<(), VideoError> {
         let added = match &mut self.frames {
             Frames::Mp4(mp4) => mp4.add(self.size, rgba),
@@ -167,121 +160,5 @@ impl Gif {
         frame.dispose = gif::DisposalMethod::Background;
         self.count += 1;
         self.encoder.write_frame(&frame).map_err(|error| error.to_string())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SIZE: [u32; 2] = [48, 33];
-
-    /// A frame of one colour with a bright square that moves.
-    fn frame(number: u32) -> Vec<u8> {
-        let [width, height] = SIZE;
-        let pixel = |index: u32| match (index % width / 8, index / width / 8) {
-            (x, 1) if x == number => [250, 240, 230, 255],
-            _ => [180, 60, 30, 255],
-        };
-        (0..width * height).flat_map(pixel).collect()
-    }
-
-    fn written(path: &Path, fps: f64) {
-        let mut video = Video::begin(path, SIZE, fps).expect("a video");
-        (0..4).for_each(|number| video.add(&frame(number)).expect("a frame"));
-        video.finish().expect("written");
-    }
-
-    /// Mean difference of two images' channels.
-    fn difference(a: &[u8], b: &[u8]) -> f64 {
-        assert_eq!(a.len(), b.len());
-        let of_bytes = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)));
-        of_bytes.sum::<f64>() / a.len() as f64
-    }
-
-    #[cfg(feature = "video")]
-    #[test]
-    fn an_mp4_is_played_back_frame_by_frame() {
-        use openh264::decoder::Decoder;
-        use openh264::formats::YUVSource as _;
-        use shiguredo_mp4::boxes::SampleEntry;
-        use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("turn.mp4");
-        written(&path, 25.0);
-        let bytes = std::fs::read(&path).expect("the file");
-        let mut demuxer = Mp4FileDemuxer::new();
-        demuxer.handle_input(Input {
-            position: 0,
-            data: &bytes,
-        });
-        let seconds = demuxer.tracks().expect("tracks")[0].duration as f64 / 25e3;
-        assert!((seconds - 0.16).abs() < 1e-9, "{seconds} s");
-        let mut decoder = Decoder::new().expect("a decoder");
-        let mut number = 0;
-        while let Some(sample) = demuxer.next_sample().expect("a sample") {
-            let mut stream = Vec::new();
-            let annex_b = |unit: &[u8], stream: &mut Vec<u8>| {
-                stream.extend([0, 0, 0, 1]);
-                stream.extend(unit);
-            };
-            if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
-                let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
-                sets.for_each(|set| annex_b(set, &mut stream));
-            }
-            let mut data = &bytes[sample.data_offset as usize..][..sample.data_size];
-            while let Some((length, rest)) = data.split_first_chunk::<4>() {
-                let (unit, rest) = rest.split_at(u32::from_be_bytes(*length) as usize);
-                annex_b(unit, &mut stream);
-                data = rest;
-            }
-            let picture = decoder.decode(&stream).expect("it decodes").expect("a picture");
-            assert_eq!(picture.dimensions(), (48, 32), "the odd row is left out");
-            let mut rgb = vec![0; 3 * 48 * 32];
-            picture.write_rgb8(&mut rgb);
-            let expected = frame(number);
-            let expected: Vec<u8> = expected[..4 * 48 * 32]
-                .chunks(4)
-                .flat_map(|p| [p[0], p[1], p[2]])
-                .collect();
-            let error = difference(&rgb, &expected);
-            assert!(error < 4.0, "frame {number} is off by {error} codes");
-            number += 1;
-        }
-        assert_eq!(number, 4);
-    }
-
-    #[test]
-    fn a_gif_is_read_back_frame_by_frame_and_takes_its_time() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("turn.GIF");
-        written(&path, 30.0);
-        let mut options = gif::DecodeOptions::new();
-        options.set_color_output(gif::ColorOutput::RGBA);
-        let mut decoder = options
-            .read_info(std::fs::File::open(&path).expect("the file"))
-            .expect("a GIF");
-        let mut delays = Vec::new();
-        while let Some(read) = decoder.read_next_frame().expect("a frame") {
-            let error = difference(&read.buffer, &frame(delays.len() as u32));
-            assert!(error < 1.0, "frame {} is off by {error} codes", delays.len());
-            delays.push(read.delay);
-        }
-        assert_eq!(delays, [3, 4, 3, 3], "hundredths of a second");
-    }
-
-    #[test]
-    fn what_no_video_can_be_is_told() {
-        let wrong = Video::begin(Path::new("turn.avi"), SIZE, 24.0)
-            .err()
-            .expect("no format");
-        assert!(wrong.to_string().contains(".mp4 or .gif"), "{wrong}");
-        let huge = Video::begin(Path::new("turn.gif"), [70_000, 2], 24.0)
-            .err()
-            .expect("too wide");
-        assert!(
-            huge.to_string().starts_with("turn.gif: no video of 70000 × 2 pixels"),
-            "{huge}"
-        );
     }
 }

@@ -53,7 +53,6 @@ pub struct Check {
     pub name: String,
     /// Measure of the value: `p`, `error`, `sigma`, `count`.
     pub measure: &'static str,
-    /// Measured value.
     pub value: f64,
     /// Limit of the value.
     pub limit: f64,
@@ -222,10 +221,6 @@ pub fn chi_square(
 
 /// Runs the checks; `progress` receives the name of the group and the share of all that is done, which is estimated. `None`
 /// if `stop` was set.
-///
-/// # Errors
-///
-/// If the engine cannot be opened or fails.
 pub fn run(
     options: CheckOptions,
     stop: &AtomicBool,

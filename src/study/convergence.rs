@@ -58,7 +58,6 @@ pub struct ConvergenceReport {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Stop reason.
     pub stopped_by: Option<StopReason>,
     /// The errors seen, oldest first.
     pub points: Vec<ConvergencePoint>,
@@ -72,10 +71,6 @@ pub struct ConvergenceReport {
 }
 
 /// Renders a document until its own target is reached, and records its error.
-///
-/// # Errors
-///
-/// Errors of rendering; [`StudyError::Stopped`].
 pub fn convergence(
     document: &Document,
     engine: EngineChoice,
@@ -158,24 +153,4 @@ fn slope(points: &[ConvergencePoint]) -> Option<f64> {
     let covariance: f64 = places.iter().map(|place| (place[0] - x) * (place[1] - y)).sum();
     let variance: f64 = places.iter().map(|place| (place[0] - x).powi(2)).sum();
     (variance > 0.0).then(|| covariance / variance)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_slope_of_a_power_is_its_exponent() {
-        let point = |seconds: f64| ConvergencePoint {
-            seconds,
-            samples_per_pixel: 1.0,
-            noise: 3.0 * seconds.powf(-0.5),
-            noise_low: 0.0,
-            noise_high: 0.0,
-            noise_from_spread: 0.0,
-        };
-        let found = slope(&[1.0, 2.0, 7.0, 30.0].map(point)).expect("four points");
-        assert!((found + 0.5).abs() < 1e-9, "{found}");
-        assert_eq!(slope(&[point(1.0)]), None);
-    }
 }

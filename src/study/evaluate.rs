@@ -54,9 +54,6 @@ pub struct Evaluator {
 
 impl Evaluator {
     /// Opens the requested engine for a material, without its textures. f64 is computed on the CPU.
-    ///
-    /// # Errors
-    /// If a GPU was requested and fails.
     pub fn open(material: &MaterialSettings, engine: EngineChoice, precision: Precision) -> Result<Self, GpuError> {
         let plain = MaterialSettings {
             textures: Default::default(),
@@ -81,9 +78,6 @@ impl Evaluator {
     }
 
     /// Values and densities for pairs of unit directions to the viewer and to the light.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn evaluate(&self, pairs: &[[Vec3<f32>; 2]]) -> Result<Vec<Evaluation>, GpuError> {
         let question = |&[wo, wi]: &[Vec3<f32>; 2]| MaterialQuestion {
             view: self.view(wo),
@@ -111,9 +105,6 @@ impl Evaluator {
 
     /// Albedo for a view in the plane of normal and tangent, from about `count` samples; a negative cosine is a view from
     /// below.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn albedo(&self, cosine: f64, count: u32, seed: u32) -> Result<Albedo, GpuError> {
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
         let view = self.view(Vec3::from_f64([sine, 0.0, cosine]));

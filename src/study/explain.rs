@@ -26,9 +26,7 @@ pub struct PathAccount {
     pub sample: u32,
     /// Seed of the render.
     pub seed: u32,
-    /// Random sequence.
     pub sequence: Sequence,
-    /// Light strategy.
     pub strategy: Strategy,
     /// Bounces that a path may have.
     pub bounces: u32,

@@ -35,7 +35,6 @@ const KERNEL: &str = "kernel";
 /// Options of a ledger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LedgerOptions {
-    /// Engine to measure.
     pub engine: EngineChoice,
     /// Turns of each pair.
     pub turns: usize,
@@ -77,11 +76,8 @@ pub enum EntryKind {
 pub struct Entry {
     /// Name of the effect or setting.
     pub name: &'static str,
-    /// The active setting.
     pub label: String,
-    /// The alternative.
     pub instead: String,
-    /// Kind of subject.
     pub kind: EntryKind,
     /// Milliseconds of one sample of every pixel, as it is.
     pub ms_with: f64,
@@ -99,7 +95,6 @@ pub struct Entry {
     pub picture_change: Distance,
     /// True if it cannot change the image, which then is not measured.
     pub is_picture_kept: bool,
-    /// Summary in words.
     pub words: String,
 }
 
@@ -160,10 +155,6 @@ struct Rival {
 }
 
 /// Measures a ledger. `watch` receives the progress and may stop it.
-///
-/// # Errors
-///
-/// Errors of rendering; [`StudyError::Stopped`].
 pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
     let mut with = Session::open(options.engine)?;
     let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
@@ -459,106 +450,5 @@ fn digits(value: f64) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
         text
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn measured() -> Entry {
-        Entry {
-            name: "fresnel",
-            label: "Exact Fresnel".to_owned(),
-            instead: "Schlick's".to_owned(),
-            kind: EntryKind::Setting,
-            ms_with: 10.2,
-            ms_without: 10.0,
-            ms: 0.2,
-            ms_quartiles: [0.1, 0.3],
-            share_of_frame: 0.0196,
-            noise_share: 0.0,
-            picture_change: Distance {
-                value: 0.003,
-                low: 0.002,
-                high: 0.004,
-            },
-            is_picture_kept: false,
-            words: String::new(),
-        }
-    }
-
-    #[test]
-    fn lines_are_found_and_what_cannot_be_told_is_not() {
-        let kernel = Entry {
-            name: KERNEL,
-            ms_with: 10.0,
-            ms_without: 18.0,
-            ms: -8.0,
-            ms_quartiles: [-8.5, -7.5],
-            ..measured()
-        };
-        let ground = Entry {
-            name: "ground",
-            kind: EntryKind::Effect,
-            ..measured()
-        };
-        let mut ledger = Ledger {
-            machine: Machine {
-                version: "",
-                engine: "cpu",
-                adapter: String::new(),
-                driver: String::new(),
-            },
-            width: 1,
-            height: 1,
-            ms_per_sample: 10.0,
-            entries: vec![ground, measured(), kernel],
-        };
-        assert_eq!(ledger.kernel_gain(), Some(1.8));
-        assert_eq!(
-            ledger.effect("ground").map(Entry::time_words).as_deref(),
-            Some("+2 % time")
-        );
-        assert_eq!(ledger.effect("fresnel"), None, "a setting of that name");
-        ledger.entries[2].ms_quartiles = [-1.0, 1.0];
-        assert_eq!(ledger.kernel_gain(), None);
-    }
-
-    #[test]
-    fn an_entry_is_told_in_plain_words() {
-        let text = words(&measured());
-        assert_eq!(
-            text,
-            "Exact Fresnel (instead of Schlick's): +2 % time, changes the image by 0.3 %"
-        );
-        let entry = Entry {
-            kind: EntryKind::Effect,
-            label: "Ground".to_owned(),
-            ms: -2.5,
-            ms_quartiles: [-2.6, -2.4],
-            noise_share: -0.8,
-            is_picture_kept: true,
-            ..measured()
-        };
-        assert_eq!(
-            words(&entry),
-            "Ground: −25 % time, removes 80 % of the noise, leaves the image as it is"
-        );
-        let entry = Entry {
-            ms_quartiles: [-0.1, 0.3],
-            noise_share: 4.1,
-            picture_change: Distance {
-                value: 0.001,
-                low: 0.0,
-                high: 0.0021,
-            },
-            ..measured()
-        };
-        assert_eq!(
-            words(&entry),
-            "Exact Fresnel (instead of Schlick's): no measurable cost, 5.1 × the noise, changes the \
-             image by less than 0.21 %"
-        );
     }
 }

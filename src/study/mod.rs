@@ -103,7 +103,6 @@ impl<'a, 'b> Steps<'a, 'b> {
 /// Machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Machine {
-    /// The program's version.
     pub version: &'static str,
     /// `gpu` or `cpu`.
     pub engine: &'static str,
@@ -149,7 +148,6 @@ fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// Quantile of values.
 fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -158,18 +156,5 @@ fn quantile(values: &[f64], share: f64) -> f64 {
     match (sorted.get(low), sorted.get(high)) {
         (Some(a), Some(b)) => a + (b - a) * place.fract(),
         _ => f64::NAN,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_lie_between_the_values() {
-        assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&[1.0, 2.0]), 1.5);
-        assert_eq!(quantile(&[0.0, 1.0, 2.0, 3.0, 4.0], 0.25), 1.0);
-        assert!(median(&[]).is_nan());
     }
 }

@@ -12,18 +12,12 @@ use crate::render::{EngineChoice, device_for_functions};
 
 /// Answers with the functions that the chosen engine renders with.
 pub enum Prober {
-    /// On the CPU.
     Cpu,
-    /// On the GPU.
     Gpu(Box<Probe>),
 }
 
 impl Prober {
     /// Opens the requested engine; `auto` uses the CPU without a hardware GPU.
-    ///
-    /// # Errors
-    ///
-    /// If a GPU was requested and fails.
     pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
         Ok(match device_for_functions(choice)? {
             Some(device) => Self::Gpu(Box::new(Probe::new(device)?)),
@@ -44,9 +38,6 @@ impl Prober {
     }
 
     /// The shares that boundaries reflect.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn fresnel(&self, questions: &[FresnelQuestion]) -> Result<Vec<f32>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_fresnel(questions)),
@@ -55,9 +46,6 @@ impl Prober {
     }
 
     /// The bits of pairs of random numbers.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn random(&self, questions: &[RandomQuestion]) -> Result<Vec<[u32; 2]>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_random(questions)),
@@ -66,9 +54,6 @@ impl Prober {
     }
 
     /// Materials' values, linear RGB.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn materials(
         &self,
         scene: &ProbeScene<'_>,
@@ -81,9 +66,6 @@ impl Prober {
     }
 
     /// Densities with which materials draw directions, per steradian.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn densities(&self, scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Result<Vec<f32>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_density(scene, questions)),
@@ -92,9 +74,6 @@ impl Prober {
     }
 
     /// Directions drawn from materials.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn draws(&self, scene: &ProbeScene<'_>, questions: &[DrawQuestion]) -> Result<Vec<DrawAnswer>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_draw::<f32>(scene, questions)),
@@ -103,10 +82,6 @@ impl Prober {
     }
 
     /// Hits of rays.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_ray(scene, questions)),

@@ -166,10 +166,6 @@ impl Lane {
 }
 
 /// Runs a race. `watch` receives the progress and may stop it.
-///
-/// # Errors
-///
-/// Errors of rendering; [`StudyError::Stopped`]; [`StudyError::Black`].
 pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
     let assets = Assets::default();
     let mut lanes = lanes(document, options, &assets)?;
@@ -431,17 +427,4 @@ fn front(places: &[[f64; 2]]) -> Vec<bool> {
         .iter()
         .map(|place| !places.iter().any(|other| is_better(other, place)))
         .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::front;
-
-    #[test]
-    fn only_what_nothing_else_betters_is_on_the_front() {
-        let places = [[1.0, 0.0], [0.5, 0.1], [2.0, 0.0], [0.6, 0.1], [0.1, 0.5]];
-        assert_eq!(front(&places), [true, true, false, false, true]);
-        // Equals do not better each other.
-        assert_eq!(front(&[[1.0, 1.0], [1.0, 1.0]]), [true, true]);
-    }
 }

@@ -153,8 +153,6 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     let run = place.run("batch b.toml --engine cpu");
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     place.refused(1, "batch none.toml", &["none.toml"]);
-    place.write("c.toml", b"materials = [\"gold\"]\n[common]\nsampels = 3\n");
-    place.refused(1, "batch c.toml", &["c.toml", "line 3", "--sampels"]);
     place.refused(1, "batch a.toml --pictures 2-3", &["--pictures 2-3", "2 only"]);
     place.refused(1, "batch a.toml --frame-range 2", &["a.toml", "frames"]);
     place.refused(2, "batch a.toml --slice 3/2", &["2/5"]);
@@ -260,4 +258,28 @@ fn files_are_found_beside_the_batch_and_pictures_go_there() {
     paint(100);
     let again = outcomes(&place.done("batch deep/a.toml --engine cpu"));
     assert!(again.values().all(|status| status == "rendered"), "{again:?}");
+}
+
+#[test]
+fn what_is_wrong_in_a_batch_is_told_with_its_line() {
+    let place = Workplace::new();
+    for (text, line, words) in [
+        ("materials = [", 1, "correct the TOML"),
+        ("\n\nmaterial = []", 3, "materials"),
+        ("materials = []", 1, "no list with entries"),
+        ("materials = [\n\"gold\",\n\"gold\"]", 3, "another name"),
+        ("[[settings]]\nname = \"a\"\n\nsampels = 4", 4, "--sampels"),
+        ("[[settings]]\nname = \"a\"\nsamples = -4", 3, "-4"),
+        ("[[settings]]\nsamples = 4", 1, "name"),
+        ("[[cameras]]\nname = \"a\"\ncamera.fof = 4", 3, "camera.fof"),
+        ("cameras = [\"a\"]", 1, "table"),
+        ("frames = 0", 1, "1 to 9999"),
+        ("frames = 2\nturn = \"all\"", 2, "camera, model or light"),
+        ("materials = [\"gold\"]\nformats = [\"gif\"]", 2, "png, exr and hdr"),
+    ] {
+        place.write("a.toml", text.as_bytes());
+        place.refused(1, "batch a.toml", &[&format!("a.toml, line {line}: "), words]);
+    }
+    place.write("a.toml", b"[common]\nsamples = 4");
+    place.refused(1, "batch a.toml", &["nothing to render"]);
 }

@@ -227,3 +227,40 @@ fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
         place.done("render a.png --engine cpu --output b.exr");
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn each_path_has_a_text_of_its_own_that_leads_back() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    use std::path::Path;
+
+    use glossmith::scene::path_text::{path_of_text, path_text};
+
+    let names: [&[u8]; 6] = [
+        b"a.png",
+        b"/t/a\xff b.png",
+        b"/t/a\xfe b.png",
+        b"file:///t/a%FF.png",
+        b"/t/%ff",
+        "ä".as_bytes(),
+    ];
+    let paths = names.map(|name| Path::new(OsStr::from_bytes(name)));
+    let texts = paths.map(path_text);
+    for (place, text) in texts.iter().enumerate() {
+        assert!(!texts[..place].contains(text), "{text}");
+        let whole = if text.starts_with("file:") {
+            std::path::absolute(paths[place]).expect("a folder")
+        } else {
+            paths[place].to_owned()
+        };
+        assert_eq!(path_of_text(text), whole);
+    }
+    assert_eq!(
+        path_of_text("file:///my%20models/%c3%a4.glb"),
+        Path::new("/my models/ä.glb")
+    );
+    assert_eq!(path_of_text("file:///100%"), Path::new("/100%"));
+    assert_eq!(texts[1], "file:///t/a%FF%20b.png");
+    assert_eq!([&texts[0], &texts[5]], ["a.png", "ä"]);
+}

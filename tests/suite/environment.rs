@@ -6,7 +6,7 @@ use glossmith::import::environment::load;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
-    Environment, EnvironmentSource, SkyParams, environment_direction, environment_local_from_world,
+    Environment, EnvironmentSource, SkyParams, brightened, environment_direction, environment_local_from_world,
     environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction,
     sun_irradiance, thumbnail,
 };
@@ -372,4 +372,46 @@ fn the_shader_is_valid() {
     validator
         .validate(&module)
         .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
+}
+
+#[test]
+fn the_brightest_place_is_the_middle_of_what_touches_it() {
+    let brightest = |bright: &[(usize, f32)]| {
+        let mut texels = vec![[0.1, 0.1, 0.1, 1.0]; 16 * 8];
+        bright
+            .iter()
+            .for_each(|(at, light)| texels[*at] = [*light, *light, *light, 1.0]);
+        Environment::from_texels("spots", 16, 8, texels)
+            .unwrap()
+            .brightest
+            .unwrap()
+    };
+    // Column 5, row 3.
+    let [u, v] = brightest(&[(3 * 16 + 5, 4.0)]);
+    assert!((u - 5.5 / 16.0).abs() < 1e-4 && (v - 3.5 / 8.0).abs() < 0.02, "{u} {v}");
+    // Two beside each other across the map's edge, and one that does not touch them.
+    let [u, _] = brightest(&[(3 * 16, 4.0), (3 * 16 + 15, 4.0), (3 * 16 + 7, 3.9)]);
+    assert!(!(1e-4..=1.0 - 1e-4).contains(&u), "{u}");
+    // What is far less than half as bright does not count.
+    let [u, _] = brightest(&[(3 * 16 + 5, 4.0), (3 * 16 + 6, 1.0)]);
+    assert!((5.5 / 16.0..5.8 / 16.0).contains(&u), "{u}");
+    assert_eq!(constant_map(16, 8, 0.0).brightest, None);
+}
+
+#[test]
+fn a_thumbnail_is_as_bright_as_the_strength_says() {
+    let pixels: Vec<u8> = (0..=255).collect();
+    assert_eq!(brightened(&pixels, 1.0), pixels);
+    let [dark, bright] = [0.25, 4.0].map(|factor| brightened(&pixels, factor));
+    let colors = (1..250).filter(|index| index % 4 != 3);
+    assert!(colors.clone().all(|i| dark[i] <= pixels[i] && bright[i] >= pixels[i]));
+    assert!(dark[128] < 90 && bright[128] > 190, "{} {}", dark[128], bright[128]);
+    // What is opaque stays opaque.
+    assert!((0..256).filter(|index| index % 4 == 3).all(|i| dark[i] == pixels[i]));
+    assert!(
+        brightened(&pixels, 0.0)
+            .iter()
+            .enumerate()
+            .all(|(i, code)| i % 4 == 3 || *code == 0)
+    );
 }

@@ -11,6 +11,7 @@ use glossmith::scene::environment::{
     Distribution, Environment, EnvironmentSource, SkyParams, environment_density, environment_direction,
     environment_radiance, environment_sample, environment_uv, furnace, sky, thumbnail,
 };
+use glossmith::scene::inversion::{DRAW_BITS, drawn, find, place_in, shares};
 
 use crate::environment::{assert_near, constant_map, random_direction, random_map, sun_map, triple};
 use crate::support::Random;
@@ -335,4 +336,56 @@ fn numbers_that_are_spread_evenly_draw_directions_that_are() {
     let error = |sequence| relative_error(&smooth, sequence, 64);
     let (even, independent) = (error(Sequence::Sobol), error(Sequence::Independent));
     assert!(even < 0.05 * independent, "{even:.2e} of {independent:.2e}");
+}
+
+/// How many numbers there are to draw with.
+const DRAWS: u32 = 1 << DRAW_BITS;
+
+fn check(weights: &[f64]) {
+    let shares = shares(weights);
+    let count = weights.len() as u32;
+    let mut before = 0;
+    for share in &shares {
+        assert!(share.upper >= before);
+        before = share.upper;
+    }
+    assert_eq!(before, DRAWS);
+    for number in (0..DRAWS).step_by(97).chain(DRAWS - 40..DRAWS) {
+        let share = |index: u32| shares[index as usize];
+        let drawn = drawn(find(count, number, share), share);
+        assert!((drawn.lower..drawn.upper).contains(&number), "{number}: {drawn:?}");
+        let place = place_in(drawn, number, 0.5_f64);
+        assert!((0.0..=1.0).contains(&place));
+    }
+    let total: f64 = weights.iter().sum();
+    let fair = |weight: f64| weight / total * f64::from(DRAWS);
+    // Each weight of less than a number has one all the same, which others lack.
+    let raised = weights.iter().filter(|weight| fair(**weight) < 1.0).count() as f64;
+    for (index, weight) in weights.iter().enumerate() {
+        let lower = index.checked_sub(1).map_or(0, |before| shares[before].upper);
+        let own = f64::from(shares[index].upper - lower);
+        assert_eq!(own > 0.0, *weight > 0.0);
+        assert!((own - fair(*weight)).abs() <= 1.0 + raised, "{index}: {own}");
+    }
+}
+
+#[test]
+fn numbers_are_shared_out_in_proportion_and_each_draws_its_entry() {
+    check(&[1.0]);
+    check(&[0.0, 3.0, 0.0, 0.0, 1.0, 0.0]);
+    check(&[1.0; 1000]);
+    let weights: Vec<f64> = (0..1501).map(|i| f64::from(i * 7919 % 83) * 0.3).collect();
+    check(&weights);
+    // A sun: all others share a slot.
+    let sun: Vec<f64> = (0..2048).map(|i| if i == 700 { 1e9 } else { 1e-3 }).collect();
+    check(&sun);
+}
+
+#[test]
+fn nothing_is_drawn_where_there_is_nothing() {
+    let shares = shares(&[0.0; 5]);
+    let share = |index: u32| shares[index as usize];
+    let drawn = drawn(find(5, 77, share), share);
+    assert_eq!((drawn.lower, drawn.upper), (0, 0));
+    assert_eq!(place_in(drawn, 77, 0.5_f32), 1.0);
 }

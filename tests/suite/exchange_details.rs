@@ -1,6 +1,6 @@
 //! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
 
-use glossmith::document::{CoatLobe, MaterialSettings};
+use glossmith::document::{CoatLobe, ImportLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -326,5 +326,162 @@ fn textures_travel_in_gltf() {
     assert!(
         (found - f64::from(wanted)).abs() < 1e-3 && wanted > 0.05,
         "{found} {wanted}"
+    );
+}
+
+/// A node's kind, its inputs as name and value, which output is taken, and the colour that it has.
+type Node<'a> = (&'a str, &'a [[&'a str; 2]], &'a str, [f32; 3]);
+
+const A: [&str; 2] = ["in1", "0.25, 0.5, 0.75"];
+const B: [&str; 2] = ["in2", "0.25"];
+const ONE: [&str; 2] = ["in", "0.2, 0.4, 0.9"];
+
+/// The nodes of MaterialX that are computed. None of these goes beyond [0, 1], where colours end.
+const NODES: &[Node<'_>] = &[
+    ("constant", &[["value", "0.1, 0.2, 0.3"]], "", [0.1, 0.2, 0.3]),
+    ("dot", &[ONE], "", [0.2, 0.4, 0.9]),
+    ("convert", &[["in", "0.3"]], "", [0.3; 3]),
+    ("add", &[A, B], "", [0.5, 0.75, 1.0]),
+    ("subtract", &[A, B], "", [0.0, 0.25, 0.5]),
+    ("multiply", &[A, B], "", [0.0625, 0.125, 0.1875]),
+    ("multiply", &[A], "", [0.25, 0.5, 0.75]),
+    ("divide", &[A, ["in2", "2"]], "", [0.125, 0.25, 0.375]),
+    ("divide", &[A, ["in2", "0"]], "", [0.0; 3]),
+    ("modulo", &[A, ["in2", "0.5"]], "", [0.25, 0.0, 0.25]),
+    ("min", &[A, ["in2", "0.5"]], "", [0.25, 0.5, 0.5]),
+    ("max", &[A, ["in2", "0.5"]], "", [0.5, 0.5, 0.75]),
+    ("power", &[A, ["in2", "2"]], "", [0.0625, 0.25, 0.5625]),
+    ("safepower", &[["in1", "0.5"], ["in2", "2"]], "", [0.25; 3]),
+    ("invert", &[ONE], "", [0.8, 0.6, 0.1]),
+    ("absval", &[["in", "-0.5"]], "", [0.5; 3]),
+    ("sign", &[["in", "0, 0.5, 3"]], "", [0.0, 1.0, 1.0]),
+    ("floor", &[["in", "1.7"]], "", [1.0; 3]),
+    ("ceil", &[["in", "0.2"]], "", [1.0; 3]),
+    ("round", &[["in", "0.7"]], "", [1.0; 3]),
+    ("sqrt", &[["in", "0.25"]], "", [0.5; 3]),
+    ("exp", &[["in", "-1"]], "", [0.367_879_45; 3]),
+    ("ln", &[["in", "2"]], "", [std::f32::consts::LN_2; 3]),
+    ("sin", &[["in", "0.5"]], "", [0.479_425_54; 3]),
+    ("cos", &[["in", "0.5"]], "", [0.877_582_55; 3]),
+    ("clamp", &[ONE, ["low", "0.3"], ["high", "0.5"]], "", [0.3, 0.4, 0.5]),
+    ("mix", &[["bg", "0.2"], ["fg", "0.6"], ["mix", "0.25"]], "", [0.3; 3]),
+    ("smoothstep", &[["in", "0.25"]], "", [0.15625; 3]),
+    (
+        "remap",
+        &[["in", "0.5"], ["outlow", "0.2"], ["outhigh", "0.4"]],
+        "",
+        [0.3; 3],
+    ),
+    ("contrast", &[["in", "0.75"], ["amount", "1.5"]], "", [0.875; 3]),
+    ("separate3", &[ONE], "output=\"outg\"", [0.4; 3]),
+    ("separate3", &[ONE], "output=\"outz\"", [0.9; 3]),
+    ("extract", &[ONE, ["index", "2"]], "", [0.9; 3]),
+    ("swizzle", &[ONE, ["channels", "bgr"]], "", [0.9, 0.4, 0.2]),
+    (
+        "combine3",
+        &[["in1", "0.1"], ["in2", "0.2"], ["in3", "0.3"]],
+        "",
+        [0.1, 0.2, 0.3],
+    ),
+    ("luminance", &[ONE, ["lumacoeffs", "0.5, 0.25, 0.25"]], "", [0.425; 3]),
+    (
+        "saturate",
+        &[ONE, ["amount", "0"], ["lumacoeffs", "1, 0, 0"]],
+        "",
+        [0.2; 3],
+    ),
+    (
+        "dotproduct",
+        &[["in1", "0.1, 0.2, 0.3"], ["in2", "0.5, 0.5, 1"]],
+        "",
+        [0.45; 3],
+    ),
+];
+
+/// The base colours of a document's surfaces.
+fn base_colors(place: &Workplace, elements: &str) -> Vec<[f32; 3]> {
+    place.write(
+        "a.mtlx",
+        format!("<materialx colorspace=\"lin_rec709\">{elements}</materialx>").as_bytes(),
+    );
+    let subject = read(&place.path("a.mtlx"), ReadOptions::default()).unwrap();
+    subject.materials.iter().map(|material| material.base_color).collect()
+}
+
+/// A surface whose base colour is connected so.
+fn surface(number: usize, connection: &str) -> String {
+    format!(
+        "<standard_surface name=\"s{number}\" type=\"surfaceshader\"><input name=\"base\" type=\"float\" value=\"1\"/>\
+         <input name=\"base_color\" type=\"color3\" {connection}/></standard_surface>"
+    )
+}
+
+#[test]
+fn the_usual_nodes_of_materialx_are_computed() {
+    let place = Workplace::new();
+    let element = |(number, (kind, inputs, output, _)): (usize, &Node<'_>)| {
+        let input = |[name, value]: &[&str; 2]| {
+            let kind = ["float", "color3"][usize::from(value.contains(','))];
+            format!("<input name=\"{name}\" type=\"{kind}\" value=\"{value}\"/>")
+        };
+        let inputs: String = inputs.iter().map(input).collect();
+        let surface = surface(number, &format!("nodename=\"n{number}\" {output}"));
+        format!("<{kind} name=\"n{number}\" type=\"color3\">{inputs}</{kind}>{surface}")
+    };
+    let found = base_colors(&place, &NODES.iter().enumerate().map(element).collect::<String>());
+    assert_eq!(found.len(), NODES.len());
+    for (found, (kind, .., expected)) in found.iter().zip(NODES) {
+        let is_near = found
+            .iter()
+            .zip(expected)
+            .all(|(found, expected)| (found - expected).abs() < 1e-5);
+        assert!(is_near, "{kind}: {found:?} and {expected:?}");
+    }
+}
+
+#[test]
+fn graphs_of_materialx_are_followed_through_their_outputs_and_interfaces() {
+    let place = Workplace::new();
+    let picture = image::RgbaImage::from_fn(4, 4, |x, _| image::Rgba([if x < 2 { 255 } else { 0 }, 51, 255, 102]));
+    picture.save(place.path("a.png")).unwrap();
+    // A comment that is no XML, and a name in angle brackets, as MaterialX has them.
+    let document = "<!-- a<b:c \" --><image name=\"u\"><input name=\"file\" type=\"filename\" value=\"g.<UDIM>.png\"/></image>\
+        <nodegraph name=\"g\"><input name=\"amount\" type=\"float\" value=\"0.5\"/><multiply name=\"half\">\
+        <input name=\"in1\" type=\"color3\" value=\"0.5, 1, 0\"/><input name=\"in2\" type=\"float\" interfacename=\"amount\"/></multiply>\
+        <separate3 name=\"parts\"><input name=\"in\" nodename=\"half\"/></separate3>\
+        <output name=\"a\" nodename=\"half\"/><output name=\"b\" nodename=\"parts\" output=\"outg\"/></nodegraph>\
+        <gltf_colorimage name=\"p\"><input name=\"file\" type=\"filename\" value=\"a.png\"/></gltf_colorimage>\
+        <invert name=\"i\"><input name=\"in\" nodename=\"p\"/></invert>";
+    let connections = [
+        ("nodegraph=\"g\" output=\"a\"", [0.25, 0.5, 0.0]),
+        ("nodegraph=\"g\" output=\"b\"", [0.5; 3]),
+        ("nodegraph=\"g\"", [0.25, 0.5, 0.0]),
+        ("nodename=\"p\" output=\"outcolor\"", [0.5, 0.2, 1.0]),
+        ("nodename=\"p\" output=\"outa\"", [0.4; 3]),
+        ("nodename=\"i\"", [0.5, 0.8, 0.0]),
+    ];
+    let surfaces = connections
+        .iter()
+        .enumerate()
+        .map(|(number, (connection, _))| surface(number, connection));
+    let found = base_colors(&place, &[document.to_owned(), surfaces.collect()].concat());
+    assert_eq!(found, connections.map(|(_, color)| color));
+}
+
+#[test]
+fn brackets_in_strings_and_dictionaries_of_usd_open_no_shader() {
+    let place = Workplace::new();
+    let text = "#usda 1.0\ndef Material \"A\" (\n customData = {\n string x = \"}{ # \\\" }\"\n }\n)\n{\n def Shader \"S\"\n {\n \
+                uniform token info:id = \"UsdPreviewSurface\" # a { comment\n float inputs:roughness = 0.25 (\n \
+                doc = \"}\"\n )\n color3f inputs:diffuseColor = (1, 0.5, 0.25)\n }\n}\n";
+    place.write("a.usda", text.as_bytes());
+    let options = ReadOptions {
+        lobe: ImportLobe::Ggx,
+        ..ReadOptions::default()
+    };
+    let material = read(&place.path("a.usda"), options).unwrap().materials.remove(0);
+    assert_eq!(
+        (material.name.as_str(), material.roughness, material.base_color),
+        ("A", 0.25, [1.0, 0.5, 0.25])
     );
 }

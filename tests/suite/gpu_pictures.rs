@@ -4,10 +4,13 @@
 use glossmith::import::environment::{load, load_encoded};
 use glossmith::import::{load as load_model, load_with};
 use glossmith::optics::material::NO_TEXTURE;
+use glossmith::optics::tone::{linear_from_srgb, srgb_from_linear};
+use glossmith::optics::vector::Vec3;
 use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use glossmith::scene::texture::TextureTarget;
+use glossmith::scene::texture::scale::scaled_to;
 use glossmith::scene::texture::{Textures, texture_lookup};
-use glossmith::scene::{Fate, Model, ModelOptions, ModelSource};
+use glossmith::scene::{Fate, Model, ModelOptions, ModelSource, Texture};
 use half::f16;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::{Value, json};
@@ -447,4 +450,49 @@ fn old_layouts_of_dds_are_read() {
     std::fs::write(&path, dds_of_masks(code, *b"UYVY", 0, [0; 4], &[0; 4])).unwrap();
     let error = load(&EnvironmentSource::File(path)).expect_err("not read").to_string();
     assert!(error.contains("not supported") && !error.contains("damaged"), "{error}");
+}
+
+/// A picture of 8 bits.
+fn texels(width: u32, height: u32, rgba8: &[[u8; 4]]) -> Texture {
+    Texture {
+        name: String::new(),
+        width,
+        height,
+        rgba8: rgba8.concat(),
+        rgba16: Vec::new(),
+    }
+}
+
+/// Colours are averaged as light and encoded again, other values as they are; what is equal stays as it is.
+#[test]
+fn means_of_texels_are_rounded_once() {
+    for code in 0..=255_u8 {
+        let texel = [code, 255 - code, code / 3, code];
+        for is_color in [false, true] {
+            let halved = |last: [u8; 4]| {
+                let picture = texels(3, 2, &[texel, texel, texel, texel, texel, last]);
+                scaled_to(picture, 1, is_color).0.rgba8
+            };
+            assert_eq!(halved(texel), texel);
+            // With one that differs in opacity alone, colours are computed.
+            let [r, g, b, a] = texel;
+            assert_eq!(halved([r, g, b, a.wrapping_add(1)])[..3], texel[..3], "{is_color}");
+        }
+        for other in (0..=255_u8).step_by(5) {
+            let mean = |is_color| scaled_to(texels(2, 1, &[[code; 4], [other; 4]]), 1, is_color).0.rgba8[0];
+            let half = (f64::from(code) + f64::from(other)) / 2.0;
+            assert!((half - f64::from(mean(false))).abs() <= 0.5);
+            let light = [code, other].map(|code| linear_from_srgb(Vec3::splat(f64::from(code) / 255.0)).x);
+            let exact = 255.0 * srgb_from_linear(Vec3::splat((light[0] + light[1]) / 2.0)).x;
+            assert!(
+                (exact - f64::from(mean(true))).abs() < 0.5 + 1e-4,
+                "{code} and {other}: {exact}"
+            );
+        }
+    }
+    // Sides that are odd: every row and column counts once.
+    let rows: Vec<[u8; 4]> = (0..15).map(|place| [10 * place, 0, 0, 255]).collect();
+    let (reduced, from) = scaled_to(texels(3, 5, &rows), 2, false);
+    assert_eq!(([reduced.width, reduced.height], from), ([1, 2], Some([3, 5])));
+    assert_eq!([reduced.rgba8[0], reduced.rgba8[4]], [25, 100]);
 }

@@ -9,7 +9,8 @@ use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::document::MaterialSettings;
 use glossmith::render::thumbnails::key;
-use glossmith::store::{PRESETS, load_material};
+use glossmith::scene::texture::{TextureTarget, UserTexture};
+use glossmith::store::{PRESETS, library, load_material};
 
 use super::support::is_thorough;
 use super::ui::{Editor, editor_of, options, request, see, wait};
@@ -143,4 +144,75 @@ fn presets_show_pictures_which_are_kept() {
     harness.run_steps(3);
     let after = corner(&mut harness, &first.name);
     assert_ne!(before, after, "a dot leaves the corner as it is, a picture does not");
+}
+
+/// A material with images is a folder of its own, which holds all that it needs and comes back whole.
+#[test]
+fn materials_with_images_are_folders() {
+    let place = tempfile::tempdir().expect("a temporary folder");
+    let folder = place.path().join("materials");
+    let images = [place.path().join("a/wood.png"), place.path().join("b/wood.png")];
+    let mut material = PRESETS[0].clone();
+    material.name = "Oak floor".to_owned();
+    let targets = [TextureTarget::BaseColor, TextureTarget::Roughness, TextureTarget::Coat];
+    let files = [images[0].clone(), images[1].clone(), place.path().join("gone.png")];
+    for (number, image) in images.iter().enumerate() {
+        std::fs::create_dir_all(image.parent().expect("a folder")).expect("made");
+        std::fs::write(image, [number as u8]).expect("written");
+    }
+    for (target, file) in std::iter::zip(targets, files) {
+        material.put_texture(
+            target,
+            UserTexture {
+                file,
+                ..UserTexture::default()
+            },
+        );
+    }
+    let path = library::add(&folder, &material).expect("added");
+    assert_eq!(path, folder.join("oak-floor.material/oak-floor.json"));
+    // Nothing of it lies elsewhere but what was gone before.
+    std::fs::remove_dir_all(place.path().join("a")).expect("removed");
+    let load = |path: &Path| load_material(path).expect("a material").value;
+    let image = |material: &MaterialSettings, target: usize| {
+        let texture = material.user_textures.get(targets[target]).expect("it has one");
+        std::fs::read(&texture.file).ok()
+    };
+    let has_all = |path: &Path| [0, 1, 2].map(|target| image(&load(path), target));
+    let whole = [Some(vec![0]), Some(vec![1]), None];
+    assert_eq!(has_all(&path), whole);
+    assert!(
+        !std::fs::read_to_string(&path).expect("text").contains("/b/"),
+        "by a name beside it"
+    );
+    std::fs::write(path.with_file_name("notes.txt"), "mine").expect("written");
+    let renamed = library::rename(&path, "Floor").expect("renamed");
+    assert!(
+        renamed.with_file_name("notes.txt").is_file(),
+        "what else is there moves along"
+    );
+    assert_eq!(renamed, folder.join("floor.material/floor.json"));
+    assert_eq!(has_all(&renamed), whole);
+    let copy = library::duplicate(&renamed).expect("copied");
+    assert_eq!(has_all(&copy), whole);
+    let removed = library::remove(&renamed).expect("removed");
+    let names = |folder: &Path| {
+        library::list(folder)
+            .expect("listed")
+            .iter()
+            .map(library::Entry::name)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(names(&folder), ["Floor copy"]);
+    assert_eq!(library::restore(&removed).expect("restored"), renamed);
+    assert_eq!(has_all(&renamed), whole);
+    // Beside one that took its name meanwhile.
+    let removed = library::remove(&renamed).expect("removed");
+    library::add(&folder, &load(&copy))
+        .and_then(|path| library::rename(&path, "Floor"))
+        .expect("added");
+    let restored = library::restore(&removed).expect("restored");
+    assert_eq!(restored, folder.join("floor 2.material/floor 2.json"));
+    assert_eq!(has_all(&restored), whole);
+    assert_eq!(names(&folder), ["Floor", "Floor", "Floor copy"]);
 }

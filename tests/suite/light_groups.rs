@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::layout::Pane;
+use glossmith::document::light_groups::emission_group;
 use glossmith::document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix};
 use glossmith::job::film::Film;
 use glossmith::render::{EngineChoice, Session};
@@ -290,4 +291,46 @@ fn the_window_mixes_what_has_been_rendered() {
         undo(&mut harness);
     }
     assert_eq!(*harness.state().document(), before);
+}
+
+#[test]
+fn a_name_has_what_a_layer_may_be_called() {
+    for (text, name) in [
+        ("key", "key"),
+        ("Rim light 2", "Rim-light-2"),
+        ("a.b/ä", "ab"),
+        ("", ""),
+        ("0123456789012345678901234567", "012345678901234567890123"),
+    ] {
+        assert_eq!(GroupName::new(text).as_str(), name);
+    }
+}
+
+#[test]
+fn groups_are_those_of_what_shines() {
+    let mut document = Document::default();
+    assert!(document.light_groups().is_empty());
+    document.lighting.light_groups = true;
+    let key = AreaLight {
+        group: GroupName::new("key"),
+        ..AreaLight::default()
+    };
+    let muted = AreaLight {
+        is_muted: true,
+        group: GroupName::new("muted"),
+        ..key
+    };
+    document.lighting.area_lights = vec![AreaLight::default(), key, muted, AreaLight::sun(), AreaLight::spot()];
+    let names: Vec<_> = document.light_groups().into_iter().map(String::from).collect();
+    assert_eq!(names, ["environment", "lights", "key", "sun"]);
+    document.materials[0].emission_strength = 1.0;
+    assert_eq!(document.light_groups()[1], emission_group());
+    document.set_light_mix(LightMix {
+        factor: 0.5,
+        color: [1.0, 0.5, 0.0],
+        ..LightMix::of(key.group)
+    });
+    assert_eq!(document.light_factors()[3], [0.5, 0.25, 0.0]);
+    document.set_light_mix(LightMix::of(key.group));
+    assert!(document.lighting.light_mix.is_empty());
 }

@@ -10,10 +10,12 @@ use glossmith::app::Options;
 use glossmith::app::actions::Action;
 use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile, Strategy};
 use glossmith::import::light_profile;
+use glossmith::optics::vector::Vec3;
 use glossmith::render::EngineChoice;
-use glossmith::scene::ModelSource;
 use glossmith::scene::camera::PixelFilter;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::light_profile::{LightProfile, profile_share};
+use glossmith::scene::{AreaFrame, AreaShape, ModelSource, Outline};
 use glossmith::store::{load_document, save_document};
 
 use super::cli_support::{Workplace, read_exr};
@@ -223,4 +225,123 @@ fn a_profile_is_chosen_dropped_and_removed_in_the_window() {
     assert!(light(&harness).has_profile());
     (0..3).for_each(|_| undo(&mut harness));
     assert_eq!(light(&harness), before);
+}
+
+fn lamp_frame() -> AreaFrame {
+    AreaShape {
+        target: [0.0; 3],
+        yaw_deg: 30.0,
+        pitch_deg: 50.0,
+        distance: 2.0,
+        width: 0.1,
+        height: 0.1,
+        turn_deg: 20.0,
+        outline: Outline::Sphere,
+    }
+    .frame()
+}
+
+/// The direction of two angles.
+fn direction(frame: &AreaFrame, [vertical_deg, horizontal_deg]: [f64; 2]) -> Vec3<f64> {
+    let (sine, cosine) = vertical_deg.to_radians().sin_cos();
+    let (up, across) = horizontal_deg.to_radians().sin_cos();
+    let direction = -frame.outwards * cosine + sine * (frame.across * across + frame.up * up);
+    Vec3::from_f64(direction.to_array())
+}
+
+fn share(profile: &LightProfile, angles: [f64; 2]) -> f64 {
+    let frame = lamp_frame();
+    profile_share(&profile.table(&frame), direction(&frame, angles)) * profile.lumens() / (4.0 * PI)
+}
+
+#[test]
+fn between_the_angles_intensities_are_linear() {
+    let profile = LightProfile::new(vec![0.0, 30.0, 90.0], &[0.0], &[100.0, 40.0, 10.0]).expect("a profile");
+    for (vertical, expected) in [
+        (0.0, 100.0),
+        (15.0, 70.0),
+        (30.0, 40.0),
+        (60.0, 25.0),
+        (89.9, 10.05),
+        (91.0, 0.0),
+    ] {
+        let found = share(&profile, [vertical, 77.0]);
+        assert!((found - expected).abs() < 0.01, "{vertical}: {found} for {expected}");
+    }
+    let quadrant = LightProfile::new(vec![0.0, 180.0], &[0.0, 90.0], &[8.0, 8.0, 2.0, 2.0]).expect("a profile");
+    for (horizontal, expected) in [
+        (0.0, 8.0),
+        (45.0, 5.0),
+        (90.0, 2.0),
+        (150.0, 6.0),
+        (180.0, 8.0),
+        (300.0, 4.0),
+    ] {
+        let found = share(&quadrant, [60.0, horizontal]);
+        assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
+    }
+    let sides = LightProfile::new(vec![0.0, 180.0], &[90.0, 180.0, 270.0], &[1.0, 1.0, 3.0, 3.0, 5.0, 5.0]);
+    let sides = sides.expect("a profile");
+    for (horizontal, expected) in [
+        (90.0, 1.0),
+        (135.0, 2.0),
+        (0.0, 3.0),
+        (45.0, 2.0),
+        (270.0, 5.0),
+        (315.0, 4.0),
+    ] {
+        let found = share(&sides, [60.0, horizontal]);
+        assert!((found - expected).abs() < 0.01, "{horizontal}: {found} for {expected}");
+    }
+}
+
+#[test]
+fn the_mean_is_that_of_all_directions() {
+    let even = LightProfile::new(vec![0.0, 180.0], &[0.0], &[7.0, 7.0]).expect("a profile");
+    assert!((even.lumens() - 28.0 * PI).abs() < 1e-9);
+    let half = LightProfile::new(vec![0.0, 90.0], &[0.0, 180.0], &[6.0, 6.0, 2.0, 2.0]).expect("a profile");
+    assert!((half.lumens() - 8.0 * PI).abs() < 1e-9);
+}
+
+const HEAD: &str = "IESNA:LM-63-2002\r\n[TEST] built by a test\r\nTILT=NONE\r\n";
+
+fn parsed(place: &Workplace, text: &str) -> Result<LightProfile, String> {
+    place.write("lamp.ies", text.as_bytes());
+    light_profile::load(&place.path("lamp.ies")).map_err(|error| error.to_string())
+}
+
+#[test]
+fn profiles_are_read_as_programs_write_them() {
+    let place = Workplace::new();
+    let plain = parsed(
+        &place,
+        &format!("{HEAD}1 1000 2 3 1 1 2 0 0 0\n1 1 20\n0 45 90\n0\n50 50\n 50\n"),
+    );
+    assert!((plain.expect("a profile").lumens() - 200.0 * PI).abs() < 1e-3);
+    let tilted = "TILT=INCLUDE\n1\n2\n0 90\n1,0.9\n1 -1 1 2 1 1 1 0 0 0 0.5 1 20 0 180 0 10 10";
+    assert!((parsed(&place, tilted).expect("a profile").lumens() - 20.0 * PI).abs() < 1e-6);
+}
+
+#[test]
+fn damaged_profiles_are_refused_in_words() {
+    let place = Workplace::new();
+    for (text, words) in [
+        ("", "TILT="),
+        ("TILT=NONE", "ends too early"),
+        ("TILT=lamp.tlt\n1", "its tilt is in lamp.tlt"),
+        ("TILT=NONE\n1 1 1 1e9 1 1", "vertical angles"),
+        ("TILT=NONE\n1 1 1 2.5 1 1", "vertical angles"),
+        ("TILT=NONE\n1 1 1 2 -1 1", "horizontal angles"),
+        ("TILT=NONE\n1 1 1 2 1 3 1 0 0 0", "type A"),
+        ("TILT=NONE\n1 1 one", "\"one\" is no number"),
+        ("TILT=NONE\n1 1 nan", "no number"),
+        ("TILT=INCLUDE\n1 1e30", "tilt angles"),
+        ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1", "ends too early"),
+        ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 90 0 0 1 1", "do not ascend"),
+        ("TILT=NONE\n1 1 1 2 1 1 1 0 0 0 1 1 1 0 90 0 1 -1", "negative"),
+        ("TILT=NONE\n1 1 1e38 2 1 1 1 0 0 0 1e38 1 1 0 90 0 1 1", "above 1e9"),
+    ] {
+        let error = parsed(&place, text).expect_err(text);
+        assert!(error.contains(words), "{text}: {error}");
+    }
 }

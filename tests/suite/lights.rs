@@ -1,21 +1,23 @@
 //! Surfaces that emit: their sampler against its density, area lights against Lambert's formula, the strategies and
 //! engines against each other.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::time::Duration;
 
 use glam::{DVec3, Vec2, Vec4};
 use glossmith::analysis::chi_square::test_counts;
+use glossmith::compile::compile;
 use glossmith::cpu::CpuEngine;
-use glossmith::document::{AreaLight, Background, Document, Strategy};
+use glossmith::document::{AreaLight, AreaLightShape, Background, Document, Strategy};
 use glossmith::job::film::Film;
 use glossmith::optics::material::Material;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::camera::orbit_direction;
 use glossmith::scene::environment::{Environment, EnvironmentSource};
-use glossmith::scene::light::{Emitters, LightChoice, Lights, Sampled, light_density, light_sample};
+use glossmith::scene::light::{Emitters, LightChoice, Lights, Sampled, light_density, light_sample, spot_share};
 use glossmith::scene::mesh::Mesh;
 use glossmith::scene::texture::Textures;
 use glossmith::scene::{Geometry, Model, ModelSource, Slot};
@@ -448,4 +450,97 @@ fn area_lights_do_not_move_the_camera() {
     let before = camera(&document);
     document.lighting.area_lights = large_lights();
     assert_eq!(camera(&document), before);
+}
+
+#[test]
+fn a_highlight_is_where_the_lights_middle_is_mirrored() {
+    for (place, mirrored) in [
+        (DVec3::new(0.3, 0.5, 0.6), DVec3::new(-0.6, 0.64, 0.48)),
+        (DVec3::ZERO, DVec3::Y),
+        (DVec3::new(8.0, -1.0, 3.0), DVec3::new(0.0, 1.0, 0.0)),
+    ] {
+        for target in [[0.0; 3], [0.2, -0.4, 0.1]] {
+            for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
+                let mut light = AreaLight { target, ..start };
+                light.put_highlight(place, mirrored);
+                let seen = (light.shape().frame().middle - place).normalize();
+                let tolerance = if light.is_sun() { 2e-3 } else { 1e-9 };
+                assert!(seen.distance(mirrored) < tolerance, "{place} {mirrored}: {light:?}");
+                assert!(light.distance >= AreaLight::default().distance);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_light_looks_at_its_target() {
+    let light = AreaLight {
+        target: [0.5, -1.0, 2.0],
+        turn_deg: 30.0,
+        ..AreaLight::default()
+    };
+    let frame = light.shape().frame();
+    let outwards = orbit_direction(light.yaw_deg, light.pitch_deg);
+    assert!((frame.middle - 3.0 * outwards).distance(DVec3::new(0.5, -1.0, 2.0)) < 1e-12);
+    // To the right of who looks at it, and turned clockwise: downwards.
+    let untilted = AreaLight { turn_deg: 0.0, ..light }.shape().frame();
+    assert!(untilted.across.cross(untilted.up).distance(-outwards) < 1e-12);
+    assert!(frame.across.dot(untilted.across) > 0.0 && frame.across.dot(untilted.up) < 0.0);
+}
+
+#[test]
+fn power_and_strength_are_the_same_said_twice() {
+    for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
+        let mut light = AreaLight {
+            color: [1.0, 0.5, 0.2],
+            ..start
+        };
+        light.set_power(800.0, 0.3);
+        assert!((light.power(0.3) - 800.0).abs() < 1e-3, "{light:?}");
+    }
+    // A square metre of 1 cd/m² sends π lm to each side.
+    let square = AreaLight {
+        strength: 1.0,
+        ..AreaLight::default()
+    };
+    assert!((square.power(1.0) - 2.0 * PI).abs() < 1e-9);
+    // A ball of radius 1 m sends 4π² of it.
+    let ball = AreaLight {
+        shape: AreaLightShape::Sphere,
+        width: 2.0,
+        ..square
+    };
+    assert!((ball.power(1.0) - 4.0 * PI * PI).abs() < 1e-9);
+    let mut black = AreaLight {
+        color: [0.0; 3],
+        ..square
+    };
+    black.set_power(5.0, 1.0);
+    assert_eq!(black.strength, 1.0);
+}
+
+/// The flux of a spot against the integral of what it sends in each direction.
+#[test]
+fn the_power_of_a_spot_is_what_its_cone_holds() {
+    for (cone_deg, softness) in [(40.0, 0.2), (120.0, 1.0), (5.0, 0.0)] {
+        let light = AreaLight {
+            cone_deg,
+            softness,
+            ..AreaLight::spot()
+        };
+        let mut material = compile(&[light.material()]).0[0];
+        light.shine().finish(&mut material);
+        let steps = 200_000;
+        let shares = (0..steps).map(|step| {
+            let cosine = (f64::from(step) + 0.5) / f64::from(steps);
+            2.0 * PI * cosine * spot_share(&material.cast::<f64>(), cosine)
+        });
+        let projected = shares.sum::<f64>() / f64::from(steps);
+        let expected = projected * light.radiance() * 0.25 * PI * 0.09 * 4.0;
+        let power = light.power(2.0);
+        assert!(
+            (power / expected - 1.0).abs() < 5e-3,
+            "{cone_deg} {softness}: {power} for {expected}"
+        );
+    }
 }

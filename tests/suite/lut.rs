@@ -3,7 +3,10 @@
 use glossmith::app::Options;
 use glossmith::app::actions::Action;
 use glossmith::document::Document;
+use glossmith::optics::tone::Lut;
+use glossmith::optics::vector::vec3;
 use glossmith::scene::ModelSource;
+use glossmith::store::lut::load;
 use glossmith::store::{load_document, save_document};
 
 use super::cli_support::Workplace;
@@ -101,4 +104,65 @@ fn a_table_is_chosen_and_removed_in_the_window() {
     see(&mut harness, "the new table", |harness| shown(harness) == plain);
     undo(&mut harness);
     assert_eq!(shown(&harness), plain);
+}
+
+/// A cube that swaps red and blue, with a bend in green, on a domain of its own.
+#[test]
+fn a_cube_is_linear_between_its_entries() {
+    let size = 3;
+    let at = |i: usize| i as f32 / 2.0;
+    let entries = (0..27).map(|i| {
+        let [r, g, b] = [at(i % size), at(i / size % size), at(i / 9)];
+        [b, g * g, r]
+    });
+    let lut = Lut {
+        size,
+        is_one_dimensional: false,
+        domain: [[0.0; 3], [2.0; 3]],
+        entries: entries.collect(),
+    };
+    let found = lut.apply(vec3(0.5, 0.5, 1.7)).to_f32();
+    // Half way between 0 and 0.5², as the table is linear there.
+    let expected = [0.85, 0.125, 0.25];
+    assert!(
+        std::iter::zip(found, expected).all(|(a, b)| (a - b).abs() < 1e-6),
+        "{found:?}"
+    );
+    assert_eq!(lut.apply(vec3(9.0, -1.0, f32::NAN)).to_f32(), [0.0, 0.0, 1.0]);
+    let curves = Lut {
+        size: 2,
+        is_one_dimensional: true,
+        domain: [[0.0; 3], [1.0; 3]],
+        entries: vec![[1.0, 0.0, 0.5], [0.0, 1.0, 0.5]],
+    };
+    assert_eq!(curves.apply(vec3(0.25, 0.25, 0.25)).to_f32(), [0.75, 0.25, 0.5]);
+}
+
+#[test]
+fn tables_are_read_as_programs_write_them() {
+    let place = Workplace::new();
+    let read = |text: &str| {
+        place.write("a.cube", text.as_bytes());
+        load(&place.path("a.cube")).map_err(|error| error.to_string())
+    };
+    let curve = "# by hand\n\nLUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 2\n 0 0 0\n1 1\t1\r\n";
+    let lut = read(curve).expect("a table");
+    assert!(lut.is_one_dimensional && lut.domain[1] == [1.0, 1.0, 2.0]);
+    let cube = format!(
+        "\u{feff}TITLE \"a\"\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0.0 4.0\n{}",
+        "0.5 0.5 0.5\n".repeat(8)
+    );
+    assert_eq!(read(&cube).expect("a cube").domain, [[0.0; 3], [4.0; 3]]);
+    for (text, words) in [
+        ("", "does not say its size"),
+        ("LUT_3D_SIZE 2\n0 0 0\n", "1 of 8 entries"),
+        ("LUT_3D_SIZE 999\n", "line 1"),
+        ("LUT_1D_SIZE 2\n0 0\n", "line 2"),
+        ("LUT_1D_SIZE 2\n0 0 nan\n", "line 2"),
+        ("LUT_1D_SIZE 2\nDOMAIN_MAX 0 0 0\n0 0 0\n0 0 0\n", "domain is empty"),
+        ("LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n", "two tables"),
+    ] {
+        let error = read(text).expect_err(text);
+        assert!(error.contains(words), "{text}: {error}");
+    }
 }

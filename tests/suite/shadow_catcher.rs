@@ -1,13 +1,18 @@
 //! Grounds: the shadow catcher is the background where nothing stands on it, its shadows and reflections have their true
 //! values, on both engines; the cyclorama's wall stands where it should.
 
+use std::f64::consts::PI;
+
+use glam::DVec3;
 use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
 use glossmith::import::load;
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
+use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;
+use glossmith::scene::catcher::{CatcherLight, NearLight, catcher_light, catcher_reflectance, catcher_table};
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Geometry, ModelSource};
+use glossmith::scene::{AreaShape, Geometry, ModelSource, Outline};
 
 use crate::cli_support::Workplace;
 use crate::renders::{assert_same_picture, document, render};
@@ -221,4 +226,110 @@ fn grounds_are_chosen_on_the_command_line() {
     );
     assert!(covered(&wall) > 0.999, "the wall fills the picture");
     place.refused(2, "render --ground-kind sea", &["sea", "shadow-catcher"]);
+}
+
+#[test]
+fn a_plane_under_a_uniform_environment_shows_its_radiance() {
+    let environment = EnvironmentSource::Furnace.computed().expect("loads");
+    let light = CatcherLight {
+        environment: &environment,
+        rotation: [1.0, 0.0],
+        strength: 2.0,
+        area_lights: &[],
+    };
+    let table = catcher_table(&light, 0.0, 0.5);
+    let found: Vec3<f64> = catcher_light(&table, 0, vec3(3.0, 0.0, -7.0));
+    let expected = f64::from(environment.texels[0][0]) * 2.0;
+    assert!(
+        (found.x - expected).abs() < 1e-6 * expected,
+        "{found:?}, not {expected}"
+    );
+    assert!((catcher_reflectance(&table, 0, 1.0_f64) - 0.02).abs() < 1e-7);
+    assert!((catcher_reflectance(&table, 0, 0.0_f64) - 0.5).abs() < 1e-7);
+}
+
+/// The light on a plane below one light of radiance 1, at places of a height.
+fn table_of(shape: AreaShape, spot: [f64; 2], height: f64) -> impl Fn(f64, f64) -> f64 {
+    let environment = EnvironmentSource::Studio.computed().expect("loads");
+    let radiance = [1.0; 3];
+    let light = CatcherLight {
+        environment: &environment,
+        rotation: [1.0, 0.0],
+        strength: 0.0,
+        area_lights: &[NearLight { shape, radiance, spot }],
+    };
+    let table = catcher_table(&light, height, 0.0);
+    move |x, z| catcher_light(&table, 0, vec3(x, height, z)).x
+}
+
+fn lamp(outline: Outline, width: f64, target: [f64; 3]) -> AreaShape {
+    AreaShape {
+        yaw_deg: 0.0,
+        pitch_deg: 90.0,
+        distance: 2.0,
+        width,
+        height: width,
+        target,
+        turn_deg: 0.0,
+        outline,
+    }
+}
+
+#[test]
+fn a_spot_lights_what_its_cone_holds_and_a_sphere_from_its_near_side() {
+    // From 30° to 20°.
+    let [inner, outer] = [20.0_f64, 30.0].map(|angle| angle.to_radians().cos());
+    let spots = [[0.0, 1.0], [1.0 / (inner - outer), -outer / (inner - outer)]];
+    let disk = lamp(Outline::Ellipse, 0.02, [1.0, 0.0, 0.0]);
+    let [lamp_at, spot_at] = spots.map(|spot| table_of(disk, spot, -0.5));
+    // 2.5 below it: tan 10°, tan 25° and tan 45° beside its target.
+    let beside = |angle_deg: f64| 1.0 + 2.5 * angle_deg.to_radians().tan();
+    let share = |angle_deg: f64| spot_at(beside(angle_deg), 0.0) / lamp_at(beside(angle_deg), 0.0);
+    assert!((share(10.0) - 1.0).abs() < 1e-3);
+    assert!((0.1..0.5).contains(&share(25.0)), "{}", share(25.0));
+    assert_eq!(spot_at(beside(45.0), 0.0), 0.0);
+    // A sphere: the squared sine of half its angle.
+    let found = table_of(lamp(Outline::Sphere, 0.2, [0.0; 3]), [0.0, 1.0], -0.5)(0.0, 0.0);
+    assert_near(found / (0.1_f64 / 2.5).powi(2), 1.0, 0.01, "below a sphere");
+}
+
+/// Form factors of rectangles above and through the horizon, by quadrature.
+#[test]
+fn tables_with_lights_are_near_the_true_light() {
+    for (pitch_deg, height) in [(35.0, -0.6), (4.0, -0.1)] {
+        let shape = AreaShape {
+            yaw_deg: 30.0,
+            pitch_deg,
+            height: 0.6,
+            ..lamp(Outline::Rectangle, 1.0, [0.0; 3])
+        };
+        let found_at = table_of(shape, [0.0, 1.0], height);
+        let frame = shape.frame();
+        for (x, z) in [
+            (0.0, 0.0),
+            (0.13, -0.4),
+            (0.9, 1.1),
+            (-2.3, 0.7),
+            (0.3, 6.2),
+            (5.0, -8.0),
+            (19.9, 19.9),
+        ] {
+            const STEPS: i32 = 300;
+            let steps = || (0..STEPS).map(|step| (f64::from(step) + 0.5) / f64::from(STEPS) - 0.5);
+            let mut sum = 0.0;
+            for (a, b) in steps().flat_map(|a| steps().map(move |b| (a, b))) {
+                let at = frame.middle + frame.across * (shape.width * a) + frame.up * (shape.height * b);
+                let way = at - DVec3::new(x, height, z);
+                let cosines = (way.y / way.length()).max(0.0) * (frame.outwards.dot(way) / way.length()).abs();
+                sum += cosines / way.length_squared();
+            }
+            let expected = sum * shape.width * shape.height / f64::from(STEPS * STEPS) / PI;
+            let found = found_at(x, z);
+            assert!(
+                (found / expected - 1.0).abs() < 0.01,
+                "{pitch_deg}, {x}, {z}: {found}, not {expected}"
+            );
+        }
+        assert!(found_at(40.0, 0.0) > 0.0);
+    }
 }

@@ -1,6 +1,10 @@
 //! χ² of every sampler against its density, in f64, and proof that the test finds a density that is wrong by 2 %.
 
-use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples};
+use std::f64::consts::{PI, TAU};
+
+use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples, upper_tail};
+use glossmith::analysis::histogram::{Histogram, angle_density};
+use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_transmitted, half_vector_cosine};
@@ -353,4 +357,93 @@ fn pearson_statistic_of_known_counts() {
     assert_eq!(test_counts(&[10, 90], &[f64::NAN, 90.0]).p_value, 0.0);
     assert!((sidak_level(0.01, 1) - 0.01).abs() < 1e-15);
     assert!((1.0 - (1.0 - sidak_level(0.01, 500)).powi(500) - 0.01).abs() < 1e-12);
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, tolerance: f64) {
+    let error = (found / expected - 1.0).abs();
+    assert!(error < tolerance, "{found} instead of {expected}: off by {error}");
+}
+
+#[test]
+fn the_tail_of_chi_square_is_a_poisson_sum_for_even_degrees_of_freedom() {
+    // Γ(n, x)/Γ(n) = e^−x Σ x^k/k! over k < n.
+    for n in [1, 2, 3, 7, 20, 60] {
+        for x in [0.01, 0.5, 1.0, 3.0, 9.5, 21.0, 40.0, 80.0, 200.0] {
+            let terms = (1..n).scan(1.0, |term, k| {
+                *term *= x / f64::from(k);
+                Some(*term)
+            });
+            let expected = (-x).exp() * (1.0 + terms.sum::<f64>());
+            assert_near(upper_tail(2.0 * x, f64::from(2 * n)), expected, 1e-12);
+        }
+    }
+    // Odd ones step by the recurrence Γ(a+1, x)/Γ(a+1) − Γ(a, x)/Γ(a) = x^a e^−x / Γ(a+1), with Γ(1/2) = √π.
+    let mut ln_gamma = 0.5 * PI.ln();
+    for a in (0..2000).map(|i| f64::from(i) + 0.5) {
+        ln_gamma += a.ln();
+        for share in [0.3, 0.9, 1.0, 1.1, 1.6] {
+            let x: f64 = a * share;
+            let step = (a * x.ln() - x - ln_gamma).exp();
+            let found = upper_tail(2.0 * x, 2.0 * (a + 1.0)) - upper_tail(2.0 * x, 2.0 * a);
+            assert!(
+                (found - step).abs() < 1e-10 * (1.0 + step),
+                "{a}, {x}: {found} instead of {step}"
+            );
+        }
+    }
+    for (freedom, quantile) in [
+        (1.0, 3.841_458_820_694_124),
+        (10.0, 18.307_038_053_275_146),
+        (100.0, 124.342_113_404_004_07),
+    ] {
+        assert_near(upper_tail(quantile, freedom), 0.05, 1e-12);
+    }
+    assert_eq!(upper_tail(2e6, 1.0), 0.0);
+}
+
+#[test]
+fn gauss_legendre_is_exact_for_polynomials() {
+    for order in [1, 2, 5, 16, 128] {
+        let rule = gauss_legendre(order);
+        let degree = 2 * order as i32 - 2;
+        let value = integrate(&rule, -1.0, 1.0, |x| x.powi(degree));
+        assert!(
+            (value - 2.0 / f64::from(degree + 1)).abs() < 1e-13,
+            "order {order}: {value}"
+        );
+    }
+    assert!((integrate_hemisphere(8, |w| w.z * w.z) - TAU / 3.0).abs() < 1e-12);
+    // One degree more than the rule can do is not exact: the check above has teeth.
+    let value = integrate(&gauss_legendre(3), -1.0, 1.0, |x| x.powi(6));
+    assert!((value - 2.0 / 7.0).abs() > 1e-2);
+}
+
+#[test]
+fn the_density_of_an_angle_is_that_of_all_directions_around_the_axis() {
+    let axis = vec3(0.6, 0.0, 0.8);
+    let frame = frame_from_normal(axis);
+    // ∫ (t·ω)² dφ sin α = π sin³ α about the tangent t.
+    for alpha_rad in [0.3_f64, 1.2, 2.5] {
+        let found = angle_density(&frame, alpha_rad, 64, |wi| frame.tangent.dot(wi).powi(2));
+        let expected = PI * alpha_rad.sin().powi(3);
+        assert!((found - expected).abs() < 1e-12, "{alpha_rad}: {found} {expected}");
+    }
+}
+
+#[test]
+fn values_are_counted_in_their_bins_and_densities_add_up() {
+    let mut histogram = Histogram::new(1.0, 3.0, 4);
+    for value in [1.0, 1.49, 2.6, 3.0, 0.99, 3.01, f64::NAN] {
+        histogram.add(value);
+    }
+    assert_eq!(histogram.counts(), [2, 0, 0, 2], "the upper end is the last bin's");
+    assert_eq!(histogram.total(), 7);
+    let density = histogram.density();
+    assert_eq!(
+        density.iter().map(|[middle, _]| *middle).collect::<Vec<_>>(),
+        [1.25, 1.75, 2.25, 2.75]
+    );
+    let within: f64 = density.iter().map(|[_, density]| density * 0.5).sum();
+    assert!((within - 4.0 / 7.0).abs() < 1e-12, "{within}");
 }

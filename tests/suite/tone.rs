@@ -1,7 +1,10 @@
 //! Tone curves and sRGB's encoding.
 
+use glossmith::document::ViewSettings;
+use glossmith::job::film::Image;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear, tone_map};
 use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::render::display::display;
 
 fn mapped(curve: ToneCurve, rgb: [f64; 3]) -> [f64; 3] {
     tone_map(curve, Vec3::<f64>::from_f64(rgb)).to_f64()
@@ -143,4 +146,81 @@ fn srgb_is_the_standards() {
         let back = srgb_from_linear(linear_from_srgb(Vec3::splat(srgb))).to_f64();
         assert_near(back, [srgb; 3], 1e-7);
     }
+}
+
+/// What `scripts/tone-table --check 12` prints: scene colours, and what OpenColorIO 2.5 makes of them.
+const KNOWN: [[f64; 6]; 12] = [
+    [0.392921, 4.562575, 1.526241, 0.760671, 0.930863, 0.804952],
+    [0.010700, 0.021025, 3.686530, 0.351585, 0.401180, 1.000000],
+    [0.001475, 2.300645, 1.850572, 0.569000, 0.859285, 0.813640],
+    [0.095340, 0.021575, 0.017284, 0.200891, 0.043101, 0.031538],
+    [0.013979, 0.077592, 0.132604, 0.030091, 0.193775, 0.264604],
+    [0.206117, 11.062247, 1.778516, 0.865901, 0.985116, 0.870809],
+    [0.382730, 10.429158, 0.009787, 0.824730, 1.000000, 0.772173],
+    [0.005957, 0.350888, 0.002089, 0.104125, 0.485747, 0.080230],
+    [0.001940, 0.145554, 0.093866, 0.038981, 0.293370, 0.237794],
+    [5.461321, 0.407822, 0.144546, 1.000000, 0.635568, 0.547880],
+    [0.123743, 0.013082, 0.001564, 0.201397, 0.041254, 0.002723],
+    [0.007962, 0.718214, 0.008573, 0.196178, 0.663307, 0.173153],
+];
+
+#[test]
+fn aces_2_has_the_colours_of_open_color_io() {
+    let mut apart = Vec::new();
+    for [r, g, b, expected @ ..] in KNOWN {
+        let shown = srgb_from_linear(tone_map(ToneCurve::Aces2, vec3(r, g, b))).to_f64();
+        let worst = (0..3).map(|i| (shown[i] - expected[i]).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.012, "{:?}: {shown:?}, not {expected:?}", [r, g, b]);
+        apart.push(worst);
+    }
+    let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+    assert!(mean < 0.003, "{mean}");
+    // Middle grey and white, by OpenColorIO.
+    for (grey, expected) in [(0.18, 0.349188), (1.0, 0.706683), (16.0, 0.974728)] {
+        let shown = srgb_from_linear(tone_map(ToneCurve::Aces2, Vec3::splat(grey))).to_f64();
+        assert!(shown.iter().all(|x: &f64| (x - expected).abs() < 1e-3), "{shown:?}");
+    }
+}
+
+/// What a view shows of an image, of one channel.
+fn shown(image: &Image, glare: f32, vignette: f32) -> Vec<f64> {
+    let view = ViewSettings {
+        glare,
+        vignette,
+        tone_map: ToneCurve::None,
+        ..ViewSettings::default()
+    };
+    let light = |code: &u8| linear_from_srgb(Vec3::splat(f64::from(*code) / 255.0)).x;
+    display(image, &view).iter().step_by(4).map(light).collect()
+}
+
+/// A share of the light moves, none is made or lost, and it falls off with the distance. The corners keep what the vignette says.
+#[test]
+fn glare_spreads_light_and_a_vignette_darkens_the_corners() {
+    let (width, height) = (64, 48);
+    let mut sparks = Image {
+        width,
+        height,
+        pixels: vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize],
+    };
+    let at = |x: u32, y: u32| (y * width + x) as usize;
+    let middle = at(21, 24);
+    sparks.pixels[middle] = [0.9, 0.6, 0.3, 1.0];
+    let glowing = shown(&sparks, 0.3, 0.0);
+    let [centre, near, far] = [middle, at(24, 24), at(30, 24)].map(|place| glowing[place]);
+    assert!(centre > 0.7 * 0.9 && centre < 0.8 * 0.9, "{centre}");
+    assert!(near > far, "{near} and {far}");
+    let even = Image {
+        pixels: vec![[0.4, 0.3, 0.2, 1.0]; sparks.pixels.len()],
+        ..sparks
+    };
+    let plain = shown(&even, 0.0, 0.0);
+    assert_eq!(
+        shown(&even, 0.5, 0.0),
+        plain,
+        "an image of one tone has nothing to spread"
+    );
+    let dark = shown(&even, 0.0, 1.0);
+    assert!((dark[at(32, 24)] / plain[0] - 1.0).abs() < 0.01);
+    assert!((dark[0] / plain[0] - 0.25).abs() < 0.02, "{}", dark[0] / plain[0]);
 }

@@ -1,10 +1,13 @@
 //! Textures of one's own in the window: chosen, dropped, placed, taken off.
 
+use std::path::{Path, PathBuf};
+
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
 use glossmith::document::Document;
 use glossmith::scene::ModelSource;
+use glossmith::scene::texture::set::{recognised, targets_of};
 use glossmith::scene::texture::{TextureTarget, UserTexture};
 use image::{Rgba, RgbaImage};
 
@@ -176,4 +179,50 @@ fn a_missing_texture_is_told() {
     settle(&mut harness);
     see_label(&mut harness, "gone.png: missing");
     assert!(harness.query_all_by_label("here.png").count() > 0);
+}
+
+fn targets(name: &str) -> Vec<(&'static str, bool)> {
+    targets_of(Path::new(name))
+        .iter()
+        .map(|(target, texture)| (target.name(), texture.inverted))
+        .collect()
+}
+
+#[test]
+fn pictures_are_known_by_their_names() {
+    assert_eq!(targets("wood_BaseColor.png"), [("base-color", false)]);
+    assert_eq!(targets("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
+    assert_eq!(targets("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
+    assert_eq!(targets("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
+    assert_eq!(targets("brick_nor_dx_1k.exr"), [("normal", true)]);
+    assert_eq!(targets("brick_nor_gl_1k.exr"), [("normal", false)]);
+    assert_eq!(targets("paint-Glossiness.tif"), [("roughness", true)]);
+    assert_eq!(
+        targets("helmet_OcclusionRoughnessMetallic.png"),
+        [("roughness", false), ("metalness", false)]
+    );
+    assert_eq!(targets("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
+    assert_eq!(targets("base_color.png"), [("base-color", false)]);
+    assert_eq!(targets("metal_plate_rough.png"), [("roughness", false)]);
+    assert_eq!(targets("rock_ao.png"), []);
+    assert_eq!(targets("holiday.jpg"), []);
+}
+
+#[test]
+fn of_two_for_one_target_the_better_is_taken() {
+    let paths = ["a_arm.png", "a_nor_dx.png", "a_nor_gl.png", "a_rough.png", "a_disp.png"].map(PathBuf::from);
+    let (found, left) = recognised(&paths);
+    let names: Vec<_> = found
+        .iter()
+        .map(|(target, texture)| (target.name(), texture.file.to_str().unwrap_or_default()))
+        .collect();
+    assert_eq!(
+        names,
+        [
+            ("roughness", "a_rough.png"),
+            ("metalness", "a_arm.png"),
+            ("normal", "a_nor_gl.png")
+        ]
+    );
+    assert_eq!(left, ["a_nor_dx.png", "a_disp.png"].map(PathBuf::from));
 }

@@ -32,7 +32,6 @@ impl Hats {
         }
     }
 
-    /// D's maximum.
     pub fn distance_max(&self) -> f64 {
         self.nodes[self.nodes.len() - 1]
     }

@@ -29,7 +29,6 @@ pub struct Merl {
 
 /// Why a file is no MERL measurement.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MerlError {
     /// The system does not give it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
@@ -40,16 +39,12 @@ pub enum MerlError {
     /// Cut short, or too long.
     #[error("{}: {length} bytes instead of {FILE_LENGTH}: cut short or not a MERL measurement; fetch the file again", path.display())]
     Length { path: PathBuf, length: u64 },
-    /// Nothing in it.
     #[error("{}: reflects nothing: every number is 0, negative or not finite; choose another file", path.display())]
     Empty { path: PathBuf },
 }
 
 impl Merl {
     /// Reads a file.
-    ///
-    /// # Errors
-    /// What is wrong with the file.
     pub fn load(path: &Path) -> Result<Self, MerlError> {
         let read = |source| MerlError::Read {
             path: path.to_owned(),
@@ -67,9 +62,6 @@ impl Merl {
     }
 
     /// From a file's contents. `path` is only named in messages.
-    ///
-    /// # Errors
-    /// What is wrong with the contents.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, MerlError> {
         let header: Vec<u8> = CELLS.iter().flat_map(|count| (*count as i32).to_le_bytes()).collect();
         if !bytes.starts_with(&header) {

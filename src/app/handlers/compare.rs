@@ -19,7 +19,6 @@ impl App {
         Some(self.shared.compare.compared()?.rms)
     }
 
-    /// Compares with something.
     pub(in crate::app) fn compare_with(&mut self, rival: Rival) {
         let compare = &mut self.shared.compare;
         compare.rival = rival;

@@ -463,31 +463,3 @@ fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
         path.with_extension(ending)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_saved_as_json_is_called_so() {
-        for (typed, named) in [
-            ("a.json", "a.json"),
-            ("a.JSON", "a.JSON"),
-            ("a", "a.json"),
-            ("a.2", "a.2.json"),
-            ("a.png", "a.png.json"),
-        ] {
-            assert_eq!(as_json(typed.into()), PathBuf::from(named));
-        }
-        for (typed, named) in [
-            ("proj", "proj.glossmith.json"),
-            ("proj.glossmith", "proj.glossmith.json"),
-            ("v1.2", "v1.2.glossmith.json"),
-            ("proj.json", "proj.json"),
-            ("a.glossmith.json", "a.glossmith.json"),
-        ] {
-            assert_eq!(as_project(typed.into()), PathBuf::from(named));
-        }
-        assert!(is_picture(Path::new("001.PNG")) && !is_picture(Path::new("001")));
-    }
-}

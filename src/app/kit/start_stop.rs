@@ -2,7 +2,6 @@
 
 use egui::{Button, Response, Ui};
 
-/// What was pressed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::app) enum Pressed {
     #[default]

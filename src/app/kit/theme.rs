@@ -71,7 +71,6 @@ pub(in crate::app) fn surround(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { 28 } else { 150 })
 }
 
-/// Sets both themes.
 pub(in crate::app) fn install(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
     ctx.set_style_of(Theme::Dark, style(&DARK, true));
@@ -196,27 +195,4 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
 /// The grey between the panels.
 pub(in crate::app) fn ground(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { DARK.ground } else { LIGHT.ground })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::optics::curve::Curve;
-
-    /// Among them what egui's colour picker shows and what the results of the hard cases are marked with.
-    #[test]
-    fn the_fonts_have_what_is_shown() {
-        let ctx = egui::Context::default();
-        install(&ctx);
-        // Fonts are there from the first frame on.
-        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
-        let formulas: String = Curve::ALL.iter().map(|curve| curve.formula()).collect();
-        let shown = format!("✔✖📋·×−≤…ξθ²°{formulas}");
-        ctx.fonts_mut(|fonts| {
-            for glyph in shown.chars() {
-                let font = FontId::proportional(13.0);
-                assert!(fonts.has_glyph(&font, glyph), "{glyph} is not drawn");
-            }
-        });
-    }
 }

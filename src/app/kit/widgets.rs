@@ -27,7 +27,6 @@ const HEX_WIDTH: f32 = 68.0;
 pub(in crate::app) struct Name<'a> {
     /// The name for screen readers and tests; unique in the window.
     pub(in crate::app) full: &'a str,
-    /// The label.
     pub(in crate::app) label: &'a str,
     /// A symbol behind it, or empty.
     pub(in crate::app) symbol: &'a str,
@@ -559,28 +558,4 @@ pub(in crate::app) fn failure(ui: &mut Ui, why: Option<String>) {
 /// A note in weak text.
 pub(in crate::app) fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).weak());
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_lose_zeros_but_not_digits() {
-        assert_eq!(trimmed(0.3, 3), "0.30");
-        assert_eq!(trimmed(0.305, 3), "0.305");
-        assert_eq!(trimmed(-0.0001, 3), "0.00");
-        assert_eq!(trimmed(12.0, 0), "12");
-        assert_eq!(trimmed(100.0, 0), "100");
-        assert_eq!(trimmed(-4.5, 1), "-4.5");
-    }
-
-    #[test]
-    fn colours_come_back_from_their_codes() {
-        for code in ["#000000", "#ffffff", "#c8a060", "#010203"] {
-            assert_eq!(linear_of(code).map(hex_of).as_deref(), Some(code));
-        }
-        assert_eq!(linear_of("#12345"), None);
-        assert_eq!(linear_of("#+23456"), None);
-    }
 }

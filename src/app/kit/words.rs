@@ -91,36 +91,3 @@ pub(in crate::app) fn short_number(value: f64) -> String {
     };
     format!("{scaled:.decimals$}{prefix}")
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_left_is_told_in_coarse_steps_once_it_is_known() {
-        let left = |share, seconds| time_left(share, seconds);
-        assert_eq!(left(0.5, 41.0).as_deref(), Some("40 s left"));
-        assert_eq!(left(0.5, 3.4).as_deref(), Some("3 s left"));
-        assert_eq!(left(0.9, 1.0).as_deref(), Some("1 s left"), "never nothing");
-        assert_eq!(left(0.1, 100.0).as_deref(), Some("15 min left"));
-        for (share, seconds) in [(0.5, 0.1), (0.001, 5.0), (1.0, 5.0), (f64::NAN, 5.0)] {
-            assert_eq!(left(share, seconds), None, "{share} after {seconds} s");
-        }
-    }
-
-    #[test]
-    fn numbers_keep_three_digits() {
-        assert_eq!(short_number(0.0), "0");
-        assert_eq!(short_number(999.0), "999");
-        assert_eq!(short_number(1234.0), "1.23 k");
-        assert_eq!(short_number(45_670_000.0), "45.7 M");
-        assert_eq!(short_number(3.21e11), "321 G");
-        let percents = [0.0, 2e-9, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
-        let expected = ["0.00 %", "< 0.0001 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"];
-        assert_eq!(percents, expected);
-        assert_eq!(
-            [0.229, 1.0, f64::NAN].map(error),
-            ["22.9 %", "not yet known", "not yet known"]
-        );
-    }
-}

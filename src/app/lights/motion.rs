@@ -18,9 +18,7 @@ pub struct View {
 /// A pull of the pointer, in points from the image's top left.
 #[derive(Clone, Copy, Debug)]
 pub struct Pull {
-    /// Where it began.
     pub from: DVec2,
-    /// Where it is.
     pub to: DVec2,
     /// Angles and lengths become round.
     pub snaps: bool,
@@ -134,43 +132,4 @@ fn nearest([origin, along]: [DVec3; 2], place: DVec3, axis: DVec3) -> f64 {
         return 0.0;
     }
     (cosine * along.dot(away) - axis.dot(away)) / sine_squared
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::camera::PixelFilter;
-
-    fn middle(light: &AreaLight) -> DVec3 {
-        light.shape().frame().middle
-    }
-
-    #[test]
-    fn new_lights_are_seen_and_outside_of_the_model() {
-        for distance in [1.8, 4.0, 30.0] {
-            let camera = Camera::look_at(
-                [0.0, 0.6 * distance, 0.8 * distance],
-                [0.0; 3],
-                30.0,
-                1.5,
-                PixelFilter::Box,
-            );
-            for camera in [camera, camera.orthographic(4.0)] {
-                let view = View {
-                    camera,
-                    size: DVec2::new(600.0, 400.0),
-                };
-                let seen: Vec<DVec2> = (0..4)
-                    .map(|number| {
-                        let mut light = AreaLight::default();
-                        put_in_view(&mut light, &view, number);
-                        assert!(middle(&light).length() > 1.29, "{distance}: {light:?}");
-                        view.seen_inside(middle(&light)).expect("it is in the image")
-                    })
-                    .collect();
-                let apart = |a: usize, b: usize| seen[a].distance(seen[b]);
-                assert!(apart(0, 1) > 100.0 && apart(0, 2) > 100.0, "{seen:?}");
-            }
-        }
-    }
 }

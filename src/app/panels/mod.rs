@@ -37,7 +37,6 @@ crate::app::pane::list!(panels);
 pub(super) struct Panels(Vec<(Pane, Box<dyn Panel>)>);
 
 impl Panels {
-    /// Draws one.
     pub(super) fn show(&mut self, pane: Pane, ui: &mut Ui, desk: &mut Desk<'_>) {
         if let Some((_, panel)) = self.0.iter_mut().find(|(of, _)| *of == pane) {
             panel.show(ui, desk);

@@ -57,9 +57,6 @@ pub(in crate::app) struct Leftover {
 
 impl Autosave {
     /// Starts to put documents aside in a folder, and looks for what crashes left there.
-    ///
-    /// # Errors
-    /// If no thread can be started.
     pub(in crate::app) fn begin(folder: PathBuf, interval: Duration, ctx: egui::Context) -> std::io::Result<Self> {
         let (orders, ordered) = channel();
         let (sender, reports) = channel();

@@ -13,7 +13,6 @@ use crate::render::EngineKind;
 use crate::render::background::Background;
 use crate::render::worker::{Picture, Snapshot, Worker};
 
-/// What B is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rival {
     /// The selected material with another lobe, its roughness chosen so that the look is nearest.
@@ -118,7 +117,6 @@ pub(in crate::app) struct Compare {
     pub(in crate::app) generation: u64,
 }
 
-/// B's.
 pub(in crate::app) struct Renderer {
     pub(in crate::app) worker: Worker,
     pub(in crate::app) engine: EngineKind,
@@ -152,7 +150,6 @@ impl Compare {
         Some(self.renderer.as_ref()?.worker.snapshot())
     }
 
-    /// B's latest image.
     pub(in crate::app) fn picture(&self) -> Option<Arc<Picture>> {
         self.snapshot()?.picture.clone()
     }

@@ -40,11 +40,8 @@ pub(in crate::app) enum Done {
 /// What a job is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Task {
-    /// Opening a file.
     Open,
-    /// Listing a folder.
     List,
-    /// Writing.
     Write,
 }
 
@@ -62,9 +59,6 @@ pub(in crate::app) struct Disk {
 
 impl Disk {
     /// Starts the thread.
-    ///
-    /// # Errors
-    /// If the system gives none.
     pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
         let (jobs, to_do) = channel::<(Task, Job)>();
         let (sender, done) = channel();
@@ -86,19 +80,16 @@ impl Disk {
         })
     }
 
-    /// Opens a file.
     pub(in crate::app) fn open(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.reads += 1;
         self.order(Task::Open, job);
     }
 
-    /// Lists a folder.
     pub(in crate::app) fn list(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.reads += 1;
         self.order(Task::List, job);
     }
 
-    /// Writes a file.
     pub(in crate::app) fn write(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.writes += 1;
         self.order(Task::Write, job);
@@ -177,40 +168,5 @@ pub(in crate::app) fn words(result: Result<String, String>) -> (Level, String) {
     match result {
         Ok(text) => (Level::Info, text),
         Err(text) => (Level::Error, text),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_job_that_panics_is_told_and_the_next_ones_are_done() {
-        let mut disk = Disk::new(egui::Context::default()).expect("a thread");
-        disk.open(|| panic!("unreadable on purpose"));
-        disk.write(|| panic!("unwritable on purpose"));
-        disk.write_beside(|| panic!("lost on purpose"));
-        disk.write(|| Done::Wrote(Ok("whole".to_owned())));
-        assert!(disk.is_reading() && disk.is_writing());
-        let begun = std::time::Instant::now();
-        let mut broken = Vec::new();
-        let mut wrote = 0;
-        while disk.is_reading() || disk.is_writing() {
-            assert!(begun.elapsed() < std::time::Duration::from_secs(60), "waited in vain");
-            for done in disk.take_done() {
-                match done {
-                    Done::Broke(task, why) => broken.push((task, why)),
-                    _ => wrote += 1,
-                }
-            }
-        }
-        broken.sort_by(|a, b| a.1.cmp(&b.1));
-        let expected = [
-            (Task::Write, "lost on purpose"),
-            (Task::Open, "unreadable on purpose"),
-            (Task::Write, "unwritable on purpose"),
-        ];
-        assert_eq!(broken, expected.map(|(task, why)| (task, why.to_owned())));
-        assert_eq!(wrote, 1);
     }
 }

@@ -16,9 +16,6 @@ pub(in crate::app) struct Ready {
 }
 
 /// Makes the file of a subject.
-///
-/// # Errors
-/// Why it has no place there, or cannot be rendered.
 pub(in crate::app) fn ready(subject: &Subject, name: &str, path: &Path, format: &Registered) -> Result<Ready, String> {
     let mut prepared = exchange::prepare(subject, name, path, format).map_err(|error| error.to_string())?;
     let mut pictures: Vec<Option<Compared>> = Vec::new();

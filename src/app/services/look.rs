@@ -30,7 +30,6 @@ pub(in crate::app) struct Look {
     pub(in crate::app) at: Option<Place>,
     /// It stays where it is while the pointer moves on.
     pub(in crate::app) is_pinned: bool,
-    /// The surface there.
     pub(in crate::app) seen: Option<SeenSurface>,
 }
 
@@ -57,22 +56,4 @@ impl Look {
 pub(in crate::app) fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
     let share = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side.max(1));
     [share(x, width), share(y, height)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn pixels_come_back_from_their_middles() {
-        let size = [40, 24];
-        for pixel in [[0, 0], [39, 23], [7, 11]] {
-            let look = Look {
-                at: Some(middle(pixel, size)),
-                ..Look::default()
-            };
-            assert_eq!(look.pixel(size), Some(pixel));
-        }
-        assert_eq!(Look::default().pixel(size), None);
-    }
 }

@@ -80,34 +80,3 @@ pub(in crate::app) fn add_import(log: &mut Vec<Entry>, name: &str, report: &Impo
         entry.is_of_import = true;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What became of a file is said in plain words, the worst first, and marked to stay.
-    #[test]
-    fn an_import_is_told_by_what_is_worst_of_it() {
-        let mut report = ImportReport::default();
-        let mut log = Vec::new();
-        report.note(Fate::Used, "materials", "paint");
-        add_import(&mut log, "car.glb", &report);
-        assert!(log.is_empty(), "all is as the file says");
-        report.note(Fate::Approximated, "an unlit material, which shines", "sign");
-        report.note(Fate::Ignored, "iridescence", "lens");
-        report.note(Fate::Ignored, "iridescence", "visor");
-        add_import(&mut log, "car.glb", &report);
-        let expected = "car.glb: iridescence, in lens and 1 more – is not shown. One thing more differs.";
-        assert_eq!((log[0].text.as_str(), log[0].is_of_import), (expected, true));
-    }
-
-    #[test]
-    fn what_is_said_again_stays_the_entry_that_it_was() {
-        let mut log = Vec::new();
-        for text in ["a", "a", "b", "b", "a"] {
-            add(&mut log, Level::Warning, text.to_owned());
-        }
-        let entries: Vec<(u64, &str)> = log.iter().map(|entry| (entry.number, &*entry.text)).collect();
-        assert_eq!(entries, [(0, "a"), (1, "b"), (2, "a")]);
-    }
-}

@@ -60,7 +60,6 @@ impl Recent {
         self.searched_at = None;
     }
 
-    /// Forgets them all.
     pub(in crate::app) fn clear(&mut self) {
         self.paths.clear();
     }
@@ -86,23 +85,5 @@ impl Recent {
             search.ask(self.paths.clone());
         }
         self.searched_at = Some(Instant::now());
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_latest_comes_first_and_only_once() {
-        let mut recent = Recent::default();
-        for name in ["/a.json", "/b.glb", "/a.json"] {
-            recent.add(Path::new(name));
-        }
-        assert_eq!(recent.paths(), [Path::new("/a.json"), Path::new("/b.glb")]);
-        for number in 0..2 * COUNT {
-            recent.add(Path::new(&format!("/{number}.glb")));
-        }
-        assert_eq!(recent.paths().len(), COUNT);
     }
 }

@@ -11,7 +11,6 @@ use crate::scene::texture::TextureTarget;
 pub(in crate::app) enum Thing {
     /// An object of the model, by number.
     Object(usize),
-    /// A material slot.
     Slot(usize),
 }
 
@@ -27,7 +26,6 @@ pub(in crate::app) struct Selection {
     pub(in crate::app) was_shown: bool,
     /// The user has chosen something of this model: what is edited at first is not outlined.
     pub(in crate::app) is_made: bool,
-    /// The objects.
     pub(in crate::app) objects: BTreeSet<usize>,
     /// Slots that are edited together with the selected one.
     pub(in crate::app) also: BTreeSet<usize>,
@@ -102,29 +100,4 @@ fn toggle(chosen: &mut BTreeSet<usize>, number: usize, beside_others: bool) {
         chosen.clear();
     }
     chosen.insert(number);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn objects_are_chosen_alone_or_beside_others() {
-        let mut selection = Selection::default();
-        for (object, beside_others, expected) in [
-            (2, false, vec![2]),
-            (5, true, vec![2, 5]),
-            (2, true, vec![5]),
-            (1, false, vec![1]),
-        ] {
-            selection.choose_object(object, beside_others);
-            assert_eq!(selection.objects.iter().copied().collect::<Vec<_>>(), expected);
-        }
-        selection.slot = 3;
-        selection.choose_also(3);
-        selection.choose_also(0);
-        assert_eq!(selection.slots(), [3, 0]);
-        selection.forget();
-        assert_eq!(selection.slots(), [3]);
-    }
 }

@@ -179,26 +179,3 @@ impl Shelves {
         (self.contents.clone(), self.picture_keys.clone())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tags_are_words_between_commas() {
-        let mut kept = KeptShelves::default();
-        kept.tag("preset:gold", " Warm, shiny,,warm ");
-        kept.tag("preset:rubber", "dark");
-        assert_eq!(kept.tags_of("preset:gold"), "shiny, warm");
-        assert_eq!(
-            kept.all_tags().into_iter().collect::<Vec<_>>(),
-            ["dark", "shiny", "warm"]
-        );
-        kept.tag("preset:rubber", " ");
-        assert_eq!(kept.tags_of("preset:rubber"), "");
-        kept.favour("preset:gold");
-        assert!(kept.favourites.contains("preset:gold"));
-        kept.favour("preset:gold");
-        assert!(kept.favourites.is_empty());
-    }
-}

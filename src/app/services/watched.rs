@@ -57,9 +57,6 @@ fn stamp(path: &PathBuf) -> Stamp {
 
 impl Watched {
     /// Starts the thread, which ends with this value. `repaint` is called when a file was saved.
-    ///
-    /// # Errors
-    /// If the system gives none.
     pub(in crate::app) fn new(interval: Duration, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let files = Arc::new(Mutex::new(Vec::new()));
         let of_thread: Weak<Mutex<Vec<File>>> = Arc::downgrade(&files);
@@ -101,29 +98,5 @@ impl Watched {
         let mut files = lock(&self.0);
         let taken = |file: &mut File| std::mem::take(&mut file.has_changed).then(|| file.path.clone());
         files.iter_mut().filter_map(taken).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_file_counts_as_saved_once_it_rests() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let path = folder.path().join("a.glb");
-        std::fs::write(&path, "one").expect("written");
-        let mut file = File::new(path.clone());
-        assert!(!file.look());
-        std::fs::write(&path, "one, two").expect("written");
-        assert!(!file.look(), "it may still grow");
-        std::fs::write(&path, "one, two, three").expect("written");
-        assert!(!file.look(), "it grew");
-        assert!(file.look());
-        assert!(!file.look(), "taken once");
-        std::fs::remove_file(&path).expect("removed");
-        assert!(!file.look() && !file.look(), "gone, as while it is replaced");
-        std::fs::write(&path, "four").expect("written");
-        assert!(!file.look() && file.look());
     }
 }

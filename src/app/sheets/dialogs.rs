@@ -484,39 +484,3 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
     found.truncate(COMPLETIONS);
     found
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A dialog of the system that has been asked for so long ago, and what it is answered by.
-    fn waiting(ago: Duration) -> (Dialogs, std::sync::mpsc::Sender<Option<PathBuf>>) {
-        let (sender, answer) = channel();
-        let since = Instant::now().checked_sub(ago).unwrap_or_else(Instant::now);
-        let pending = Pending {
-            purpose: Purpose::SaveProject,
-            suggestion: "untitled.glossmith.json".to_owned(),
-            answer,
-            since,
-        };
-        let dialogs = Dialogs {
-            pending: Some(pending),
-            ..Dialogs::default()
-        };
-        (dialogs, sender)
-    }
-
-    #[test]
-    fn a_dialog_left_without_a_choice_is_told_and_one_that_hangs_can_be_done_without() {
-        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
-        sender.send(None).expect("somebody listens");
-        assert_eq!(dialogs.poll(), Some((Purpose::SaveProject, None)));
-        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
-        dialogs.ask(Purpose::SaveProject, String::new(), &egui::Context::default());
-        assert_eq!(dialogs.field.as_ref().map(|field| field.why), Some(Why::Waiting));
-        // The file that is chosen there after all.
-        sender.send(Some("/a.json".into())).expect("somebody listens");
-        assert_eq!(dialogs.poll(), Some((Purpose::SaveProject, Some("/a.json".into()))));
-        assert!(!dialogs.is_asking());
-    }
-}

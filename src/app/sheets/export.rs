@@ -24,7 +24,6 @@ pub(in crate::app) struct ExportSheet {
     textures: Vec<Option<[TextureHandle; 3]>>,
 }
 
-/// What was answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Answer {
     Write,
@@ -32,7 +31,6 @@ pub(in crate::app) enum Answer {
 }
 
 impl ExportSheet {
-    /// Opens the sheet.
     pub(in crate::app) fn ask(&mut self, ctx: &egui::Context, ready: Ready) {
         let texture = |(name, picture): (&&str, &image::RgbImage)| {
             let size = [picture.width() as usize, picture.height() as usize];

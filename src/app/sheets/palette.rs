@@ -10,7 +10,6 @@ use crate::document::{Document, Kind, MaterialSettings, PARAMETERS, Parameter, S
 /// Something to be found.
 struct Entry {
     label: String,
-    /// What is searched.
     text: String,
     help: &'static str,
     keys: String,

@@ -55,7 +55,6 @@ pub(in crate::app) struct Preview {
     pub(in crate::app) camera: CameraSettings,
 }
 
-/// The sheet.
 pub(in crate::app) struct TurntableSheet {
     pub(in crate::app) is_open: bool,
     frames: u32,

@@ -13,7 +13,6 @@ use crate::store::Loaded;
 pub(in crate::app) enum Then {
     /// The window is closed.
     Close,
-    /// A new document.
     New,
     /// A project that has been read from a file.
     Adopt(Box<Loaded<Document>>, PathBuf),
@@ -50,7 +49,6 @@ pub(in crate::app) struct Question {
     pub(in crate::app) is_new: bool,
 }
 
-/// What was answered.
 pub(in crate::app) enum Answer {
     Save,
     Discard,

@@ -286,26 +286,3 @@ pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW_HEIGHT), layout, add);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_bar_keeps_what_it_has_room_for_and_in_order() {
-        let spacing = 8.0;
-        let all: f32 = ITEMS.iter().map(|(_, width)| width + spacing).sum();
-        assert_eq!(fitting(all, spacing).len(), ITEMS.len());
-        let mut fewer = ITEMS.len();
-        for room in (0..all as u32).rev() {
-            let inside = fitting(room as f32, spacing);
-            assert!(
-                inside.len() <= fewer && inside == RANKED[..inside.len()],
-                "{room}: {inside:?}"
-            );
-            fewer = inside.len();
-        }
-        assert_eq!(fewer, 0);
-        assert!(ITEMS.iter().all(|(item, _)| RANKED.contains(item)));
-    }
-}

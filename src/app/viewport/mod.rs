@@ -499,26 +499,3 @@ fn drop_hint(ui: &Ui, area: Rect) {
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_picture_is_transparent_wherever_it_lets_through() {
-        let mut image = ColorImage::filled([3, 2], Color32::GRAY);
-        assert!(!is_transparent(&image));
-        image.pixels[4] = Color32::from_black_alpha(254);
-        assert!(is_transparent(&image));
-    }
-
-    #[test]
-    fn a_picture_fills_the_viewport_unless_that_would_distort_it() {
-        let area = Rect::from_min_size(pos2(10.0, 20.0), vec2(300.0, 200.0));
-        let place = |size| placed_size(area, size, Resolution::Auto);
-        assert_eq!(place([300, 200]), area);
-        assert_eq!(place([151, 100]), area);
-        let kept = place([300, 150]);
-        assert_eq!((kept.size(), kept.center()), (vec2(300.0, 150.0), area.center()));
-    }
-}

@@ -68,7 +68,6 @@ impl Orbit {
         self.target += height * (up * shift[1] - right * shift[0]);
     }
 
-    /// Multiplies the distance.
     pub(super) fn zoom(&mut self, factor: f64) {
         let [near, far] = DISTANCE_RADII.map(|radii| radii * self.radius);
         self.distance = (self.distance * factor).clamp(near, far);

@@ -225,31 +225,3 @@ fn report(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slices_share_all_samples() {
-        for samples in [1, 7, 64] {
-            for of in [1, 2, 3, 5] {
-                let ranges: Vec<[u32; 2]> = (1..=of)
-                    .filter_map(|part| Part::Slice([part, of]).range(samples))
-                    .collect();
-                assert_eq!(ranges[0][0], 0);
-                assert_eq!(ranges[of as usize - 1][1], samples);
-                assert!(ranges.windows(2).all(|pair| pair[0][1] == pair[1][0]), "{ranges:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn ranges_are_numbers_from_one() {
-        assert_eq!(numbers("3"), Ok(3..=3));
-        assert_eq!(numbers("3-7"), Ok(3..=7));
-        assert!(["0", "7-3", "a", "", "-3"].iter().all(|text| numbers(text).is_err()));
-        assert_eq!(slice("2/5"), Ok([2, 5]));
-        assert!(["0/5", "6/5", "2", "/"].iter().all(|text| slice(text).is_err()));
-    }
-}

@@ -71,7 +71,6 @@ impl<T: Real> Group<T> {
         T::each(|lane| field[if lane < self.count { lane } else { 0 }])
     }
 
-    /// The paths' ids.
     #[inline(always)]
     pub fn members(&self, ids: &[u16]) -> Members<T> {
         Members(self.each(ids))

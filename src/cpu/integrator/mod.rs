@@ -136,7 +136,6 @@ struct PathVertex<T: Real> {
     group: Group<T>,
     members: Members<T>,
     bounce: u32,
-    /// Active lanes.
     active: T::Mask,
     /// Path throughput: weight of the light that arrives along the rays.
     throughput: Vec3<T>,

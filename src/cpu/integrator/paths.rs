@@ -19,7 +19,6 @@ use crate::scene::Hit;
 
 /// What paths need to continue, by index.
 pub(super) struct State<S> {
-    /// Path ids.
     pub ids: Vec<u16>,
     /// Keys of the random sequences, see [`RandomState`].
     pub keys: Vec<u32>,
@@ -34,7 +33,6 @@ pub(super) struct State<S> {
     pub is_mirror: Vec<bool>,
     /// Bounces that were not specular; empty if nothing refracts.
     pub rough_bounces: Vec<u32>,
-    /// The rays' hits.
     pub hits: Vec<Hit>,
     /// Distances of the hits from the rays' origins. More than in `hits` if the ray passed transparent surfaces.
     pub distance: Vec<S>,
@@ -93,7 +91,6 @@ pub(super) struct Paths<S, R> {
     pub state: State<S>,
     /// Target of [`Paths::reorder`], which then swaps it with `state`.
     scratch: State<S>,
-    /// Ray origins.
     pub origin: Vectors<S>,
     /// True if the ray is known to miss: no traversal needed.
     pub is_known_miss: Vec<bool>,
@@ -109,7 +106,6 @@ pub(super) struct Paths<S, R> {
     pub shadow_rays: ShadowRays<S>,
     /// The unoccluded shadow rays, compacted.
     pub unoccluded_rays: ShadowRays<S>,
-    /// Number of paths.
     count: usize,
     /// Pixel coordinates (x, y), by path id; `samples` are sample numbers.
     pub pixels: [Vec<u32>; 2],
@@ -161,7 +157,6 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         }
     }
 
-    /// Removes all paths.
     pub fn clear(&mut self) {
         self.count = 0;
         self.outputs.clear();

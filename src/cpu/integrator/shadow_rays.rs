@@ -28,7 +28,6 @@ pub(super) struct ShadowRays<S> {
     pub value: Vectors<S>,
     /// Path throughput before the surface.
     pub throughput: Vectors<S>,
-    /// Ray origins.
     pub origin: Vectors<S>,
     /// True if the ray is known to be unoccluded: no traversal needed.
     pub is_known_miss: Vec<bool>,

@@ -53,7 +53,6 @@ pub struct Wave<T: Real> {
     escaped: Vec<u16>,
     /// The order of shading: `hits` sorted by slot, then `escaped`.
     order: Vec<u16>,
-    /// The camera rays.
     packets: Vec<Packet>,
     /// Per path the closest hit of its ray; unused if surfaces have holes.
     intersections: Vec<Option<Hit>>,

@@ -22,7 +22,6 @@ pub use table::EFFECTS;
 
 /// What the user reads about an effect, and how a scene calls for it.
 pub struct Effect {
-    /// Which one.
     pub id: EffectId,
     /// Name in the panel.
     pub label: &'static str,
@@ -132,17 +131,5 @@ impl Facts<'_> {
 
     fn is_environment_black(&self) -> bool {
         self.environment.is_black || self.settings.environment_strength == 0.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn effects_that_nothing_removes_are_needed() {
-        for effect in EFFECTS {
-            assert_eq!(effect.remove.is_none(), effect.id.is_needed(), "{}", effect.name());
-        }
     }
 }

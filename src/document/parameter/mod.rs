@@ -32,7 +32,6 @@ pub enum Value {
     Number(f32),
     /// The same in double precision.
     Real(f64),
-    /// A whole number.
     Count(u32),
     /// Coordinates in scene units.
     Place([f64; 3]),
@@ -44,7 +43,6 @@ pub enum Value {
     Triple([f32; 3]),
     /// The name of one of the parameter's choices.
     Choice(&'static str),
-    /// On or off.
     Toggle(bool),
     /// A curve's points (ξ, D).
     Curve(Vec<[f32; 2]>),
@@ -53,7 +51,6 @@ pub enum Value {
 /// What a parameter takes.
 #[derive(Clone, Debug)]
 pub enum Kind {
-    /// A number.
     Number {
         /// Least and largest value that it takes.
         range: [f32; 2],
@@ -67,7 +64,6 @@ pub enum Kind {
         /// Unit, or empty.
         unit: &'static str,
     },
-    /// A whole number.
     Count {
         /// Least and largest value that it takes.
         range: [u32; 2],
@@ -98,9 +94,7 @@ pub enum Kind {
         /// Least and largest value that each takes.
         range: [f32; 2],
     },
-    /// One of several.
     Choice(Vec<Choice>),
-    /// On or off.
     Toggle,
     /// The points of a [`CustomCurve`].
     Curve,
@@ -178,7 +172,6 @@ pub struct Parameter<T: 'static = MaterialSettings> {
     pub symbol: &'static str,
     /// What it does to the image.
     pub help: &'static str,
-    /// What it takes.
     pub kind: Kind,
     /// How a panel edits it where it is a number.
     pub row: RowStyle,
@@ -195,7 +188,6 @@ pub struct Parameter<T: 'static = MaterialSettings> {
 
 /// Why a parameter cannot be set.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ParameterError {
     /// Text that is no assignment.
     #[error("{text}: write KEY=VALUE, such as specular.roughness=0.3")]
@@ -216,9 +208,6 @@ pub enum ParameterError {
 }
 
 /// The parameter of a material with this key.
-///
-/// # Errors
-/// [`ParameterError::UnknownKey`], which suggests the nearest.
 pub fn parameter(key: &str) -> Result<&'static Parameter, ParameterError> {
     let found = PARAMETERS.iter().find(|parameter| parameter.key == key);
     found.ok_or_else(|| unknown_key(key))
@@ -272,9 +261,6 @@ fn split_assignment(assignment: &str) -> Result<(&str, &str), ParameterError> {
 }
 
 /// Sets a parameter of a material from `KEY=VALUE`; see [`Parameter::parse`].
-///
-/// # Errors
-/// Says what is wrong and what would be right.
 pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), ParameterError> {
     let (key, text) = split_assignment(assignment)?;
     if let Some((target, key)) = texture_key(key) {
@@ -295,9 +281,6 @@ pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), P
 
 impl Document {
     /// Sets a setting of the document, or a parameter of all its materials, from `KEY=VALUE`; see [`Parameter::parse`].
-    ///
-    /// # Errors
-    /// Says what is wrong and what would be right.
     pub fn assign(&mut self, assignment: &str) -> Result<(), ParameterError> {
         let (key, text) = split_assignment(assignment)?;
         if let Some(setting) = setting(key) {
@@ -348,9 +331,6 @@ impl<T> Parameter<T> {
     }
 
     /// Whether the parameter takes a value.
-    ///
-    /// # Errors
-    /// [`ParameterError::Invalid`] where it does not.
     pub fn check(&self, value: &Value) -> Result<(), ParameterError> {
         let kind = match (&self.kind, value) {
             (Kind::Optional { .. }, Value::Absent) => return Ok(()),
@@ -384,9 +364,6 @@ impl<T> Parameter<T> {
 
     /// The value written as on the command line: a number, `#rrggbb` (sRGB), `r,g,b` (linear), a name, `on`,
     /// `off` (or `true`, `false`), or `ξ:D,ξ:D,…`.
-    ///
-    /// # Errors
-    /// [`ParameterError::Invalid`], which says what the parameter takes.
     pub fn parse(&self, text: &str) -> Result<Value, ParameterError> {
         let text = text.trim();
         let value = self
@@ -416,9 +393,6 @@ impl<T> Parameter<T> {
     }
 
     /// The value read from a file.
-    ///
-    /// # Errors
-    /// [`ParameterError::Invalid`], which says what the parameter takes.
     pub fn value_from_json(&self, json: &Json) -> Result<Value, ParameterError> {
         let value = self.kind.value_from_json(json);
         let value = value.ok_or_else(|| self.invalid(&shortened(json.to_string()), self.expected_in_json()))?;

@@ -159,9 +159,6 @@ pub struct ColorError(String);
 pub(super) const COLOR_EXPECTED: &str = "#rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)";
 
 /// Linear RGB, each in [0, 1], from `#rrggbb` (sRGB) or `r,g,b` (linear).
-///
-/// # Errors
-/// Says what would be right.
 pub fn parse_color(text: &str) -> Result<[f32; 3], ColorError> {
     let color = parse_hex_color(text).or_else(|| parse_list(text));
     let color = color.filter(|color| color.iter().all(|x| (0.0..=1.0).contains(x)));

@@ -16,10 +16,6 @@ pub(super) struct Canvas {
 impl Canvas {
     /// An empty canvas for a file of this size, counted against the budget. Memory is only touched as pixels arrive: a header
     /// alone costs nothing.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::check_size`], and if the budget is exceeded.
     pub(super) fn new(source: Source<'_>, width: u64, height: u64) -> Result<Self, EnvironmentError> {
         Self::check_size(source, width, height)?;
         let size = [width as u32, height as u32];

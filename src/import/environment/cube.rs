@@ -83,10 +83,6 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
 
 /// Converts six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, to a
 /// latitude-longitude map; `decode` reads one.
-///
-/// # Errors
-///
-/// The fault of a file; [`EnvironmentError::NoFaces`] if they are missing.
 pub(super) fn read_folder(
     source: Source<'_>,
     decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,

@@ -16,7 +16,6 @@ pub(super) struct Source<'a> {
     pub path: &'a Path,
     /// Encoding of display-referred images.
     pub encoding: EnvironmentEncoding,
-    /// Progress and cancellation.
     pub loading: &'a Loading,
     /// Memory budget of the files and the map together.
     pub budget: &'a Budget,
@@ -24,10 +23,6 @@ pub(super) struct Source<'a> {
 
 impl Source<'_> {
     /// Contents of the file, counted against the budget.
-    ///
-    /// # Errors
-    ///
-    /// The file system's, and if the budget is exceeded or loading cancelled.
     pub(super) fn bytes(&self) -> Result<Vec<u8>, EnvironmentError> {
         let length = io(self.path, resource::open(self.path).and_then(|file| file.metadata()))?.len();
         self.within(self.budget.take(length))?;
@@ -38,10 +33,6 @@ impl Source<'_> {
     }
 
     /// Checks that an image can be decoded as a whole.
-    ///
-    /// # Errors
-    ///
-    /// If the budget is exceeded.
     pub(super) fn check_decoding(&self, bytes: &[u8]) -> Result<(), EnvironmentError> {
         let name = self.path.to_string_lossy().into_owned();
         let bytes = bytes.into();
@@ -49,10 +40,6 @@ impl Source<'_> {
     }
 
     /// The error for an exceeded budget.
-    ///
-    /// # Errors
-    ///
-    /// If so.
     pub(super) fn within(&self, taken: Result<(), OverBudget>) -> Result<(), EnvironmentError> {
         taken.map_err(|over| EnvironmentError::OverBudget {
             path: self.path.to_owned(),

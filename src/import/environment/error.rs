@@ -8,7 +8,6 @@ use crate::scene::environment::{MapError, SOURCE_MAX_HEIGHT, SOURCE_MAX_WIDTH};
 
 /// Errors of an environment. The message names the file, the fault and the remedy.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum EnvironmentError {
     /// The file system refused.
     #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
@@ -55,7 +54,6 @@ pub enum EnvironmentError {
     /// Larger than the memory budget.
     #[error("the environment {} is not loaded: {over}", path.display())]
     OverBudget { path: PathBuf, over: OverBudget },
-    /// Loading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The texels make no map.

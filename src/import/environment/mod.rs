@@ -26,19 +26,11 @@ use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSou
 const WORK_BYTES: u64 = 40;
 
 /// Loads or computes an environment. Takes seconds for an 8k file: do not call it on the window's thread.
-///
-/// # Errors
-///
-/// One line with the file's name, the fault and the remedy, for files that cannot be read or shown.
 pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError> {
     load_encoded(source, EnvironmentEncoding::default())
 }
 
 /// The same with an `encoding` for integer images.
-///
-/// # Errors
-///
-/// As [`load`].
 pub fn load_encoded(
     source: &EnvironmentSource,
     encoding: EnvironmentEncoding,
@@ -47,10 +39,6 @@ pub fn load_encoded(
 }
 
 /// The same with progress and cancellation.
-///
-/// # Errors
-///
-/// As [`load`], and if cancelled.
 pub fn load_watched(
     source: &EnvironmentSource,
     encoding: EnvironmentEncoding,
@@ -88,7 +76,6 @@ fn load_path(path: &Path, encoding: EnvironmentEncoding, loading: &Loading) -> R
     Ok(environment)
 }
 
-/// Decodes a file.
 fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),

@@ -6,9 +6,6 @@ use serde_json::Value as Json;
 use super::container::Document;
 
 /// A primitive's geometry, given as its JSON and that of its extension.
-///
-/// # Errors
-/// Why it cannot be had, in a few words.
 #[cfg(feature = "draco")]
 pub(super) fn decompress(document: &Document, primitive: &Json, extension: &Json) -> Result<PackedGeometry, String> {
     use draco_gltf::{DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension};

@@ -19,10 +19,6 @@ pub(super) fn name(document: &Document, index: usize) -> String {
 }
 
 /// An encoded image.
-///
-/// # Errors
-///
-/// The reason, in a few words.
 pub(super) fn encoded(document: &Document, index: usize) -> Result<Encoded<'_>, String> {
     let image = document.root.images.get(index).ok_or("it is out of bounds")?;
     let name = name(document, index);

@@ -96,22 +96,3 @@ fn next_word(line: &str) -> Option<(&str, &str)> {
     let end = line.find(char::is_whitespace).unwrap_or(line.len());
     (end > 0).then(|| (&line[..end], line[end..].trim_start()))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn options_come_before_a_name_with_spaces() {
-        let map = Map::parse("-s 4 4 1 -o 0.25 0 0 -clamp on -bm 0.5 -blendu on four columns.png");
-        assert_eq!(map.name, "four columns.png");
-        assert_eq!((map.scale, map.offset), ([4.0; 2], [0.25, 0.0]));
-        assert_eq!((map.is_clamped, map.strength, map.ignored.len()), (true, 0.5, 0));
-        assert_eq!(map.texture_from_mesh_uv(), [4.0, 0.0, 0.25, 0.0, 4.0, -3.0]);
-        let map = Map::parse(" -s 2 -imfchan r -t 0.1 0.1 7");
-        assert_eq!((map.name, map.scale), ("7", [2.0, 1.0]));
-        assert_eq!(map.ignored, ["-imfchan r", "-t 0.1 0.1"]);
-        assert_eq!(Map::parse("-odd name.png").name, "-odd name.png");
-        assert_eq!(Map::parse("my file.png").name, "my file.png");
-    }
-}

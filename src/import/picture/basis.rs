@@ -5,9 +5,6 @@ pub(super) type Codes = ([u32; 2], Vec<u8>);
 
 /// The level of so many that `level_of` chooses for columns and rows, of each of the faces: its columns and rows, and red,
 /// green, blue and opacity of its texels.
-///
-/// # Errors
-/// Why it cannot be had, in a few words.
 #[cfg(feature = "basis")]
 pub(super) fn decode(
     bytes: &[u8],

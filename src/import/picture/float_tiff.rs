@@ -10,9 +10,7 @@ const DECODED_MAX: usize = 2 << 30;
 
 /// A linear image.
 pub(crate) struct FloatPicture {
-    /// Columns.
     pub width: u32,
-    /// Rows.
     pub height: u32,
     /// Numbers a texel: grey, or red, green and blue first.
     channels: usize,
@@ -59,10 +57,6 @@ fn is_tiff(bytes: &[u8]) -> bool {
 }
 
 /// The image in a file's bytes; `None` if not floating-point.
-///
-/// # Errors
-///
-/// The reason, in a few words.
 pub(crate) fn decode(bytes: &[u8]) -> Result<Option<FloatPicture>, String> {
     if !is_tiff(bytes) {
         return Ok(None);

@@ -101,9 +101,7 @@ impl Decoded {
 
 /// An encoded image.
 pub(super) struct Encoded<'a> {
-    /// Name for messages.
     pub name: String,
-    /// The file.
     pub bytes: Cow<'a, [u8]>,
 }
 
@@ -153,10 +151,6 @@ impl Encoded<'_> {
     }
 
     /// The texture map, if the import's budget permits.
-    ///
-    /// # Errors
-    ///
-    /// The reason, in a few words.
     pub fn texture(self, wanted: Wanted, budget: &Budget) -> Result<Scaled, String> {
         check_growth(&self.name, &self.bytes)?;
         let Wanted { is_color, side_max } = wanted;
@@ -225,10 +219,6 @@ fn header(name: &str, bytes: &[u8]) -> Option<Header> {
 }
 
 /// The texture map in a file, with sides of at most `side_max`, within the import's budget, which it takes from.
-///
-/// # Errors
-///
-/// The reason, in a few words.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget) -> Result<Texture, String> {
     let scaled = read_encoded(path, budget)?.texture(Wanted { is_color, side_max }, budget)?;
     budget
@@ -238,10 +228,6 @@ pub fn read_texture(path: &Path, is_color: bool, side_max: u32, budget: &Budget)
 }
 
 /// The texture map in a file at its own size, for temporary use.
-///
-/// # Errors
-///
-/// The reason, in a few words.
 pub(super) fn whole_texture(path: &Path, is_color: bool, budget: &Budget) -> Result<Texture, String> {
     let encoded = read_encoded(path, budget)?;
     check_growth(&encoded.name, &encoded.bytes)?;
@@ -268,19 +254,11 @@ fn read_encoded(path: &Path, budget: &Budget) -> Result<Encoded<'static>, String
 }
 
 /// Mean of a texture map in a file, within the import's budget.
-///
-/// # Errors
-///
-/// The fault of the file.
 pub fn mean_of_file(path: &Path, budget: &Budget) -> Result<TextureMean, String> {
     Ok(texture_mean(&whole_texture(path, true, budget)?))
 }
 
 /// Decodes an image of any known format.
-///
-/// # Errors
-///
-/// The reason, in a few words.
 pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String> {
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));

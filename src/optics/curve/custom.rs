@@ -38,7 +38,6 @@ pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
     width * low + step.min(width)
 }
 
-/// D's maximum.
 #[inline(always)]
 pub fn distance_max<T: Real>(table: &[f32]) -> T {
     T::from_f64(f64::from(table[3]))

@@ -23,7 +23,6 @@ pub fn distance<T: Real>(_table: &[f32], xi: T) -> T {
     T::select(root.less(T::from_f64(0.5)), -log1p(-root), -complement.ln())
 }
 
-/// D's maximum.
 #[inline(always)]
 pub fn distance_max<T: Real>(_table: &[f32]) -> T {
     T::from_f64(LONG_TAIL_MAX)

@@ -30,7 +30,6 @@ macro_rules! curves {
                 match self { $(Curve::$variant => stringify!($module),)* }
             }
 
-            /// Its properties.
             #[inline(always)]
             pub const fn traits(self) -> CurveTraits {
                 match self { $(Curve::$variant => $module::TRAITS,)* }
@@ -43,7 +42,6 @@ macro_rules! curves {
             match curve { $(Curve::$variant => $module::distance(table, xi),)* }
         }
 
-        /// D's maximum.
         #[inline(always)]
         pub fn curve_distance_max<T: Real>(curve: Curve, table: &[f32]) -> T {
             match curve { $(Curve::$variant => $module::distance_max(table),)* }

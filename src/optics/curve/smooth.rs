@@ -18,7 +18,6 @@ pub fn distance<T: Real>(_table: &[f32], xi: T) -> T {
     root / (T::one() + (T::one() - root).safe_sqrt())
 }
 
-/// D's maximum.
 #[inline(always)]
 pub fn distance_max<T: Real>(_table: &[f32]) -> T {
     T::one()

@@ -16,7 +16,6 @@ pub fn distance<T: Real>(_table: &[f32], xi: T) -> T {
     xi.sqrt()
 }
 
-/// D's maximum.
 #[inline(always)]
 pub fn distance_max<T: Real>(_table: &[f32]) -> T {
     T::one()

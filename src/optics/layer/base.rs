@@ -122,7 +122,6 @@ impl<T: Real> LayerModel<T> for Base {
     }
 }
 
-/// The base's lobe.
 #[inline(always)]
 pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
     LobeShape {

@@ -95,7 +95,6 @@ impl<T: Real> LayerModel<T> for Coat {
     }
 }
 
-/// The coat's lobe.
 #[inline(always)]
 pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
     let is_ggx = material.has_flag(COAT_IS_GGX);

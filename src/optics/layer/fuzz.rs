@@ -43,7 +43,6 @@ pub fn sheen_of_fuzz(roughness: f32) -> f32 {
 /// Roughness of the fuzz at a root of α of 0, and its slope.
 const SHEEN_MATCH: [f32; 2] = [0.29, 0.52];
 
-/// The fuzz layer.
 #[derive(Debug)]
 pub struct Fuzz;
 

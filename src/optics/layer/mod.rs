@@ -57,7 +57,6 @@ macro_rules! layers {
             pub fn module(self) -> &'static str {
                 match self { $(Layer::$variant => stringify!($module),)* }
             }
-            /// Its properties.
             pub const fn traits(self) -> LayerTraits {
                 match self { $(Layer::$variant => <$module::$variant as LayerModel<f32>>::TRAITS,)* }
             }
@@ -88,7 +87,6 @@ layers! {
 
 /// Something that is done with each layer.
 trait LayerVisitor<T: Real> {
-    /// Visits a layer.
     fn visit<L: LayerModel<T>>(&mut self);
 }
 
@@ -115,7 +113,6 @@ impl LayerTraits {
 /// A layer's lobe and its frame.
 #[derive(Clone, Copy, Debug)]
 pub struct LayerLobe<'a, T> {
-    /// The lobe.
     pub shape: LobeShape<'a, T>,
     /// The shading frame, on the side of the viewer.
     pub frame: Frame<T>,
@@ -143,7 +140,6 @@ pub struct LayerToward<T> {
 pub trait LayerModel<T: Real> {
     /// Its entry in the registry.
     const LAYER: Layer;
-    /// Its properties.
     const TRAITS: LayerTraits;
 
     /// Lanes where this side of the surface has the layer.

@@ -21,7 +21,6 @@ pub const TRAITS: LobeTraits = LobeTraits {
     peak: 0.0,
 };
 
-/// The exponent n.
 #[inline(always)]
 pub fn exponent<T: Real>(roughness: T) -> T {
     let alpha = alpha_from_roughness(roughness);

@@ -46,7 +46,6 @@ macro_rules! lobes {
         $(pub mod $module;)*
 
         named! {
-            /// A reflection lobe.
             Lobe {
                 $($variant = $index, $name, $label, $help;)*
             }
@@ -57,7 +56,6 @@ macro_rules! lobes {
             pub fn module(self) -> &'static str {
                 match self { $(Lobe::$variant => stringify!($module),)* }
             }
-            /// Its properties.
             #[inline(always)]
             pub const fn traits(self) -> LobeTraits {
                 match self { $(Lobe::$variant => $module::TRAITS,)* }
@@ -209,7 +207,6 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Facets {
-    /// No facets.
     None = 0,
     /// Visible facets, in proportion to D G1 (wo·h)/cosθo.
     Visible = 1,

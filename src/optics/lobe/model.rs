@@ -15,7 +15,6 @@ pub struct LobeModel {
     pub lobe: Lobe,
     /// The geometric lobe's curve.
     pub curve: Curve,
-    /// Horizon policy.
     pub horizon: Horizon,
     /// Perceptual roughness in [0, 1].
     pub roughness: f64,
@@ -73,7 +72,6 @@ impl LobeModel {
         }
     }
 
-    /// The shading frame.
     pub fn frame(&self) -> Frame<f64> {
         frame_from_tangent(NORMAL, vec3(1.0, 0.0, 0.0), self.rotation_rad)
     }
@@ -105,7 +103,6 @@ impl LobeModel {
     }
 }
 
-/// The surface's normal.
 pub const NORMAL: Vec3<f64> = Vec3 { x: 0.0, y: 0.0, z: 1.0 };
 
 /// Towards the viewer, `view_angle_rad` from the normal.

@@ -49,38 +49,3 @@ impl Grade {
         color
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_changes_nothing_is_left_out() {
-        assert_eq!(Grade::new(Grade::NEUTRAL_K, 1.0, 1.0), Grade::default());
-    }
-
-    #[test]
-    fn the_light_that_is_to_be_white_becomes_white() {
-        for kelvin in [2800.0, 4000.0, 9000.0] {
-            let light = blackbody_color(f64::from(kelvin));
-            let white = blackbody_color(f64::from(Grade::NEUTRAL_K));
-            let [r, g, b] = Grade::new(kelvin, 1.0, 1.0).apply(Vec3::from_f64(light)).to_f32();
-            let scale = g / white[1] as f32;
-            assert!((r / scale - white[0] as f32).abs() < 1e-4, "{kelvin} K: {r}");
-            assert!((b / scale - white[2] as f32).abs() < 1e-4, "{kelvin} K: {b}");
-        }
-    }
-
-    #[test]
-    fn contrast_keeps_middle_grey_and_saturation_luminance() {
-        let grey = Vec3::splat(MIDDLE_GREY);
-        assert!((Grade::new(Grade::NEUTRAL_K, 1.7, 1.0).apply(grey).x - MIDDLE_GREY).abs() < 1e-6);
-        let color = Vec3::from_f64([0.5, 0.3, 0.2]);
-        let luminance = |color: Vec3<f32>| color.dot(Vec3::from_f64(LUMINANCE));
-        let changed = Grade::new(Grade::NEUTRAL_K, 1.0, 1.3).apply(color);
-        assert!((luminance(changed) - luminance(color)).abs() < 1e-6);
-        assert!(changed.x > color.x && changed.z < color.z);
-        let grey = Grade::new(Grade::NEUTRAL_K, 1.0, 0.0).apply(color);
-        assert!((grey.x - grey.z).abs() < 1e-6);
-    }
-}

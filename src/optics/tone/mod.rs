@@ -15,7 +15,6 @@ pub use grade::Grade;
 pub use lut::Lut;
 
 named! {
-    /// The tone curve.
     #[derive(Default)]
     ToneCurve {
         #[default]
@@ -171,7 +170,6 @@ const AGX_INSET_FROM_REC709: [[f64; 3]; 3] = [
     [0.140416948, 0.754137555, 0.105445497],
     [0.088810420, 0.178871756, 0.732317824],
 ];
-/// AgX's outset.
 const AGX_OUTSET: [[f64; 3]; 3] = [
     [1.127100582, -0.110606643, -0.016493939],
     [-0.141329763, 1.157823702, -0.016493939],

@@ -52,15 +52,12 @@ impl ViewKind {
 /// A view, ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LobeView {
-    /// Lines.
     Lines(LinePlot),
     /// Colour maps of the hemisphere.
     Maps(MapPlot),
-    /// Bodies.
     Solids(SolidPlot),
 }
 
-/// An axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What it measures, with the unit.
@@ -88,7 +85,6 @@ impl Axis {
 /// Lines over one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinePlot {
-    /// What it is.
     pub title: String,
     /// Horizontal axis, or the angle.
     pub x: Axis,
@@ -98,7 +94,6 @@ pub struct LinePlot {
     pub is_polar: bool,
     /// Name of the column that holds x.
     pub x_column: &'static str,
-    /// The lines.
     pub series: Vec<Series>,
 }
 
@@ -134,7 +129,6 @@ impl LinePlot {
 /// A line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// The lobe's name.
     pub lobe: String,
     /// Angle of the view in degrees; `None` where x is that angle.
     pub view_angle_deg: Option<f64>,
@@ -159,11 +153,9 @@ impl Series {
 /// Colour maps with one scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapPlot {
-    /// What it is.
     pub title: String,
     /// The scale's ends, to be shown logarithmically.
     pub range: [f64; 2],
-    /// The maps.
     pub maps: Vec<DiscMap>,
 }
 
@@ -171,7 +163,6 @@ pub struct MapPlot {
 /// the right, by Lambert's projection, which keeps areas: the distance from the centre is √2 sin(θ/2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscMap {
-    /// The lobe's name.
     pub lobe: String,
     /// Angle of the view, degrees.
     pub view_angle_deg: f64,
@@ -200,9 +191,7 @@ impl DiscMap {
 /// Bodies, each drawn to its own scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidPlot {
-    /// What it is.
     pub title: String,
-    /// The bodies.
     pub solids: Vec<Solid>,
 }
 
@@ -216,7 +205,6 @@ impl Solid {
 /// A lobe as a body: each direction as far from the origin as much is reflected there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// The lobe's name.
     pub lobe: String,
     /// Angle of the view, degrees.
     pub view_angle_deg: f64,

@@ -27,7 +27,6 @@ const BORDER: usize = 16;
 /// Bytes per pixel.
 const PIXEL_BYTES: usize = size_of::<[f32; 3]>();
 
-/// Quality of filtering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quality {
     /// About half the time of `High`.
@@ -361,7 +360,6 @@ unsafe extern "C" fn continues(cancel: *mut c_void, _share: f64) -> bool {
     !unsafe { &*cancel.cast::<AtomicBool>() }.load(Relaxed)
 }
 
-/// Size with padding.
 fn padded_size(size: [usize; 2]) -> [usize; 2] {
     size.map(|side| side + 2 * BORDER)
 }

@@ -100,9 +100,6 @@ impl Library {
     }
 
     /// Loads the file.
-    ///
-    /// # Errors
-    /// [`LibraryError`] naming it.
     pub fn load(path: &Path) -> Result<Self, LibraryError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let open = |path: &Path| {

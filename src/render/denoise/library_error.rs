@@ -17,7 +17,6 @@ pub(super) const NAME: &str = "libOpenImageDenoise.so.2";
 
 /// Why there is no denoiser.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum LibraryError {
     /// The library was not found.
     #[error(

@@ -43,9 +43,6 @@ pub struct Denoiser {
 
 impl Denoiser {
     /// A denoiser on the chosen device.
-    ///
-    /// # Errors
-    /// [`LibraryError`] in one line with the remedy.
     pub fn open() -> Result<Self, LibraryError> {
         Ok(Self {
             device: Arc::new(Device::of(&Library::get()?.functions, DenoiseDevice::chosen())?),
@@ -72,17 +69,11 @@ impl Denoiser {
     }
 
     /// Denoises a render. Returns the render itself if it has no samples.
-    ///
-    /// # Errors
-    /// If the library fails.
     pub fn denoise(&mut self, noisy: &Noisy, mode: Denoise) -> Result<Denoised, LibraryError> {
         self.denoise_cancellable(noisy, mode, &AtomicBool::new(false))
     }
 
     /// The same; cancelled soon after `cancel` becomes true. Where a GPU fails, the CPU denoises.
-    ///
-    /// # Errors
-    /// [`LibraryError::Cancelled`] if so; if the library fails.
     pub fn denoise_cancellable(
         &mut self,
         noisy: &Noisy,

@@ -61,10 +61,6 @@ fn traversal(adapter: &GpuAdapter) -> (Traversal, &'static str) {
 }
 
 /// The device for single functions; `None` for the CPU, which `auto` uses without a hardware GPU.
-///
-/// # Errors
-///
-/// If a GPU was requested and fails.
 pub(crate) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
     let open = |kind| {
         let adapter = GpuAdapter::find(kind)?;
@@ -79,18 +75,12 @@ pub(crate) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDev
 
 /// Draws samples of lobes with the function that the chosen engine renders with.
 pub enum Sampler {
-    /// On the CPU.
     Cpu,
-    /// On the GPU.
     Gpu(Box<Scatterer>),
 }
 
 impl Sampler {
     /// Opens the requested engine; `auto` uses the CPU without a hardware GPU.
-    ///
-    /// # Errors
-    ///
-    /// If a GPU was requested and fails.
     pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
         Ok(match device_for_functions(choice)? {
             Some(device) => Self::Gpu(Box::new(Scatterer::new(device)?)),
@@ -99,9 +89,6 @@ impl Sampler {
     }
 
     /// Draws the samples.
-    ///
-    /// # Errors
-    /// If the GPU fails.
     pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
         match self {
             Self::Cpu => Ok(crate::cpu::scatter::scatter(request)),

@@ -24,7 +24,6 @@ impl RayQueries {
         CHOSEN.set(self);
     }
 
-    /// The latest choice.
     pub fn chosen() -> Self {
         CHOSEN.get()
     }

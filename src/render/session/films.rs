@@ -14,10 +14,6 @@ use crate::render::sums::KeptFilm;
 
 impl Session {
     /// The film so far.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn film(&mut self) -> Result<&Film, SessionError> {
         Ok(self.engine.film()?)
     }
@@ -32,10 +28,6 @@ impl Session {
     }
 
     /// The light of each group as it was rendered, by the group's name.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn light_layers(&mut self) -> Result<Vec<LightLayer>, SessionError> {
         let film = self.engine.film()?;
         let document = self.document.as_deref();
@@ -45,19 +37,11 @@ impl Session {
     }
 
     /// The mean image, linear, with the mix of its light groups.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn image(&mut self) -> Result<Image, SessionError> {
         Ok(self.mixed_film()?.image())
     }
 
     /// The mean image with its per-pixel layers.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn layers(&mut self) -> Result<Layers, SessionError> {
         let units = self.world_units_per_unit();
         let lights = self.light_layers()?;
@@ -69,10 +53,6 @@ impl Session {
     }
 
     /// The film with the data to join it with others.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn kept_film(&mut self) -> Result<KeptFilm, SessionError> {
         let samples = self.engine.schedule().samples_per_pixel();
         let document = self.document.as_deref().cloned().unwrap_or_default();
@@ -81,10 +61,6 @@ impl Session {
     }
 
     /// Inputs of maps for an image with display settings.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn source<'a>(&'a mut self, image: &'a Image, view: &'a ViewSettings) -> Result<Source<'a>, SessionError> {
         let world_units_per_unit = self.world_units_per_unit();
         Ok(Source {
@@ -96,10 +72,6 @@ impl Session {
     }
 
     /// Input of the denoiser.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails.
     pub fn noisy(&mut self) -> Result<Noisy, SessionError> {
         let region = self.document.as_ref().and_then(|document| document.render.region);
         Ok(Noisy::of(&*self.mixed_film()?, region))

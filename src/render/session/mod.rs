@@ -64,19 +64,11 @@ impl Session {
     }
 
     /// The same with assets that may be shared with other sessions.
-    ///
-    /// # Errors
-    ///
-    /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         Ok(Self::around(choice::open(choice)?, assets))
     }
 
     /// Opens an adapter for a kind of traversal.
-    ///
-    /// # Errors
-    ///
-    /// [`GpuError`] if the adapter cannot render, or not this way.
     pub fn on_adapter(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, SessionError> {
         let device = adapter.open(traversal)?;
         let opened = choice::on_device(device)?;
@@ -109,10 +101,6 @@ impl Session {
 
     /// The same without waiting for kernel compilation: until the kernel is ready, the CPU engine renders,
     /// and its samples count.
-    ///
-    /// # Errors
-    ///
-    /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(choice::open(choice)?, assets);
         let fallback = Engine::Cpu(Box::default());
@@ -184,10 +172,6 @@ impl Session {
     }
 
     /// Users' texture maps of a document's materials, each with its error, if any.
-    ///
-    /// # Errors
-    ///
-    /// A model that cannot be loaded.
     pub fn user_texture_files(&self, document: &Document) -> Result<Vec<UserTextureFile>, SessionError> {
         Ok(compile::user_texture_files(document, &self.assets)?)
     }
@@ -219,19 +203,11 @@ impl Session {
 
     /// Submits a document: loads its assets and starts over, unless only display settings changed. After an error the old
     /// document continues.
-    ///
-    /// # Errors
-    ///
-    /// A model or environment that cannot be loaded, or the GPU's objection.
     pub fn submit(&mut self, document: &Document) -> Result<Change, SessionError> {
         self.submit_shared(&Arc::new(document.clone()))
     }
 
     /// The same without a copy of the document.
-    ///
-    /// # Errors
-    ///
-    /// As [`Session::submit`].
     pub fn submit_shared(&mut self, document: &Arc<Document>) -> Result<Change, SessionError> {
         let change = match &self.document {
             Some(old) => Change::between(old, document),

@@ -48,39 +48,3 @@ pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
     }
     Some(environment_uv(sum))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn luminances(bright: &[(usize, f64)]) -> Luminances {
-        let mut cells = vec![0.1; 16 * 8];
-        for (index, luminance) in bright {
-            cells[*index] = *luminance;
-        }
-        Luminances {
-            cells,
-            width: 16,
-            height: 8,
-        }
-    }
-
-    #[test]
-    fn the_brightest_place_is_the_middle_of_what_touches_it() {
-        let place = |bright: &[(usize, f64)]| brightest(&luminances(bright)).expect("something shines");
-        // Column 5, row 3.
-        let [u, v] = place(&[(3 * 16 + 5, 4.0)]);
-        assert!((u - 5.5 / 16.0).abs() < 1e-4 && (v - 3.5 / 8.0).abs() < 1e-4, "{u} {v}");
-        // Two beside each other across the map's edge, and one that does not touch them.
-        let [u, _] = place(&[(3 * 16, 4.0), (3 * 16 + 15, 4.0), (3 * 16 + 7, 3.9)]);
-        assert!(!(1e-4..=1.0 - 1e-4).contains(&u), "{u}");
-        // What is less than half as bright does not count.
-        let [u, _] = place(&[(3 * 16 + 5, 4.0), (3 * 16 + 6, 1.9)]);
-        assert!((u - 5.5 / 16.0).abs() < 1e-4, "{u}");
-        let dark = Luminances {
-            cells: vec![0.0; 16 * 8],
-            ..luminances(&[])
-        };
-        assert_eq!(brightest(&dark), None);
-    }
-}

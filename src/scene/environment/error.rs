@@ -2,7 +2,6 @@
 
 /// Errors of an environment map.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum MapError {
     /// An empty name.
     #[error("no environment was named: give studio, sky, furnace, or an image file")]

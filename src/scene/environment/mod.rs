@@ -90,7 +90,6 @@ pub struct BuiltIn {
     pub name: &'static str,
     /// Name in the window.
     pub label: &'static str,
-    /// Description.
     pub help: &'static str,
 }
 

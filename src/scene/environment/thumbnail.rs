@@ -85,26 +85,3 @@ fn srgb_u8(linear: f32) -> u8 {
     let encoded = srgb_from_linear(Vec3::splat(linear.clamp(0.0, 1.0))).x;
     (encoded * 255.0 + 0.5) as u8
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_thumbnail_is_as_bright_as_the_strength_says() {
-        let pixels: Vec<u8> = (0..=255).collect();
-        assert_eq!(brightened(&pixels, 1.0), pixels);
-        let [dark, bright] = [0.25, 4.0].map(|factor| brightened(&pixels, factor));
-        let colors = (1..250).filter(|index| index % 4 != 3);
-        assert!(colors.clone().all(|i| dark[i] <= pixels[i] && bright[i] >= pixels[i]));
-        assert!(dark[128] < 90 && bright[128] > 190, "{} {}", dark[128], bright[128]);
-        // What is opaque stays opaque.
-        assert!((0..256).filter(|index| index % 4 == 3).all(|i| dark[i] == pixels[i]));
-        assert!(
-            brightened(&pixels, 0.0)
-                .iter()
-                .enumerate()
-                .all(|(i, code)| i % 4 == 3 || *code == 0)
-        );
-    }
-}

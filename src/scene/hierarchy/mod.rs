@@ -6,8 +6,6 @@ mod instances;
 mod interval;
 mod packet;
 mod packet_trace;
-#[cfg(test)]
-mod tests;
 mod traverse;
 mod tree;
 mod wide;

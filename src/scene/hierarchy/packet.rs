@@ -17,7 +17,6 @@ pub const PACKET: usize = 16;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct Packet {
-    /// Ray origins.
     pub origins: [[f32; PACKET]; 3],
     /// Ray directions, of any length but 0.
     pub directions: [[f32; PACKET]; 3],

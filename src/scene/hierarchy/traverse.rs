@@ -81,7 +81,6 @@ impl ClosestHit {
         }
     }
 
-    /// The hit.
     #[inline(always)]
     pub fn hit(&self) -> Option<Hit> {
         Some(Hit::of(self.t, self.triangle?, self.areas))
@@ -428,7 +427,6 @@ impl<S: Simd> TriangleRay<S> {
 pub(super) struct Entry(u64);
 
 impl Entry {
-    /// The root node.
     pub const ROOT: Self = Self(0);
 
     #[inline(always)]

@@ -32,9 +32,7 @@ pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MA
 pub use user::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
 pub use uses::TextureAssignment;
 
-/// Wrap mode: repeat.
 pub const WRAP_REPEAT: u32 = 0;
-/// Mirrored repeat.
 pub const WRAP_MIRRORED: u32 = 1;
 /// The texel at the edge.
 pub const WRAP_CLAMP: u32 = 2;
@@ -65,9 +63,7 @@ pub struct TextureRecord {
     pub first_texel: u32,
     /// The place along v.
     pub v_from_uv: [f32; 3],
-    /// Columns.
     pub width: u32,
-    /// Rows.
     pub height: u32,
     /// Flags of filtering and format.
     pub flags: u32,

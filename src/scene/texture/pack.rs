@@ -19,10 +19,6 @@ const DECODED: usize = 256;
 pub const WORDS_MAX: usize = 1 << 25;
 
 /// Reader of users' texture maps; the flag is true for colours.
-///
-/// # Errors
-///
-/// The reason why a file cannot be read.
 pub type Pictures<'a> = &'a dyn Fn(&Path, bool) -> Result<Arc<Texture>, String>;
 
 /// A user's texture map, or the reason why it cannot be read.
@@ -45,7 +41,6 @@ pub struct Textures {
     pub slots: Vec<SlotTextures>,
     /// Warnings on reduced and missing maps, one line each.
     pub warnings: Vec<String>,
-    /// Users' texture maps.
     pub user_textures: Vec<UserTextureFile>,
 }
 

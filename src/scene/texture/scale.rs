@@ -16,7 +16,6 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
 
 /// A number of a channel as texture maps store it.
 trait Code: Copy + PartialEq {
-    /// The largest number.
     const MOST: usize;
     /// The number as an index.
     fn index(self) -> usize;
@@ -180,62 +179,4 @@ pub fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, O
     }
     let is_scaled = [scaled.width, scaled.height] != whole;
     (scaled, is_scaled.then_some(whole))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Texels that are all the same need no arithmetic, and must be what it gives.
-    #[test]
-    fn the_mean_of_equal_texels_is_any_of_them() {
-        for code in 0..=255 {
-            let texel = [code, 255 - code, code / 3, code];
-            let of = |last: [u8; 4]| Texture {
-                name: String::new(),
-                width: 3,
-                height: 2,
-                rgba8: [[texel; 5].concat(), last.to_vec()].concat(),
-                rgba16: Vec::new(),
-            };
-            for is_color in [false, true] {
-                assert_eq!(halved(&of(texel), is_color).rgba8, texel);
-                // With one that differs in opacity alone, colours are computed.
-                let [r, g, b, a] = texel;
-                let other = halved(&of([r, g, b, a.wrapping_add(1)]), is_color).rgba8;
-                assert_eq!(other[..3], texel[..3], "{is_color}");
-            }
-        }
-    }
-    /// The tables give what the formulas give, at every code and between.
-    #[test]
-    fn means_of_colors_are_rounded_in_srgb() {
-        let (eight, sixteen) = (Scale::<u8>::new(true), Scale::<u16>::new(true));
-        for step in 0..=100_000 {
-            let value = f64::from(step) / 100_000.0;
-            let exact = srgb_from_linear(Vec3::<f64>::splat(value)).x;
-            assert!(
-                (255.0 * exact - f64::from(eight.code(value))).abs() < 0.5 + 1e-6,
-                "{value}"
-            );
-            assert!(
-                (65535.0 * exact - f64::from(sixteen.code(value))).abs() < 0.5 + 1e-3,
-                "{value}"
-            );
-        }
-        for code in 0..=u8::MAX {
-            assert_eq!(eight.code(eight.value(code)), code);
-        }
-        // Sides that are odd: every row and column counts once.
-        let picture = Texture {
-            name: String::new(),
-            width: 3,
-            height: 5,
-            rgba8: (0..15).flat_map(|place| [10 * place, 0, 0, 255]).collect(),
-            rgba16: Vec::new(),
-        };
-        let reduced = halved(&picture, false);
-        assert_eq!([reduced.width, reduced.height], [1, 2]);
-        assert_eq!([reduced.rgba8[0], reduced.rgba8[4]], [25, 100]);
-    }
 }

@@ -9,7 +9,6 @@ use crate::scene::target::TextureTarget;
 /// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]
 enum Meaning {
-    /// The parameter.
     Is(TextureTarget),
     /// The parameter, with inverted values.
     IsInverted(TextureTarget),
@@ -151,55 +150,4 @@ pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, UserTexture)>, V
     let is_used = |path: &PathBuf| found.iter().any(|(_, texture)| texture.file == *path);
     let left = pictures.iter().filter(|path| !is_used(path)).cloned().collect();
     (found, left)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn targets(name: &str) -> Vec<(&'static str, bool)> {
-        targets_of(Path::new(name))
-            .iter()
-            .map(|(target, texture)| (target.name(), texture.inverted))
-            .collect()
-    }
-
-    #[test]
-    fn pictures_are_known_by_their_names() {
-        assert_eq!(targets("wood_BaseColor.png"), [("base-color", false)]);
-        assert_eq!(targets("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
-        assert_eq!(targets("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
-        assert_eq!(targets("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
-        assert_eq!(targets("brick_nor_dx_1k.exr"), [("normal", true)]);
-        assert_eq!(targets("brick_nor_gl_1k.exr"), [("normal", false)]);
-        assert_eq!(targets("paint-Glossiness.tif"), [("roughness", true)]);
-        assert_eq!(
-            targets("helmet_OcclusionRoughnessMetallic.png"),
-            [("roughness", false), ("metalness", false)]
-        );
-        assert_eq!(targets("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
-        assert_eq!(targets("base_color.png"), [("base-color", false)]);
-        assert_eq!(targets("metal_plate_rough.png"), [("roughness", false)]);
-        assert_eq!(targets("rock_ao.png"), []);
-        assert_eq!(targets("holiday.jpg"), []);
-    }
-
-    #[test]
-    fn of_two_for_one_target_the_better_is_taken() {
-        let paths = ["a_arm.png", "a_nor_dx.png", "a_nor_gl.png", "a_rough.png", "a_disp.png"].map(PathBuf::from);
-        let (found, left) = recognised(&paths);
-        let names: Vec<_> = found
-            .iter()
-            .map(|(target, texture)| (target.name(), texture.file.to_str().unwrap_or_default()))
-            .collect();
-        assert_eq!(
-            names,
-            [
-                ("roughness", "a_rough.png"),
-                ("metalness", "a_arm.png"),
-                ("normal", "a_nor_gl.png")
-            ]
-        );
-        assert_eq!(left, ["a_nor_dx.png", "a_disp.png"].map(PathBuf::from));
-    }
 }

@@ -15,7 +15,6 @@ pub struct TextureAssignment {
     pub slot: usize,
     /// Parameter that the map multiplies.
     pub target: TextureTarget,
-    /// The texture map.
     pub texture: UserTexture,
 }
 

@@ -31,7 +31,6 @@ pub fn line(material: &MaterialSettings) -> String {
         .replace("?>", "?\\u003e")
 }
 
-/// A comment's contents.
 pub fn comment(material: &MaterialSettings) -> String {
     format!("{MARK} {}", line(material))
 }
@@ -48,9 +47,6 @@ pub fn from_json(json: Json) -> Option<MaterialSettings> {
 }
 
 /// The materials in the comments of a file.
-///
-/// # Errors
-/// If it cannot be read, or there is none.
 pub fn in_comments(path: &Path) -> Result<Subject, ExchangeError> {
     let bytes = file::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
@@ -66,9 +62,6 @@ pub fn in_comments(path: &Path) -> Result<Subject, ExchangeError> {
 }
 
 /// What a file holds of which the exact parameters alone are read.
-///
-/// # Errors
-/// If there are none.
 pub fn subject(path: &Path, materials: Vec<MaterialSettings>) -> Result<Subject, ExchangeError> {
     if materials.is_empty() {
         return Err(ExchangeError::NothingCarried { path: path.to_owned() });

@@ -40,18 +40,12 @@ pub use self::snippet::Language;
 /// A format that materials are written in or read from.
 pub trait Format: Sync {
     /// The bytes of the file that `path` names.
-    ///
-    /// # Errors
-    /// Why this subject has no place in such a file.
     fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         let _ = subject;
         Err(ExchangeError::NotWritten { path: path.to_owned() })
     }
 
     /// What a file holds.
-    ///
-    /// # Errors
-    /// What is wrong with the file.
     fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
         let _ = options;
         Err(ExchangeError::NotRead { path: path.to_owned() })
@@ -80,9 +74,7 @@ pub struct Registered {
     pub is_read: bool,
     /// Whether files of it are written.
     pub is_written: bool,
-    /// What it is.
     pub help: &'static str,
-    /// The format itself.
     pub format: &'static dyn Format,
 }
 
@@ -166,7 +158,6 @@ pub struct Subject {
 /// A file to be written, and what became of the materials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// Its contents.
     pub bytes: Vec<u8>,
     /// A file beside it that it refers to, by its name.
     pub beside: Option<(String, Vec<u8>)>,
@@ -176,12 +167,9 @@ pub struct Written {
 
 /// Why a material cannot be taken to or from another program.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum ExchangeError {
-    /// One of ours.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A model.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// An ending that no format has.
@@ -215,7 +203,6 @@ pub enum ExchangeError {
 }
 
 impl Subject {
-    /// A single material.
     pub fn of(material: MaterialSettings) -> Self {
         Self {
             materials: vec![material],
@@ -224,9 +211,6 @@ impl Subject {
     }
 
     /// The only material.
-    ///
-    /// # Errors
-    /// If there are several.
     fn only(&self, path: &Path) -> Result<&MaterialSettings, ExchangeError> {
         match &self.materials[..] {
             [material] => Ok(material),
@@ -275,9 +259,6 @@ pub fn by_name(name: &str) -> Option<&'static Registered> {
 }
 
 /// The format of a file by its ending.
-///
-/// # Errors
-/// If no format has it.
 pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
     let ending = ending(path);
     let found = FORMATS
@@ -310,9 +291,6 @@ pub fn holds_materials(path: &Path) -> bool {
 }
 
 /// What a file holds that is opened: one of ours, or the first material of another program's.
-///
-/// # Errors
-/// What is wrong with it.
 pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> {
     if !holds_materials(path) {
         return Ok(opened::open(path)?);
@@ -347,9 +325,6 @@ pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> 
 }
 
 /// The material of a name: that of a shipped one, or of a file of any format.
-///
-/// # Errors
-/// What is wrong with the file, or what the names are.
 pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialSettings>, ExchangeError> {
     let path = &path_of_text(name_or_path);
     if holds_materials(path)
@@ -361,9 +336,6 @@ pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialS
 }
 
 /// What a file holds.
-///
-/// # Errors
-/// What is wrong with it.
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     by_ending(path)?.format.read(path, options)
 }
@@ -383,9 +355,6 @@ impl Prepared {
     }
 
     /// Writes the file, replacing it at once.
-    ///
-    /// # Errors
-    /// What the system says.
     pub fn save(&self) -> Result<(), FileError> {
         let path = &self.report.output;
         if let Some((name, bytes)) = &self.written.beside {
@@ -396,9 +365,6 @@ impl Prepared {
 }
 
 /// Makes the file of a subject and reports what becomes of it. `input` is only named in the report.
-///
-/// # Errors
-/// Why it has no place there.
 pub fn prepare(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Prepared, ExchangeError> {
     let mut written = format.format.write(subject, path)?;
     for (report, losses) in written.materials.iter_mut().zip(&subject.losses) {

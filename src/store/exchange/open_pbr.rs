@@ -7,7 +7,6 @@ pub(super) const NITS: f32 = 1000.0;
 
 /// What an input is set to.
 pub(super) enum Value {
-    /// A number.
     Number(f32),
     /// A colour, linear.
     Color([f32; 3]),

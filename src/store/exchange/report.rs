@@ -36,7 +36,6 @@ impl Outcome {
 pub struct Entry {
     /// What became of it.
     pub outcome: Outcome,
-    /// The part.
     pub what: String,
     /// By what it is replaced, or why it is left out; empty where it is exact.
     #[serde(skip_serializing_if = "String::is_empty")]
@@ -51,7 +50,6 @@ pub struct Entry {
 pub struct Residual {
     /// How far, in [0, 1].
     pub residual: f64,
-    /// What is measured.
     pub measure: &'static str,
 }
 
@@ -121,7 +119,6 @@ impl fmt::Display for Entry {
 /// What became of a material.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialReport {
-    /// Its name.
     pub material: String,
     /// The file also has the exact parameters, by which it can be opened again without loss.
     pub carries_exact_parameters: bool,

@@ -21,7 +21,6 @@ pub enum Language {
     Hlsl,
     /// Open Shading Language.
     Osl,
-    /// C.
     C,
 }
 
@@ -55,7 +54,6 @@ impl Format for Language {
 }
 
 impl Language {
-    /// A vector's type.
     fn vector(self) -> &'static str {
         match self {
             Self::Glsl | Self::C => "vec3",
@@ -134,7 +132,6 @@ impl Language {
         }
     }
 
-    /// The whole text.
     fn function(self, material: &MaterialSettings) -> String {
         let mut text = self.introduction(material);
         text += &self.distance_function(material);

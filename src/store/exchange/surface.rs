@@ -51,7 +51,6 @@ pub struct Surface {
     pub coat_weight: f32,
     /// The square root of GGX's α.
     pub coat_roughness: f32,
-    /// Of the coat.
     pub coat_ior: f32,
     /// What the coat leaves of the light that crosses it twice.
     pub coat_color: [f32; 3],
@@ -84,7 +83,6 @@ pub struct Surface {
 pub enum Law {
     /// By the exact equations.
     Exact,
-    /// By Schlick's approximation.
     Schlick,
 }
 
@@ -117,15 +115,12 @@ pub struct Takes {
     pub coat_stretch: bool,
     /// What OpenPBR's coat changes below it.
     pub coat_on_base: bool,
-    /// Fuzz.
     pub fuzz: bool,
-    /// A thin film.
     pub film: bool,
     /// The weight of a thin film: without one, the film is everywhere.
     pub film_weight: bool,
     /// What facets scatter more than once.
     pub scattering: bool,
-    /// Refraction.
     pub transmission: bool,
     /// Absorption inside.
     pub absorption: bool,

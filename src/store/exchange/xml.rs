@@ -9,9 +9,6 @@ use roxmltree::Document;
 const ATTRIBUTES_MAX: usize = 1000;
 
 /// Reads a document.
-///
-/// # Errors
-/// What is wrong with it.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, String> {
     if text.split('<').any(|tag| attributes(tag) > ATTRIBUTES_MAX) {
         return Err(format!("an element has more than {ATTRIBUTES_MAX} attributes"));
@@ -126,19 +123,4 @@ pub(super) fn identifier(name: &str, taken: &mut HashMap<String, usize>) -> Stri
 pub(super) fn numbers(values: &[f32]) -> String {
     let texts: Vec<String> = values.iter().map(f32::to_string).collect();
     texts.join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn identifiers_are_each_there_once_and_soon() {
-        let mut taken = HashMap::new();
-        let names = ["a b", "a_b", "a_b_2", "a b", "7"].map(|name| identifier(name, &mut taken));
-        assert_eq!(names, ["a_b", "a_b_2", "a_b_2_2", "a_b_3", "material_7"]);
-        // Compared with each other these would take minutes.
-        let last = (0..100_000).map(|_| identifier("same", &mut taken)).last();
-        assert_eq!(last.as_deref(), Some("same_100000"));
-    }
 }

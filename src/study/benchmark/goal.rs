@@ -164,15 +164,3 @@ fn between(before: Option<(f64, f64)>, (seconds, error): (f64, f64)) -> f64 {
         _ => seconds * (error / GOAL).max(if error <= GOAL { 1.0 } else { 0.0 }),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_time_to_the_goal_is_read_off_a_line() {
-        assert!((between(Some((1.0, 2.0 * GOAL)), (4.0, 0.5 * GOAL)) - 2.0).abs() < 1e-12);
-        assert!((between(None, (1.0, 3.0 * GOAL)) - 3.0).abs() < 1e-12, "extrapolated");
-        assert_eq!(between(None, (1.0, 0.1 * GOAL)), 1.0, "clean at once");
-    }
-}

@@ -69,7 +69,6 @@ impl Glb {
         self.nodes.push(transform);
     }
 
-    /// Writes the file.
     pub(super) fn write(self, stage: &Stage, name: &str) -> Result<ModelSource, HardError> {
         let roots: Vec<usize> = (0..self.nodes.len()).collect();
         let document = json!({

@@ -34,7 +34,6 @@ pub struct HardCase {
     pub danger: &'static str,
     /// Set-up of the case.
     pub made: &'static str,
-    /// Requirement.
     pub must: &'static str,
     /// Result of the naive form, computed if cheap.
     pub naive: fn() -> String,
@@ -42,7 +41,6 @@ pub struct HardCase {
     pub measure: &'static str,
     /// Limit of the measure.
     pub limit: f64,
-    /// Runs the measurement.
     pub find: fn(&mut Stage) -> Result<f64, HardError>,
 }
 
@@ -64,10 +62,6 @@ pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
 
 impl HardCase {
     /// Runs the case on an engine.
-    ///
-    /// # Errors
-    ///
-    /// If the engine fails, a file of the case cannot be written, or the stage is stopped.
     pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
         let begun = Instant::now();
         stage.check_stop()?;
@@ -87,7 +81,6 @@ impl HardCase {
 pub struct HardRow {
     /// The case that was run.
     pub case: &'static HardCase,
-    /// Outcome.
     pub check: Check,
     /// Time in seconds.
     pub seconds: f64,
@@ -107,10 +100,6 @@ pub struct HardOptions {
 }
 
 /// Runs all cases; `progress` receives each case's name before it starts.
-///
-/// # Errors
-///
-/// If the engine cannot be opened or fails, or a file of a case cannot be written.
 pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), HardError> {
     let mut stage = Stage::open(options.engine, options.thorough)?;
     let mut rows = Vec::new();
@@ -164,30 +153,4 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
 /// A division by zero as naive code makes it, in words.
 fn over_zero(numerator: f32) -> String {
     (numerator / 0.0).to_string().to_lowercase()
-}
-
-#[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-    use std::sync::atomic::{AtomicBool, Ordering};
-
-    use super::*;
-
-    /// Cases that take minutes, begun and stopped by another thread.
-    #[test]
-    fn a_case_stops_within_its_measure() {
-        for name in ["ten-million-samples", "f32-against-f64-geometric"] {
-            let stop = Arc::new(AtomicBool::new(false));
-            let mut stage = Stage::open(EngineChoice::Cpu, true)
-                .expect("a stage")
-                .until(stop.clone());
-            let case = catalogue().find(|case| case.name == name).expect("a case of this name");
-            let stopping = std::thread::spawn(move || {
-                std::thread::sleep(std::time::Duration::from_millis(300));
-                stop.store(true, Ordering::Relaxed);
-            });
-            assert!(matches!(case.run(&mut stage), Err(HardError::Stopped)), "{name}");
-            stopping.join().expect("it only waits");
-        }
-    }
 }

@@ -23,7 +23,6 @@ pub(super) const SLICE: Duration = Duration::from_millis(100);
 
 /// Why a case can't be run.
 #[derive(Debug, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum HardError {
     /// Error of the engine or its input.
     #[error(transparent)]
@@ -62,10 +61,6 @@ pub struct Stage {
 
 impl Stage {
     /// Opens an engine. If that is the CPU engine, single functions run on the CPU, too.
-    ///
-    /// # Errors
-    ///
-    /// If a GPU was requested and fails, or there is no temporary folder.
     pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
         let session = Session::open(choice)?;
         let choice = session.engine().kind.into();
@@ -87,10 +82,6 @@ impl Stage {
     }
 
     /// Checks for a stop; call it within long work.
-    ///
-    /// # Errors
-    ///
-    /// [`HardError::Stopped`] if stopped.
     pub fn check_stop(&self) -> Result<(), HardError> {
         match self.stop.load(Ordering::Relaxed) {
             true => Err(HardError::Stopped),
@@ -119,9 +110,6 @@ impl Stage {
     }
 
     /// Renders a document to its end.
-    ///
-    /// # Errors
-    /// A model or environment that can't be loaded, an engine that fails, or a stop.
     pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
         let mut document = document.clone();
         if self.choice == EngineChoice::Gpu {
@@ -145,10 +133,6 @@ impl Stage {
     }
 
     /// Writes a file for a case.
-    ///
-    /// # Errors
-    ///
-    /// If the folder cannot be written to.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, HardError> {
         let path = self.path(name);
         match fs::write(&path, bytes) {
@@ -158,9 +142,6 @@ impl Stage {
     }
 
     /// A latitude-longitude map of linear radiances, written as .exr in f32 and to be read again.
-    ///
-    /// # Errors
-    /// Where the folder can't be written to.
     pub fn environment(
         &self,
         name: &str,
@@ -182,10 +163,6 @@ impl Stage {
     }
 
     /// The map of a source, loaded as the engines load it.
-    ///
-    /// # Errors
-    ///
-    /// If it cannot be read.
     pub fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, HardError> {
         Ok(environment::load(source).map_err(|error| SessionError::Asset(error.into()))?)
     }

@@ -25,10 +25,8 @@ pub use exact::{with_exact_fresnel, with_schlick};
 const BOUNCES: [u32; 6] = [1, 2, 3, 4, 8, 16];
 /// Longest path of the most accurate setting.
 const BOUNCES_MAX: u32 = 64;
-/// What changes nothing.
 const AS_IS: &str = "as-is";
 
-/// One setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Setting {
     /// Another reflecting lobe, its roughness such that the look is nearest.
@@ -43,7 +41,6 @@ pub enum Setting {
     Sequence(Sequence),
     /// Fresnel's equations, or Schlick's approximation with the same reflection along the normal.
     ExactFresnel(bool),
-    /// Longest path.
     Bounces(u32),
     /// Whether samples go where the error is.
     Adaptive(bool),
@@ -80,7 +77,6 @@ impl Group {
     }
 }
 
-/// All groups.
 pub static GROUPS: &[Group] = &[
     Group {
         name: "strategy",
@@ -235,12 +231,10 @@ fn change_lobes(document: &mut Document, lobe: Lobe, curve: Curve) {
 }
 
 impl Technique {
-    /// What changes nothing.
     pub fn as_is() -> Self {
         Self::default()
     }
 
-    /// Of one setting.
     pub fn of(setting: Setting) -> Self {
         Self(vec![setting])
     }
@@ -296,7 +290,6 @@ pub fn converged(document: &Document) -> Document {
 
 /// A technique that is not understood.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs, reason = "messages say what the fields are")]
 pub enum TechniqueError {
     /// No group has this name.
     #[error("{0} is no kind of setting; there are {names}", names = group_names())]
@@ -460,9 +453,6 @@ impl Serialize for Technique {
 }
 
 /// The techniques that a text stands for: those of a group by its name, or the one that it describes.
-///
-/// # Errors
-/// [`TechniqueError`].
 pub fn techniques(text: &str, plan: &Plan) -> Result<Vec<Technique>, TechniqueError> {
     match GROUPS.iter().find(|group| group.name == text) {
         Some(group) => Ok(group.members(plan)),
@@ -471,70 +461,6 @@ pub fn techniques(text: &str, plan: &Plan) -> Result<Vec<Technique>, TechniqueEr
 }
 
 /// Whether a text is understood, in any scene.
-///
-/// # Errors
-/// [`TechniqueError`].
 pub fn check_techniques(text: &str) -> Result<(), TechniqueError> {
     techniques(text, &Plan::general()).map(|_| ())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_technique_is_read_as_it_is_written() {
-        for group in GROUPS {
-            for technique in group.members(&Plan::general()) {
-                let text = technique.to_string();
-                assert_eq!(text.parse(), Ok(technique), "{text}");
-                assert!(text.starts_with(group.name), "{text}");
-            }
-        }
-        let both: Technique = "strategy=lobe, bounces=4".parse().expect("two settings");
-        assert_eq!(both.to_string(), "strategy=lobe,bounces=4");
-        let changed = both.apply(&Document::default());
-        assert_eq!((changed.render.strategy, changed.render.bounces), (Strategy::Lobe, 4));
-        assert_eq!(AS_IS.parse(), Ok(Technique::as_is()));
-    }
-
-    #[test]
-    fn what_is_no_technique_is_refused_with_what_would_be_one() {
-        for (text, word) in [
-            ("colour=red", "strategy"),
-            ("lobe=velvet", "ggx-2018"),
-            ("scattering=twice", "single"),
-            ("bounces=0", "64"),
-            ("effect=-lobe", "+NAME"),
-            ("effect=ground", "-NAME"),
-            ("curve=custom", "drawn"),
-        ] {
-            let error = text.parse::<Technique>().expect_err(text).to_string();
-            assert!(error.contains(word), "{text}: {error}");
-        }
-    }
-
-    #[test]
-    fn settings_that_change_no_picture_share_what_they_converge_to() {
-        let document = Document::default();
-        let same = |text: &str| {
-            let technique: Technique = text.parse().expect(text);
-            converged(&technique.apply(&document)) == converged(&document)
-        };
-        assert!(same("strategy=light") && same("sequence=independent") && same("adaptive=on"));
-        assert!(same("effect=-light-sampling") && same("effect=+anisotropy") && same("numbers=f64"));
-        assert!(!same("bounces=1") && !same("fresnel=exact") && !same("lobe=ggx") && !same("effect=-background"));
-    }
-
-    #[test]
-    fn looks_of_lobes_are_matched() {
-        let document = Document::default();
-        let ggx = Technique::of(Setting::Lobe(Lobe::Ggx)).apply(&document);
-        // Section 5 of the notes on the lobe: α 0.072 looks most like R 0.3 with the smooth curve.
-        let alpha = ggx.materials[0].roughness.powi(2);
-        assert!((alpha - 0.072).abs() < 0.02, "{alpha}");
-        let sqrt = Technique::of(Setting::Curve(Curve::Sqrt)).apply(&document);
-        assert_eq!(sqrt.materials[0].curve, Curve::Sqrt);
-        assert!(sqrt.materials[0].roughness < 0.3, "its edge lies further out");
-    }
 }

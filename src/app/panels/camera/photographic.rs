@@ -146,18 +146,3 @@ pub(super) fn aspect(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     desk.edited(response, "Aspect", |document| &mut document.render.height);
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A lens of 50 mm on 36 × 24 mm sees 27° of the height, one of 24 mm 53.1°.
-    #[test]
-    fn focal_lengths_are_those_of_lenses() {
-        for (focal_mm, expected_deg) in [(50.0, 26.99), (24.0, 53.13), (200.0, 6.87)] {
-            let found_deg = fov_deg(focal_mm, 24.0);
-            assert!((found_deg - expected_deg).abs() < 0.005, "{focal_mm} mm: {found_deg}°");
-            assert!((focal_length_mm(found_deg, 24.0) - focal_mm).abs() < 1e-9);
-        }
-    }
-}

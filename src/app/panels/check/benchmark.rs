@@ -23,7 +23,6 @@ impl BenchmarkState {
     }
 }
 
-/// Shows the section.
 pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
     widgets::note(
         ui,

@@ -102,28 +102,3 @@ fn colors(is_dark: bool) -> [Color32; 3] {
         Color32::from_rgba_unmultiplied(low, low, high, 120),
     ]
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_are_counted_by_channel_and_what_is_clipped_is_told() {
-        let pixel = |color: [u8; 3], alpha: u8| [color[0], color[1], color[2], alpha];
-        let pixels = [
-            pixel([255, 0, 128], 255),
-            pixel([0, 0, 0], 255),
-            pixel([10, 10, 10], 255),
-            pixel([9, 9, 9], 0),
-        ];
-        let counts = Counts::of(&pixels.concat());
-        assert_eq!(counts.clipped.map(|share| (3.0 * share).round()), [1.0, 1.0]);
-        assert_eq!(
-            counts.columns[0][BINS - 1],
-            0.5,
-            "green's darkest column is the fullest, of two"
-        );
-        assert_eq!(counts.columns[1][0], 1.0);
-        assert_eq!(counts.columns[2][BINS / 2], 0.5);
-    }
-}

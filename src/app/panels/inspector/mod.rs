@@ -18,7 +18,6 @@ use crate::render::display::exposure;
 use crate::render::shown::{PixelFacts, luminance, stops_of};
 use crate::render::worker::Picture;
 
-/// The inspector.
 #[derive(Default)]
 pub(super) struct InspectorPanel {
     brightness: Brightness,

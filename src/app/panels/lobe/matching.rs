@@ -17,7 +17,6 @@ use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::LinePlot;
 use crate::render::background::Background;
 
-/// What to match.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Source {
     Lobe(LobeModel),

@@ -27,9 +27,7 @@ pub(super) enum PictureKey {
     Surface(usize),
     /// The weight of the fuzz that a slot's sheen is turned into.
     FuzzWeight(usize),
-    /// Its colour.
     FuzzColor(usize),
-    /// Its roughness.
     FuzzRoughness(usize),
 }
 

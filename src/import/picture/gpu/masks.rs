@@ -15,9 +15,7 @@ const WITH_OPACITY: u32 = 0x1;
 const OPACITY: u32 = 0x2;
 /// The format stands in a code.
 const CODE: u32 = 0x4;
-/// Texels have colours.
 const COLORS: u32 = 0x40;
-/// Texels are grey.
 const GREY: u32 = 0x2_0000;
 
 impl Masks {
@@ -57,25 +55,4 @@ impl Masks {
 fn code(word: u32, mask: u32) -> Option<u8> {
     let [value, most] = [word & mask, mask].map(|bits| u64::from(bits.checked_shr(mask.trailing_zeros()).unwrap_or(0)));
     Some(((value * 255 + most / 2).checked_div(most)?) as u8)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bits_are_spread_over_the_codes() {
-        let masks = |bytes, channels| Masks { bytes, channels };
-        let r5g6b5 = masks(2, [0xf800, 0x7e0, 0x1f, 0]);
-        assert_eq!(
-            r5g6b5.codes(&[0x1f, 0xf8, 0xe0, 0x03]),
-            [255, 0, 255, 255, 0, 125, 0, 255]
-        );
-        assert_eq!(masks(1, [0, 0, 0, 0xff]).codes(&[7]), [0, 0, 0, 7]);
-        assert_eq!(masks(3, [0xff0000, 0xff00, 0xff, 0]).codes(&[1, 2, 3]), [3, 2, 1, 255]);
-        assert_eq!(
-            masks(4, [0x3ff, 0, 0, 0xc000_0000]).codes(&[0xff, 3, 0, 0x80]),
-            [255, 0, 0, 170]
-        );
-    }
 }

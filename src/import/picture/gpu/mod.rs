@@ -28,9 +28,7 @@ const SIDE_MAX: u32 = 1 << 16;
 /// One image, or one face of a cube.
 #[derive(Clone, Debug)]
 pub(crate) struct Face {
-    /// Columns.
     pub width: u32,
-    /// Rows.
     pub height: u32,
     /// Row by row from the top.
     pub texels: Texels,
@@ -246,10 +244,6 @@ pub(crate) fn is_container(bytes: &[u8]) -> bool {
 
 /// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
 /// a face), or the smallest level.
-///
-/// # Errors
-///
-/// The reason.
 pub(crate) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
     // Damaged files may fail assertions inside the crates instead of giving errors.
     let decoded = contained(|| {
@@ -528,32 +522,4 @@ fn shared_exponent(word: u32) -> [f32; 3] {
 fn small_floats(word: u32) -> [f32; 3] {
     let halves = [(word & 0x7ff) << 4, (word >> 11 & 0x7ff) << 4, (word >> 22) << 5];
     halves.map(|half| f16::from_bits(half as u16).to_f32())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn packed_numbers_are_those_of_the_specification() {
-        // One: exponent 15 (bias 15) of 1; as a fraction 2^8 · 2^(16 − 24).
-        assert_eq!(
-            shared_exponent(16 << 27 | 256 | 128 << 9 | 511 << 18),
-            [1.0, 0.5, 511.0 / 256.0]
-        );
-        let one_and_a_half = 15 << 6 | 32;
-        let a_quarter = (13_u32 << 5) << 22;
-        assert_eq!(
-            small_floats(one_and_a_half | (16 << 6) << 11 | a_quarter),
-            [1.5, 2.0, 0.25]
-        );
-    }
-
-    #[test]
-    fn levels_are_chosen_by_their_size() {
-        assert_eq!(level_within(4096, 4096, 13, 2048), 1);
-        assert_eq!(level_within(4096, 4096, 1, 2048), 0);
-        assert_eq!(level_within(64, 4, 3, 8), 2);
-        assert_eq!(level_within(64, 4, 0, 100), 0);
-    }
 }

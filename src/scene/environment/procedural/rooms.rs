@@ -30,7 +30,6 @@ const PRODUCT_WALLS: Walls = Walls {
     ceiling: [0.391, 0.391, 0.402],
     bend: 0.25,
 };
-/// For products.
 const PRODUCT: [SoftBox; 5] = [
     // From the left above, in front: large and warm, shapes the object.
     soft_box([-2.6, 2.3, 2.2], [2.1, 1.9], [7.5, 0.4, 0.6], [1.0, 0.92, 0.8]),

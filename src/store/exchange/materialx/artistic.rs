@@ -43,20 +43,3 @@ pub(super) fn edge_color(head_on: [f32; 3], tint: [f32; 3]) -> [f32; 3] {
         high as f32
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tints_come_back_from_the_colors_that_give_them() {
-        for head_on in [0.2, 0.5, 0.8, 0.95] {
-            for tint in [0.9_f32, 0.95, 1.0] {
-                let back = edge_tint([head_on; 3], edge_color([head_on; 3], [tint; 3]));
-                assert!((back[0] - tint).abs() < 1e-4, "{head_on}, {tint}: {}", back[0]);
-            }
-        }
-        // Darker than it can be: the darkest.
-        assert!(edge_color([0.9; 3], [0.1; 3])[0] < 1e-6);
-    }
-}

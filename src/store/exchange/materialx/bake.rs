@@ -38,9 +38,6 @@ impl<'a> Baker<'a> {
     }
 
     /// The mean of an input of a material's surface.
-    ///
-    /// # Errors
-    /// Why there is none.
     pub(super) fn mean(&mut self, material: &str, input: &str) -> Result<[f32; 3], String> {
         let path = self.path;
         let baked = self

@@ -21,9 +21,6 @@ use crate::store::exchange::surface::Surface;
 use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried, xml};
 
 /// The materials of a document.
-///
-/// # Errors
-/// What is wrong with it.
 pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = crate::store::file::read(path)?;
     let wrong = |reason: String| ExchangeError::Contents {

@@ -41,7 +41,6 @@ impl SurfaceKind {
         SURFACES.iter().find(|kind| kind.name == name)
     }
 
-    /// No inputs yet.
     pub(in crate::store::exchange) fn unset(&self) -> Inputs {
         Inputs::new(self.name, self.inputs)
     }

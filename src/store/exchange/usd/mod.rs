@@ -91,7 +91,6 @@ fn unquoted(text: &str) -> Option<String> {
     Some(inner)
 }
 
-/// A material's prim.
 fn prim(surface: &Surface, name: &str, exact: &str) -> String {
     let mut text = format!(
         "    def Material \"{name}\" (\n        customData = {{\n            string {} = {}\n        }}\n    )\n    {{\n",

@@ -233,28 +233,3 @@ fn numbers(text: &str) -> Option<[f32; 3]> {
         _ => None,
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn brackets_in_strings_and_dictionaries_open_no_shader() {
-        let text = "def Material \"A\" (\n customData = {\n string x = \"}{ # \\\" }\"\n }\n)\n{\n def Shader \"S\"\n {\n \
-                    uniform token info:id = \"UsdPreviewSurface\" # a { comment\n float inputs:roughness = 0.25 (\n \
-                    doc = \"}\"\n )\n color3f inputs:diffuseColor = (1, 0.5, 0.25)\n }\n}\n";
-        let [material] = &materials(text)[..] else {
-            panic!("one material")
-        };
-        assert_eq!(material.name, "A");
-        let inputs = material.preview.as_ref().expect("a preview surface");
-        let read: Vec<_> = inputs
-            .iter()
-            .map(|(name, value)| (name.as_str(), numbers(value)))
-            .collect();
-        assert_eq!(
-            read,
-            [("roughness", Some([0.25; 3])), ("diffuseColor", Some([1.0, 0.5, 0.25]))]
-        );
-    }
-}
