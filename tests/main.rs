@@ -38,9 +38,6 @@ mod assets;
 mod batch;
 #[path = "suite/benchmark.rs"]
 mod benchmark;
-#[cfg(unix)]
-#[path = "suite/bounded.rs"]
-mod bounded;
 #[path = "suite/bounds.rs"]
 mod bounds;
 #[path = "suite/brushed.rs"]
@@ -49,8 +46,6 @@ mod brushed;
 mod camera_views;
 #[path = "suite/check.rs"]
 mod check;
-#[path = "suite/circles.rs"]
-mod circles;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
 #[path = "suite/cli_pictures.rs"]
@@ -77,16 +72,10 @@ mod crashed;
 mod default_look;
 #[path = "suite/denoise.rs"]
 mod denoise;
-#[path = "suite/denoise_cases.rs"]
-mod denoise_cases;
-#[path = "suite/denoise_libraries.rs"]
-mod denoise_libraries;
 #[path = "suite/denoise_told.rs"]
 mod denoise_told;
 #[path = "suite/density.rs"]
 mod density;
-#[path = "suite/desktop.rs"]
-mod desktop;
 #[path = "suite/device_loss.rs"]
 mod device_loss;
 #[path = "suite/docs.rs"]
@@ -117,16 +106,10 @@ mod evaluate;
 mod exchange;
 #[path = "suite/exchange_details.rs"]
 mod exchange_details;
-#[path = "suite/exchange_samplers.rs"]
-mod exchange_samplers;
-#[path = "suite/exchange_tools.rs"]
-mod exchange_tools;
 #[path = "suite/explain.rs"]
 mod explain;
 #[path = "suite/facets.rs"]
 mod facets;
-#[path = "suite/farm.rs"]
-mod farm;
 #[path = "suite/file_colors.rs"]
 mod file_colors;
 #[path = "suite/file_kinds.rs"]
@@ -159,8 +142,6 @@ mod gltf_meaning;
 mod hierarchy;
 #[path = "suite/import_report.rs"]
 mod import_report;
-#[path = "suite/installed.rs"]
-mod installed;
 #[path = "suite/instances.rs"]
 mod instances;
 #[path = "suite/kept_files.rs"]
@@ -201,14 +182,8 @@ mod merge;
 mod model_formats;
 #[path = "suite/model_parts.rs"]
 mod model_parts;
-#[path = "suite/monkey.rs"]
-mod monkey;
-#[path = "suite/monkey_deeds.rs"]
-mod monkey_deeds;
 #[path = "suite/moved_lights.rs"]
 mod moved_lights;
-#[path = "suite/named_paths.rs"]
-mod named_paths;
 #[path = "suite/nobody_listens.rs"]
 mod nobody_listens;
 #[path = "suite/noise.rs"]
@@ -229,8 +204,6 @@ mod paths;
 mod picture_files;
 #[path = "suite/plan.rs"]
 mod plan;
-#[path = "suite/plan_calls.rs"]
-mod plan_calls;
 #[path = "suite/plan_kernels.rs"]
 mod plan_kernels;
 #[path = "suite/precision.rs"]
@@ -247,8 +220,8 @@ mod renders;
 mod rough_diffuse;
 #[path = "suite/same_bits.rs"]
 mod same_bits;
-#[path = "suite/same_paths.rs"]
-mod same_paths;
+#[path = "suite/scenes.rs"]
+mod scenes;
 #[path = "suite/scattering.rs"]
 mod scattering;
 #[path = "suite/shadow_catcher.rs"]
@@ -275,8 +248,6 @@ mod textures;
 mod tone;
 #[path = "suite/transmission.rs"]
 mod transmission;
-#[path = "suite/tutorials.rs"]
-mod tutorials;
 #[path = "suite/twin_names.rs"]
 mod twin_names;
 #[path = "suite/ui.rs"]
@@ -297,8 +268,6 @@ mod ui_lights;
 mod ui_look;
 #[path = "suite/ui_objects.rs"]
 mod ui_objects;
-#[path = "suite/ui_pages.rs"]
-mod ui_pages;
 #[path = "suite/ui_panels.rs"]
 mod ui_panels;
 #[path = "suite/ui_pictures.rs"]
@@ -315,31 +284,17 @@ mod ui_study;
 mod ui_textures;
 #[path = "suite/ui_views.rs"]
 mod ui_views;
-#[path = "suite/ui_windows.rs"]
-mod ui_windows;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
 #[path = "suite/ui_workspaces.rs"]
 mod ui_workspaces;
 #[path = "suite/video.rs"]
 mod video;
-#[path = "suite/walk.rs"]
-mod walk;
-#[path = "suite/walk_look.rs"]
-mod walk_look;
-#[path = "suite/words.rs"]
-mod words;
 #[path = "suite/worker.rs"]
 mod worker;
-#[path = "suite/xdotool_session.rs"]
-mod xdotool_session;
 
 #[path = "suite/firefly.rs"]
 mod firefly;
-#[path = "suite/fuzz.rs"]
-mod fuzz;
-#[path = "suite/fuzz_documents.rs"]
-mod fuzz_documents;
 #[path = "suite/fuzz_layer.rs"]
 mod fuzz_layer;
 #[path = "suite/gpu_pictures.rs"]
@@ -348,11 +303,12 @@ mod gpu_pictures;
 mod hard;
 #[path = "suite/layouts.rs"]
 mod layouts;
-#[path = "suite/material_samples.rs"]
-mod material_samples;
 #[path = "suite/shaders.rs"]
 mod shaders;
 #[path = "suite/thin_film.rs"]
 mod thin_film;
+#[cfg(feature = "thorough")]
+#[path = "suite/thorough/mod.rs"]
+mod thorough;
 #[path = "suite/twins/mod.rs"]
 mod twins;

@@ -13,7 +13,8 @@ use glossmith::render::{EngineChoice, Session};
 
 use crate::analytic_scenes::{Case, cases};
 
-/// The most that a picture may be off, relative to its value.
+/// The most that a picture may be off, relative to its value: a fault of 0.5 % is 7.1 standard errors and [`ROUNDING`] then,
+/// which is seen with 99.9 %.
 const BOUND: f64 = 3e-3;
 /// What f32, albedo tables and the picture's small angle may add to the noise, relative.
 const ROUNDING: f64 = 3e-4;
@@ -29,6 +30,8 @@ struct Run {
     /// The picture's sides are so many times 16 pixels, with as many fewer samples: the same in all.
     spread: u32,
     is_adaptive: bool,
+    /// So many times fewer samples: of other strategies than the first a fault of 1 % is seen.
+    fewer: u32,
 }
 
 impl Run {
@@ -37,6 +40,7 @@ impl Run {
             strategy,
             spread: 1,
             is_adaptive: false,
+            fewer: 1,
         }
     }
 }
@@ -49,7 +53,7 @@ fn mean(session: &mut Session, case: &Case, run: Run) -> [[f64; 2]; 3] {
     let mut document = case.document.clone();
     let render = &mut document.render;
     (render.width, render.height) = (16 * run.spread, 16 * run.spread);
-    render.samples = (case.samples_of(run.strategy) / (run.spread * run.spread)).max(1);
+    render.samples = (case.samples_of(run.strategy) / (run.spread * run.spread * run.fewer)).max(1);
     render.strategy = run.strategy;
     render.noise = run.is_adaptive.then_some(NOISE);
     // One kernel for the whole table.
@@ -97,7 +101,7 @@ fn faults(session: &mut Session, case: &Case, run: Run) -> Option<String> {
     for (channel, ([mean, error], expected)) in found.into_iter().zip(case.expected).enumerate() {
         let allowed = SIGMAS * error + ROUNDING * expected.abs() + 1e-9;
         // Adaptive renders stop by the luminance of all pixels, whatever is left in a channel.
-        let bound = if run.is_adaptive { 4.0 * BOUND } else { BOUND };
+        let bound = BOUND * if run.is_adaptive { 4.0 } else { f64::from(run.fewer).sqrt() };
         let is_sharp = allowed <= bound * expected.abs() + 1e-9;
         if (mean - expected).abs() > allowed || !is_sharp {
             return Some(format!(
@@ -119,6 +123,8 @@ fn assert_all(choice: EngineChoice) {
         found.extend(
             runs(&case)
                 .into_iter()
+                // Engines trace the same paths by every strategy (scenes.rs).
+                .take(if choice == EngineChoice::Gpu { 1 } else { usize::MAX })
                 .filter_map(|run| faults(&mut session, &case, run)),
         );
         println!("{choice:?} {}: {:.2} s", case.name, begun.elapsed().as_secs_f64());
@@ -135,9 +141,14 @@ fn assert_all(choice: EngineChoice) {
 fn runs(case: &Case) -> Vec<Run> {
     let mut runs: Vec<_> = case.strategies.iter().map(|&strategy| Run::plain(strategy)).collect();
     let first = runs[0];
+    runs[1..].iter_mut().for_each(|run| run.fewer = 4);
     // Where most of a picture is empty, it is no measure of the rest.
     if !case.is_dear() && case.is_even {
-        runs.push(Run { spread: 2, ..first });
+        runs.push(Run {
+            spread: 2,
+            fewer: 4,
+            ..first
+        });
         runs.push(Run {
             is_adaptive: true,
             ..first

@@ -2,14 +2,10 @@
 
 use std::collections::HashMap;
 use std::io::{BufRead as _, BufReader};
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
-
-use glossmith::scene::texture::{TextureTarget, UserTexture};
 use glossmith::store::PRESETS;
 use serde_json::Value as Json;
-
-use crate::cli_support::{Run, Workplace, channels};
+use crate::cli_support::{Run, Workplace};
 
 const SMALL: &str = "\n[common]\nsize = \"16x16\"\nsamples = 4\nmodel = \"sphere\"\n";
 
@@ -203,61 +199,6 @@ fn parts_of_the_samples_join_to_the_whole_pictures() {
     let run = place.run("batch b.toml --engine cpu --slice 1/2");
     assert_eq!(run.code, Some(1));
     assert!(lines(&run)[0]["error"].as_str().unwrap().contains("its own noise"));
-}
-
-/// Parts are not denoised, what they are joined to is.
-#[test]
-fn a_joined_picture_is_denoised() {
-    let place = Workplace::new();
-    let text = format!("materials = [\"gold\"]\nformats = [\"exr\"]\n{SMALL}denoise = \"high\"\n");
-    place.write("a.toml", text.as_bytes());
-    place.done("batch a.toml --engine cpu --folder whole");
-    for slice in 1..=2 {
-        place.done(&format!("batch a.toml --engine cpu --slice {slice}/2"));
-    }
-    place.done("batch a.toml --merge");
-    let [whole, joined] = ["whole", "pictures"].map(|folder| channels(&place.path(&format!("{folder}/gold.exr"))));
-    assert!(whole["R"] == joined["R"]);
-    for (a, b) in whole["denoised.R"].iter().zip(&joined["denoised.R"]) {
-        assert!((a - b).abs() < 1e-3 * (1.0 + a.abs()), "{a} and {b}");
-    }
-}
-
-#[test]
-fn files_are_found_beside_the_batch_and_pictures_go_there() {
-    let place = Workplace::new();
-    std::fs::create_dir(place.path("deep")).unwrap();
-    let mut mine = PRESETS[2].clone();
-    let paint = |code: u8| {
-        let grey = image::RgbImage::from_pixel(2, 2, image::Rgb([code; 3]));
-        grey.save(place.path("deep/paint.png")).unwrap();
-    };
-    paint(200);
-    mine.put_texture(TextureTarget::BaseColor, UserTexture::of(place.path("deep/paint.png")));
-    glossmith::store::save_material(&place.path("deep/mine.json"), &mine).unwrap();
-    crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [1.0; 3]);
-    place.write(
-        "deep/a.toml",
-        format!("materials = [\"mine.json\"]\nenvironments = [\"sky.hdr\", \"furnace\"]\nfolder = \"out\"{SMALL}")
-            .as_bytes(),
-    );
-    let rows = lines(&place.done("batch deep/a.toml --engine cpu"));
-    let files: Vec<PathBuf> = rows
-        .iter()
-        .map(|row| place.path(row["files"][0].as_str().unwrap()))
-        .collect();
-    assert_eq!(files[0], place.path("deep/out/mine-sky.png"));
-    // The environment's contents count, not its name.
-    crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [0.5; 3]);
-    let again = outcomes(&place.done("batch deep/a.toml --engine cpu"));
-    assert_eq!(
-        (again["mine-sky"].as_str(), again["mine-furnace"].as_str()),
-        ("rendered", "kept")
-    );
-    // So do those of a texture.
-    paint(100);
-    let again = outcomes(&place.done("batch deep/a.toml --engine cpu"));
-    assert!(again.values().all(|status| status == "rendered"), "{again:?}");
 }
 
 #[test]

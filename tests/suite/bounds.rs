@@ -1,9 +1,6 @@
 //! Small files that ask for large work end soon, or with a message: each of these once took a minute or for ever.
 
-use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
 use serde_json::json;
-
 use super::cli_support::Workplace;
 
 const QUICK: &str = "--engine cpu --size 8x8 --samples 1 --output a.exr";
@@ -115,116 +112,6 @@ fn names_that_are_no_unicode_are_written() {
             String::from_utf8_lossy(&output.stderr)
         );
         assert!(place.path("").join(name).is_file(), "{command} {option}");
-    }
-}
-
-/// Textures whose names are no Unicode are used, named with a slot or not.
-#[cfg(target_os = "linux")]
-#[test]
-fn textures_whose_names_are_no_unicode_are_read() {
-    use std::os::unix::ffi::OsStrExt as _;
-    let place = Workplace::new();
-    let name = std::ffi::OsStr::from_bytes(b"w\xff_basecolor.png");
-    image::RgbImage::from_pixel(2, 2, image::Rgb([255, 0, 0]))
-        .save_with_format(place.path("").join(name), image::ImageFormat::Png)
-        .unwrap();
-    for before in ["", "1:", "base-color=", "1:base-color="] {
-        let argument = [before.as_bytes(), name.as_bytes()].concat();
-        let output = std::process::Command::new(crate::program())
-            .args("render --model sphere --engine cpu --size 8x8 --samples 1 --output a.png --report a.json".split(' '))
-            .arg("--texture")
-            .arg(std::ffi::OsStr::from_bytes(&argument))
-            .current_dir(place.path(""))
-            .output()
-            .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{before}: {told}");
-        let picture = image::open(place.path("a.png")).unwrap().to_rgb8();
-        let [r, g, b] = picture.get_pixel(4, 4).0;
-        assert!(r > 2 * g && r > 2 * b, "{before}: {:?}", [r, g, b]);
-    }
-}
-
-/// Files of a batch in folders whose names are not Unicode are found, and their records lead back to them.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_batch_knows_its_files_in_folders_that_are_no_unicode() {
-    use std::ffi::OsStr;
-    use std::os::unix::ffi::OsStrExt as _;
-    let place = Workplace::new();
-    let inside = |name: &[u8]| place.path("").join(OsStr::from_bytes(name));
-    let folder = inside(b"in\xff");
-    std::fs::create_dir(&folder).unwrap();
-    std::fs::write(folder.join("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    super::cli_support::write_hdr(&folder.join("l.hdr"), 8, 4, |_, _| [1.0; 3]);
-    glossmith::store::save_material(&folder.join("mine.json"), &glossmith::store::PRESETS[2]).unwrap();
-    let text = "models = [\"m.obj\"]\nmaterials = [\"mine.json\"]\nenvironments = [\"l.hdr\"]\n[common]\nsize = \"8x8\"\nsamples = 1\n";
-    std::fs::write(folder.join("b.toml"), text).unwrap();
-    let batch = |out: &[u8]| {
-        let output = std::process::Command::new(crate::program())
-            .args(["batch", "--engine", "cpu"])
-            .arg(folder.join("b.toml"))
-            .arg("--folder")
-            .arg(inside(out))
-            .current_dir(place.path(""))
-            .output()
-            .unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(
-            output.status.success(),
-            "{told}\n{}",
-            String::from_utf8_lossy(&output.stdout)
-        );
-        serde_json::from_slice::<serde_json::Value>(&output.stdout).unwrap()
-    };
-    let mut texts = Vec::new();
-    for out in [&b"out\xfe"[..], b"out\xfd"] {
-        let row = batch(out);
-        assert_eq!(row["status"], "rendered");
-        let text = row["files"][0].as_str().unwrap().to_owned();
-        let file = glossmith::scene::path_text::path_of_text(&text);
-        assert_eq!(file, std::path::absolute(inside(out).join("m-mine-l.png")).unwrap());
-        assert!(file.is_file() && !texts.contains(&text), "{text}");
-        let record: serde_json::Value =
-            serde_json::from_slice(&std::fs::read(inside(out).join("m-mine-l.json")).unwrap()).unwrap();
-        assert_eq!(record["files"][0], text.as_str());
-        assert_eq!(batch(out)["status"], "kept");
-        texts.push(text);
-    }
-    // And so are models, environments and materials on the command line, and the document in an image names them.
-    let render = |option: &str, name: &str| {
-        let mut argument = std::ffi::OsString::from(format!("{option}="));
-        argument.push(folder.join(name));
-        let output = std::process::Command::new(crate::program())
-            .args("render --engine cpu --size 8x8 --samples 1 --output a.png".split(' '))
-            .arg(argument)
-            .current_dir(place.path(""))
-            .output()
-            .unwrap();
-        assert!(
-            output.status.success(),
-            "{option}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-    };
-    for (option, name) in [
-        ("--model", "m.obj"),
-        ("--environment", "l.hdr"),
-        ("--material", "mine.json"),
-    ] {
-        render(option, name);
-        let loaded = glossmith::store::picture::load_picture_document(&place.path("a.png"))
-            .unwrap()
-            .value;
-        match option {
-            "--model" => assert_eq!(loaded.model, ModelSource::File(folder.join(name))),
-            "--environment" => {
-                let of_file = EnvironmentSource::File(folder.join(name));
-                assert_eq!(loaded.lighting.environment, of_file);
-            }
-            _ => assert_eq!(loaded.materials[0].name, glossmith::store::PRESETS[2].name),
-        }
-        place.done("render a.png --engine cpu --output b.exr");
     }
 }
 

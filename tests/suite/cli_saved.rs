@@ -90,37 +90,6 @@ fn a_project_is_rendered_as_it_was_saved_and_options_stand_over_it() {
     assert_eq!((&report["seed"], &report["samples_per_pixel"]), (&3.into(), &3.into()));
 }
 
-#[test]
-fn a_picture_with_its_document_inside_is_rendered_again() {
-    let place = Workplace::new();
-    save_document(&place.path("saved.json"), &saved()).unwrap();
-    place.done("render saved.json --engine cpu --output first.png");
-    let from_project = rendered(&place, "saved.json");
-    let from_picture = rendered(&place, "first.png");
-    assert_eq!(
-        (from_picture.width, from_picture.at(3, 4)),
-        (from_project.width, from_project.at(3, 4))
-    );
-}
-
-/// The other verbs that take a scene take what was saved as well.
-#[test]
-fn plans_turntables_studies_and_accounts_are_of_what_was_saved() {
-    let place = Workplace::new();
-    save_document(&place.path("saved.json"), &saved()).unwrap();
-    let plan = place.done("plan saved.json").stdout;
-    let words = "stands on a ground";
-    assert!(plan.contains(words), "{plan}");
-    assert!(!place.done("plan saved.json --ground=off").stdout.contains(words));
-    place.done("turntable saved.json --engine cpu --frames 2 --output turn --report t.json");
-    let report: serde_json::Value = serde_json::from_str(&place.read("t.json")).unwrap();
-    assert_eq!((&report["width"], &report["seed"]), (&20.into(), &7.into()));
-    let account = place.done("explain saved.json --pixel 10,6").stdout;
-    assert!(!account.is_empty());
-    place.done("study convergence saved.json --quick --samples 4 --output study");
-    assert!(place.path("study").is_dir());
-}
-
 /// Every setting with a flag has its option, with the table's default, and the option sets it.
 #[test]
 fn options_are_the_table_of_settings() {

@@ -142,12 +142,6 @@ impl Picture {
         self.pixels[y * self.width + x]
     }
 
-    /// Mean of a channel.
-    pub fn mean(&self, channel: usize) -> f64 {
-        let sum: f64 = self.pixels.iter().map(|pixel| f64::from(pixel[channel])).sum();
-        sum / self.pixels.len() as f64
-    }
-
     /// Mean difference of the colours over the mean colour.
     pub fn difference(&self, other: &Picture) -> f64 {
         assert_eq!((self.width, self.height), (other.width, other.height));

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use glossmith::compile::compile;
 use glossmith::document::{Background, CoatLobe, MaterialSettings, assign};
-use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
+use glossmith::optics::fresnel::fresnel_dielectric;
 use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Precision};
@@ -18,8 +18,6 @@ use super::renders::{document, render};
 
 const EXACT: (EngineChoice, Precision) = (EngineChoice::Cpu, Precision::Double);
 const ENGINES: [(EngineChoice, Precision); 2] = [(EngineChoice::Cpu, Precision::Single), EXACT];
-/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
-const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
 const COSINES: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
 
 /// A coat of weight 1 over a matt base.
@@ -84,34 +82,6 @@ fn a_coat_darkens_a_matt_base_by_the_closed_form() {
             }
         }
     }
-}
-
-/// The specification blends the ratios of the indices: of 1.5 below 1.6.
-#[test]
-fn reflection_below_a_coat_is_relative_to_its_index() {
-    for (weight, expected) in [
-        (0.0, 0.04),
-        (0.25, 0.0268),
-        (0.5, 0.0154),
-        (0.75, 0.0065),
-        (1.0, 0.0010),
-    ] {
-        let more = ["specular.weight=1", "coat.ior=1.6", &format!("coat.weight={weight}")];
-        let (materials, _) = compile(&[coated(0.0, &more)]);
-        let found = fresnel_f0(f64::from(materials[0].reflecting_ior));
-        assert!((found - expected).abs() < 6e-5, "{weight}: {found} for {expected}");
-        // Light is refracted as without a coat.
-        assert_eq!(materials[0].ior, 1.5);
-        let off = [&more[..], &["coat.on_base=off"]].concat();
-        let (materials, _) = compile(&[coated(0.0, &off)]);
-        assert_eq!(materials[0].reflecting_ior, 1.5);
-    }
-    // The weight of the reflection scales it head-on, below a coat too.
-    let more = ["specular.weight=0.5", "specular.weight_in_index=on", "coat.ior=1.2"];
-    let (materials, _) = compile(&[coated(0.0, &more)]);
-    let found = fresnel_f0(f64::from(materials[0].reflecting_ior));
-    let expected = 0.5 * fresnel_f0(1.25_f64);
-    assert!((found - expected).abs() < 1e-6, "{found} for {expected}");
 }
 
 #[test]
@@ -204,88 +174,6 @@ fn a_coloured_coat_dims_the_emission() {
                     (found - expected[channel]).abs() < 0.01,
                     "{choice:?}, {weight}: {middle:?} for {expected:?}"
                 );
-            }
-        }
-    }
-}
-
-#[test]
-fn white_stacks_with_a_coat_keep_all_light() {
-    let stacks: &[(&[&str], f64)] = &[
-        (&["coat.roughness=0.3"], 1.0),
-        (&["coat.weight=0.5", "coat.roughness=0.5"], 1.0),
-        (&["coat.lobe=ggx", "coat.roughness=0.5"], 1.0),
-        (&["specular.weight=1", "coat.ior=1.2", "coat.roughness=0.2"], 1.0),
-        (&["specular.weight=1", "coat.ior=2.5", "coat.weight=0.7"], 1.0),
-        (
-            &[
-                "base.metalness=1",
-                "specular.weight=1",
-                "specular.fresnel=schlick",
-                "coat.ior=2",
-            ],
-            1.0,
-        ),
-        (
-            &[
-                "base.metalness=1",
-                "specular.weight=1",
-                "specular.fresnel=schlick",
-                "specular.lobe=ggx",
-                "specular.roughness=0.4",
-                "coat.roughness=0.5",
-            ],
-            1.0,
-        ),
-        (
-            &["specular.weight=1", "transmission.weight=1", "coat.roughness=0.2"],
-            1.0,
-        ),
-        (
-            &[
-                "specular.weight=1",
-                "transmission.weight=0.5",
-                "specular.lobe=ggx",
-                "specular.roughness=0.4",
-                "coat.ior=1.8",
-            ],
-            1.0,
-        ),
-        (&["fuzz.weight=0.5", "coat.roughness=0.2"], 1.0),
-    ];
-    for (more, expected) in stacks {
-        for (engine, precision) in ENGINES {
-            let evaluator = Evaluator::open(&coated(1.0, more), engine, precision).unwrap();
-            for cosine in COSINES {
-                let found = evaluator.albedo(cosine, 1 << 15, 1).unwrap();
-                let sum = found.reflected[1] + found.transmitted[1];
-                // The table of a coat's albedo has an error of its own, below that of its samples.
-                assert!((sum - expected).abs() < 2e-3, "{engine:?}, {more:?}, {cosine}: {sum}");
-            }
-        }
-    }
-}
-
-#[test]
-fn both_precisions_and_the_gpu_have_the_same_coat() {
-    let rich = [
-        "specular.weight=1",
-        "specular.roughness=0.4",
-        "coat.roughness=0.35",
-        "coat.weight=0.8",
-        "coat.color=0.9,0.5,0.2",
-    ];
-    let ggx = [&rich[..], &["coat.lobe=ggx", "coat.anisotropy=0.6"]].concat();
-    for material in [coated(0.6, &rich), coated(0.6, &ggx)] {
-        let [exact, single, gpu] = [EXACT, ENGINES[0], GPU].map(|engine| evaluated(&material, engine));
-        for (exact, others) in exact.iter().zip(std::iter::zip(single, gpu)) {
-            for found in [others.0, others.1] {
-                for channel in 0..3 {
-                    let apart = (found.value[channel] - exact.value[channel]).abs();
-                    assert!(apart < 1e-3 * exact.value[channel].max(1e-3), "{found:?} for {exact:?}");
-                }
-                let apart = (found.density - exact.density).abs();
-                assert!(apart < 1e-3 * exact.density.max(1e-3), "{found:?} for {exact:?}");
             }
         }
     }

@@ -1,25 +1,20 @@
 //! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
 use std::path::Path;
-use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{Denoise, Document};
-use glossmith::matching::{Target, lobe_of_material, match_look};
-use glossmith::optics::lobe::Lobe;
+use glossmith::app::Options;
+use glossmith::document::Document;
 use glossmith::render::worker::{Activity, Picture};
 use glossmith::store::PRESETS;
 
-use super::ui::{Editor, editor, editor_of, editor_with, options, request, see, settle, wait};
+use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
 use super::ui_hands::press;
-use super::ui_scene;
 use super::worker::small_document;
 
 /// Waits until B, too, is finished and both have been compared.
@@ -38,81 +33,6 @@ fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> boo
     harness.check_accessibility();
 }
 
-fn rival(harness: &Editor) -> Document {
-    let snapshot = harness.state().rival_snapshot().expect("it is compared");
-    Document::clone(&snapshot.picture.as_ref().expect("it was waited for").document)
-}
-
-/// A picture that has cost some time stays when only the viewport's size changes; the request for another size is another
-/// matter.
-#[test]
-fn a_costly_picture_survives_a_comparison_and_panels_that_go() {
-    for (keep_from, is_kept) in [(Duration::ZERO, true), (Duration::from_secs(3600), false)] {
-        let mut document = small_document();
-        document.render.samples = 2;
-        let mut harness = Harness::builder()
-            .with_size(Vec2::new(1000.0, 700.0))
-            .with_pixels_per_point(0.25)
-            .build_eframe(move |creation| {
-                let options = Options {
-                    document: Some(document),
-                    resolution: Some(Resolution::Native),
-                    keep_pictures_from: Some(keep_from),
-                    ..options()
-                };
-                App::new(creation, options).expect("a thread to render on")
-            });
-        settle(&mut harness);
-        let size = |harness: &Editor| {
-            let snapshot = harness.state().snapshot();
-            let picture = snapshot.picture.as_ref().expect("it was waited for");
-            ([picture.width, picture.height], picture.serial)
-        };
-        let before = size(&harness);
-        for command in [Command::Compare, Command::Compare, Command::Maximise] {
-            request(&mut harness, Action::Do(command));
-            settle(&mut harness);
-        }
-        assert_eq!(size(&harness) == before, is_kept, "{before:?}");
-        // Started over, it has the viewport's size.
-        request(&mut harness, Action::Do(Command::Restart));
-        settle(&mut harness);
-        assert_ne!(size(&harness).0, before.0);
-    }
-}
-
-#[test]
-fn another_lobe_is_compared_with_its_look_matched() {
-    let mut harness = editor();
-    harness.key_press(Key::C);
-    harness.run_steps(2);
-    let before = harness.state().document().clone();
-    assert_eq!(before.materials[0].lobe, Lobe::Geometric);
-    settle_both(&mut harness, "B", |b| {
-        b.materials[0].lobe == Lobe::Ggx && b.materials[0].roughness != before.materials[0].roughness
-    });
-    let b = rival(&harness);
-    assert_eq!(
-        (b.camera, &b.lighting, b.render.seed),
-        (before.camera, &before.lighting, before.render.seed)
-    );
-    // The roughness is the one that "match look" finds.
-    let target = Target::Lobe(lobe_of_material(&before.materials[0]));
-    let found = match_look(&target, Lobe::Ggx, 0.0).expect("it has a highlight");
-    assert_eq!(b.materials[0].roughness, found.nearest.model.roughness as f32);
-    assert!(harness.query_by_label_contains("RMS ").is_some());
-    // B follows what is done to A.
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.8);
-    let rough = b.materials[0].roughness;
-    settle_both(&mut harness, "a rougher B", |b| b.materials[0].roughness > rough + 0.1);
-    harness.key_press(Key::C);
-    harness.run_steps(2);
-    assert!(harness.state().rival_snapshot().is_none(), "B is not rendered any more");
-    settle(&mut harness);
-}
-
 #[test]
 fn a_and_b_have_the_same_random_numbers() {
     let mut harness = editor();
@@ -129,37 +49,6 @@ fn a_and_b_have_the_same_random_numbers() {
     wait(&mut harness, "a difference", |app| {
         app.rms_difference().is_some_and(|rms| rms > 0.01)
     });
-}
-
-/// Both halves of a comparison come denoised, as the document asks, and a snapshot keeps what is shown.
-#[test]
-fn a_and_b_are_denoised_alike() {
-    let mut document = small_document();
-    document.view.denoise = Denoise::High;
-    let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
-    let gold = PRESETS.iter().find(|preset| preset.name == "Gold").expect("shipped");
-    request(
-        &mut harness,
-        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
-    );
-    settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
-    let is_denoised = |harness: &Editor| {
-        let snapshots = [harness.state().snapshot(), harness.state().rival_snapshot().expect("B")];
-        snapshots.map(|snapshot| snapshot.picture.as_ref().is_some_and(|picture| picture.is_denoised()))
-    };
-    assert_eq!(is_denoised(&harness), [true, true]);
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(2);
-    ui_scene::choose(&mut harness, "Denoise", "Off");
-    settle_both(&mut harness, "B as it is", |b| b.view.denoise == Denoise::Off);
-    wait(&mut harness, "A as it is", move |app| {
-        app.snapshot()
-            .picture
-            .as_ref()
-            .is_some_and(|picture| !picture.is_denoised())
-    });
-    assert_eq!(is_denoised(&harness), [false, false]);
 }
 
 #[test]
@@ -380,21 +269,4 @@ fn a_picture_that_is_opened_brings_all_back_and_is_not_replaced() {
             .iter()
             .any(|text| text.contains("plain.png") && text.contains("without a Glossmith document"))
     });
-}
-
-#[test]
-fn layers_are_saved_from_the_window() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("layers.exr");
-    let mut harness = editor();
-    choose(&mut harness, Command::SaveLayers, &path);
-    let meta = exr::meta::MetaData::read_from_file(&path, true).expect("an EXR file");
-    let names: Vec<String> = meta.headers[0]
-        .channels
-        .list
-        .iter()
-        .map(|channel| channel.name.to_string())
-        .collect();
-    assert_eq!(names.len(), 13, "{names:?}");
-    assert!(names.contains(&"normal.X".to_owned()) && names.contains(&"variance.Y".to_owned()));
 }

@@ -1,23 +1,18 @@
 //! Denoised pictures: what they keep, what is told of them, and what happens where there is no denoiser.
 
 use std::path::Path;
-use std::process::Command;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex, OnceLock};
 
 use glossmith::analysis::halves::Halves;
-use glossmith::document::{Background, Denoise, DenoiseWhen, Document};
+use glossmith::document::{Denoise, Document};
 use glossmith::job::film::{Extras, Film, Image};
 use glossmith::job::guides::GuideSums;
-use glossmith::render::denoise::{Denoised, Denoiser, Library, LibraryError, Noisy};
-use glossmith::render::worker::{Event, Level, Pace, Picture, Worker};
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::denoise::{Denoised, Denoiser, Noisy};
+use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 
 use super::cli_support::{Workplace, read_exr};
 use super::renders::render;
 use super::support::Random;
-use super::worker::small_document;
 
 fn denoiser() -> Denoiser {
     Denoiser::open().unwrap_or_else(|error| panic!("{error}"))
@@ -258,23 +253,6 @@ fn guides_follow_mirrors_and_are_alike_on_both_engines() {
     );
 }
 
-/// Guides are those of the first 32 samples, and the same however many follow.
-#[test]
-fn guides_are_of_the_first_samples_only() {
-    let mut document = small_document();
-    assert!(
-        render(EngineChoice::Cpu, &document).guides.is_empty(),
-        "nobody asks for them"
-    );
-    document.view.denoise = Denoise::High;
-    let guides = |document: &Document| render(EngineChoice::Cpu, document).guides;
-    document.render.samples = 32;
-    let first = guides(&document);
-    document.render.samples = 48;
-    assert_eq!(guides(&document), first);
-    assert!(first.iter().any(|halves| halves.iter().all(|sums| sums.hits == 16.0)));
-}
-
 #[test]
 fn a_denoised_picture_stands_beside_the_samples_and_its_error_in_the_report() {
     let place = Workplace::new();
@@ -326,189 +304,4 @@ fn rendering_stops_where_the_denoised_picture_is_as_exact_as_was_asked_for() {
     assert!(auto["denoised_error"].as_f64().unwrap() <= 0.15, "{auto}");
     let samples = |report: &serde_json::Value| report["mean_samples_per_pixel"].as_f64().unwrap();
     assert!(samples(&auto) < 0.7 * samples(&plain), "{auto} {plain}");
-}
-
-#[test]
-fn the_library_tells_its_version_and_device() {
-    let text = Library::get().unwrap_or_else(|error| panic!("{error}")).to_string();
-    assert!(
-        text.starts_with("Open Image Denoise 2.") && text.ends_with("(CPU)"),
-        "{text}"
-    );
-    let missing = Library::load(Path::new("/nowhere/libOpenImageDenoise.so.2")).unwrap_err();
-    assert!(matches!(missing, LibraryError::Broken { .. }), "{missing}");
-}
-
-/// A region of 8 × 8 pixels on a transparent background: denoised within, nothing without.
-#[test]
-fn a_region_alone_is_denoised() {
-    let mut document = small_document();
-    document.lighting.background = Background::Transparent;
-    document.view.denoise = Denoise::High;
-    document.render.samples = 4;
-    document.render.region = Some([0.45, 0.4, 0.55, 0.6]);
-    let film = render(EngineChoice::Cpu, &document);
-    let noisy = Noisy::of(&film, document.render.region);
-    let done = denoiser().denoise(&noisy, Denoise::High).unwrap();
-    for pixel in 0..film.pixel_count() {
-        let is_rendered = film.samples_of(pixel) > 0.0;
-        let value = done.image.pixels[pixel];
-        assert_eq!(is_rendered, value != [0.0; 4], "{pixel}: {value:?}");
-        assert!(value.iter().all(|x| x.is_finite() && *x >= 0.0) && value[3] <= 1.0);
-    }
-    assert!(done.error.is_some());
-}
-
-/// All pictures that a worker shows until the last one.
-fn pictures(worker: &Worker, revision: u64) -> Vec<Arc<Picture>> {
-    let mut seen: Vec<Arc<Picture>> = Vec::new();
-    let begun = std::time::Instant::now();
-    loop {
-        let snapshot = worker.snapshot();
-        if let Some(picture) = snapshot.picture.clone().filter(|picture| picture.revision == revision)
-            && seen.last().is_none_or(|last| last.serial != picture.serial)
-        {
-            seen.push(picture);
-        }
-        let is_last = |picture: &Arc<Picture>| picture.samples_per_pixel == picture.document.render.samples;
-        if snapshot.activity == glossmith::render::worker::Activity::Done && seen.last().is_some_and(is_last) {
-            return seen;
-        }
-        assert!(
-            begun.elapsed().as_secs() < 120,
-            "waited in vain: {:?}",
-            snapshot.activity
-        );
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-}
-
-#[test]
-fn the_window_s_pictures_are_denoised_from_the_first_to_the_last() {
-    let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
-    let mut document = small_document();
-    document.render.samples = 40;
-    document.view.denoise = Denoise::High;
-    let seen = pictures(&worker, worker.submit(&document, Pace::Still));
-    assert!(seen.iter().all(|picture| picture.is_denoised()), "none is noisy");
-    let counts: Vec<u32> = seen.iter().map(|picture| picture.samples_per_pixel).collect();
-    assert!(counts.is_sorted() && *counts.last().unwrap() == 40, "{counts:?}");
-    assert!(worker.snapshot().denoised.is_some_and(|estimate| estimate.value > 0.0));
-    // Another way of showing it renders nothing again.
-    document.view.denoise = Denoise::Off;
-    let seconds = worker.snapshot().progress.render_seconds;
-    let plain = pictures(&worker, worker.submit(&document, Pace::Still));
-    assert!(!plain.last().unwrap().is_denoised());
-    assert!(worker.snapshot().denoised.is_none());
-    document.view.denoise = Denoise::Fast;
-    let again = pictures(&worker, worker.submit(&document, Pace::Still));
-    assert!(again.last().unwrap().is_denoised());
-    assert_eq!(worker.snapshot().progress.render_seconds, seconds);
-    // At the end: the picture before is noisy.
-    (document.view.denoise_when, document.render.seed) = (DenoiseWhen::End, 9);
-    document.render.samples = 400;
-    let seen = pictures(&worker, worker.submit(&document, Pace::Still));
-    let (last, before) = seen.split_last().unwrap();
-    assert!(last.is_denoised() && before.iter().all(|picture| !picture.is_denoised()));
-}
-
-/// On the same cores the denoiser goes first: the engine has made no sample more when a denoised picture is shown than are
-/// in it, be it the first of one sample or the last.
-#[test]
-fn the_engine_waits_for_the_denoiser_on_the_same_cores() {
-    let desk: Arc<OnceLock<Worker>> = Arc::default();
-    let shown: Arc<Mutex<Vec<[u32; 2]>>> = Arc::default();
-    // Called by the worker's own thread: nothing happens in between.
-    let look = {
-        let (desk, shown) = (Arc::downgrade(&desk), shown.clone());
-        let last_serial = AtomicU64::new(0);
-        move || {
-            let Some(desk) = desk.upgrade() else { return };
-            let Some(snapshot) = desk.get().map(Worker::snapshot) else {
-                return;
-            };
-            if let Some(picture) = &snapshot.picture
-                && last_serial.swap(picture.serial, Relaxed) != picture.serial
-            {
-                let samples = [picture.samples_per_pixel, snapshot.progress.samples_per_pixel];
-                shown.lock().unwrap().push(samples);
-            }
-        }
-    };
-    desk.set(Worker::spawn(EngineChoice::Cpu, look).unwrap()).ok().unwrap();
-    let worker = desk.get().unwrap();
-    let mut document = small_document();
-    (document.render.width, document.render.height, document.render.samples) = (128, 96, 8);
-    document.view.denoise = Denoise::High;
-    pictures(worker, worker.submit(&document, Pace::Still));
-    let shown = shown.lock().unwrap();
-    assert!(shown.len() >= 2, "{shown:?}");
-    assert!(shown.iter().all(|[shown, made]| shown == made), "{shown:?}");
-}
-
-/// What nobody waits for any more is given up, and the next picture is as if it had not been begun.
-#[test]
-fn denoising_can_be_given_up() {
-    let film = film([64, 64], 4, 0.2, |x, y| [[checker(8, x, y); 3]; 2]);
-    let noisy = Noisy::of(&film, None);
-    let mut denoiser = denoiser();
-    let before = denoiser.denoise(&noisy, Denoise::High).unwrap();
-    let stopped = denoiser.denoise_cancellable(&noisy, Denoise::High, &AtomicBool::new(true));
-    assert_eq!(stopped.unwrap_err(), LibraryError::Cancelled);
-    assert_eq!(denoiser.denoise(&noisy, Denoise::High).unwrap().image, before.image);
-}
-
-/// Edits come faster than pictures are denoised: what is shown in the end is the last one, and no picture bears another's
-/// revision.
-#[test]
-fn edits_while_the_denoiser_is_busy_end_in_the_last_one() {
-    let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
-    let mut document = small_document();
-    document.view.denoise = Denoise::High;
-    let mut revision = 0;
-    for seed in 0..12 {
-        document.render.seed = seed;
-        revision = worker.submit(&document, Pace::Moving);
-        std::thread::sleep(std::time::Duration::from_millis(3));
-    }
-    let seen = pictures(&worker, revision);
-    let last = seen.last().unwrap();
-    assert!(last.is_denoised() && last.document.render.seed == 11);
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    session.submit(&document).unwrap();
-    while !session.step(std::time::Duration::from_millis(20)).unwrap().is_done {}
-    assert_eq!(*last.samples, session.image().unwrap());
-    let complaints = worker
-        .take_events()
-        .into_iter()
-        .filter(|event| matches!(event, Event::Message(Level::Error, _)));
-    assert_eq!(complaints.count(), 0);
-}
-
-/// What would be done to get the library is said beforehand, and a no is kept to.
-#[cfg(target_os = "linux")]
-#[test]
-fn setup_says_what_it_would_take_and_keeps_to_a_no() {
-    let place = Workplace::new();
-    let data = place.path("data");
-    let setup = |purpose: &str| {
-        let output = Command::new(Path::new(crate::ROOT).join("scripts/setup"))
-            .args([purpose, "--dry-run"])
-            .env("XDG_DATA_HOME", &data)
-            .env_remove("GLOSSMITH_OIDN")
-            .output()
-            .unwrap();
-        String::from_utf8(output.stderr).unwrap()
-    };
-    let asked = setup("denoiser");
-    // Silent where the system has the library.
-    let is_wanted = |text: &str| text.contains("Open Image Denoise");
-    assert!(
-        asked.is_empty() || (is_wanted(&asked) && !data.join("glossmith/denoiser").exists()),
-        "{asked}"
-    );
-    std::fs::create_dir_all(data.join("glossmith")).unwrap();
-    std::fs::write(data.join("glossmith/denoiser-declined"), "").unwrap();
-    assert!(!is_wanted(&setup("run")));
-    assert_eq!(setup("denoiser"), asked, "asked for by name it is offered again");
 }

@@ -20,12 +20,6 @@ use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, custom};
 
 /// Stretch and relative index of refraction.
 const KINDS: [(f64, f64); 5] = [(0.0, 0.0), (0.7, 0.0), (0.0, 1.5), (0.0, 1.0 / 1.5), (-0.5, 1.5)];
-/// Directions that each case draws.
-const DIRECTIONS: u32 = 150;
-/// Relative error that is allowed.
-const ERROR_MAX: f64 = 1e-3;
-/// Roundings of the direction that an error may be worth.
-const ROUNDINGS: f64 = 4.0;
 /// Range of u up to which a few nodes are enough.
 const PIECE_MAX: f64 = 0.5;
 
@@ -240,85 +234,6 @@ fn density<T: Scalar>(inputs: &Inputs<T>, light: Vec3<T>) -> T {
     lobe_evaluate(&inputs.shape, &inputs.frame, inputs.frame.normal, inputs.wo, light)[1]
 }
 
-/// The largest relative change of the reference where either direction moves by one rounding of f32: what no f32 function
-/// of rounded directions can avoid. Near total reflection the refracted direction moves by far more than the view.
-fn conditioning(double: &Inputs<f64>, rules: &Rules, light: Vec3<f64>) -> f64 {
-    let here = reference(double, rules, light);
-    let change = |moved: f64| (moved / here - 1.0).abs();
-    let moves = |direction: Vec3<f64>| {
-        let around = frame_from_normal(direction);
-        [around.tangent, around.bitangent, -around.tangent, -around.bitangent]
-            .map(|axis| axis * f64::from(f32::EPSILON))
-    };
-    let light_moves = moves(light).map(|by| change(reference(double, rules, light + by)));
-    let view_moves = moves(double.wo).map(|by| {
-        let wo = (double.wo + by).normalize();
-        change(reference(&Inputs { wo, ..*double }, rules, light))
-    });
-    light_moves.into_iter().chain(view_moves).fold(0.0, f64::max)
-}
-
-/// How many directions were drawn, how many are off by [`ERROR_MAX`] or more, and how many of those by more than rounding
-/// the direction explains.
-type Tally = [usize; 3];
-
-fn tally(case: &Case, rules: &Rules) -> Tally {
-    let (single, double) = (inputs::<f32>(case), inputs::<f64>(case));
-    let mut tally = [0; 3];
-    for light in (0..DIRECTIONS).filter_map(|i| drawn(case, &single, i)) {
-        let found = f64::from(density(&single, light));
-        let light = Vec3::from_f32(light.to_f32());
-        let error = (found / reference(&double, rules, light) - 1.0).abs();
-        let is_off = error.is_nan() || error >= ERROR_MAX;
-        let is_unexplained = is_off && {
-            let roundings = error / conditioning(&double, rules, light);
-            roundings.is_nan() || roundings >= ROUNDINGS
-        };
-        tally = [
-            tally[0] + 1,
-            tally[1] + usize::from(is_off),
-            tally[2] + usize::from(is_unexplained),
-        ];
-    }
-    tally
-}
-
-/// Over a curve's whole grid 99.9 % of the directions drawn are right to 1e-3; and at each roughness of each kind as
-/// many are right or as close as the rounding of their inputs lets them be.
-#[test]
-fn single_precision_is_right_to_a_thousandth() {
-    let rules = Rules::new(128);
-    for curve in curves() {
-        let cases = cases(curve);
-        let tallies: Vec<Tally> = cases.par_iter().map(|case| tally(case, &rules)).collect();
-        let sum = |is_part: &dyn Fn(&Case) -> bool| {
-            let part = cases.iter().zip(&tallies).filter(|(case, _)| is_part(case));
-            part.fold([0; 3], |sum, (_, tally)| [0, 1, 2].map(|i| sum[i] + tally[i]))
-        };
-        // What is refracted at the smoothest is a sixth as wide as what is reflected, and steeper than f32 directions are fine.
-        let [directions, off, _]: Tally = sum(&|case| case.eta == 0.0 || case.roughness > 0.02);
-        println!("{:?}: {off} of {directions} directions are off", curve.0);
-        assert!(directions > 64_000, "{:?}: only {directions} directions", curve.0);
-        // A curve with a feature in each sixty-fourth of its width is steeper than f32 directions are fine.
-        let is_jagged = std::ptr::eq(curve.1, custom());
-        assert!(
-            off * if is_jagged { 500 } else { 1000 } <= directions,
-            "{curve:?}: {off} of {directions}"
-        );
-        for roughness in ROUGHNESS {
-            for kind in KINDS {
-                let is_part = |case: &Case| (case.roughness, (case.anisotropy, case.eta)) == (roughness, kind);
-                let [directions, _, unexplained] = sum(&is_part);
-                let what = format!("{:?} roughness {roughness}, stretch and index {kind:?}", curve.0);
-                assert!(
-                    unexplained * 1000 <= directions,
-                    "{what}: {unexplained} of {directions}"
-                );
-            }
-        }
-    }
-}
-
 /// In f64 the closed forms are the quadrature, and the quadrature has converged.
 #[test]
 fn closed_forms_are_the_quadrature() {
@@ -437,27 +352,4 @@ fn no_direction_gives_anything_but_a_number() {
             assert!(found.is_finite() && found >= 0.0, "{case:?} {xi:?}: {found}");
         }
     });
-}
-
-/// The offset along the normal displaces the lobe from the mirror direction r: samples lean towards the normal, by many
-/// standard errors (docs/mathematics/lobe.md, equation 1.7).
-#[test]
-fn the_lobe_leans_from_the_mirror_direction_to_the_normal() {
-    const SAMPLES: u32 = 20_000;
-    let case = Case::new(Lobe::Geometric, Curve::Sqrt, Horizon::None, 0.5, 45.0);
-    let inputs = inputs::<f64>(&case);
-    let normal = inputs.frame.normal;
-    let mirrored = normal * (2.0 * normal.dot(inputs.wo)) - inputs.wo;
-    let across = (normal - mirrored * normal.dot(mirrored)).normalize();
-    let leans = (0..SAMPLES).map(|i| {
-        let state = random_state(23, 0, 0, i, Sequence::Independent);
-        let ([a, b], [c, _]) = (random_pair::<f64>(state, 0), random_pair::<f64>(state, 1));
-        let sample = lobe_sample(&inputs.shape, &inputs.frame, normal, inputs.wo, [a, b, c]);
-        sample.wi.dot(across)
-    });
-    let (sum, squares) = leans.fold((0.0, 0.0), |(sum, squares), x| (sum + x, squares + x * x));
-    let count = f64::from(SAMPLES);
-    let mean = sum / count;
-    let error = ((squares / count - mean * mean) / count).sqrt();
-    assert!(mean > 10.0 * error, "{mean} ± {error}");
 }

@@ -11,7 +11,11 @@ use glossmith::render::{EngineChoice, EngineKind, RayQueries, Session, SessionEr
 use super::cli_support::passes_alone;
 use super::worker::{finished, small_document, wait};
 
-const MOMENTS: [Moment; 4] = [Moment::Compiling, Moment::Uploading, Moment::Rendering, Moment::Reading];
+const MOMENTS: &[Moment] = if cfg!(feature = "thorough") {
+    &[Moment::Compiling, Moment::Uploading, Moment::Rendering, Moment::Reading]
+} else {
+    &[Moment::Rendering]
+};
 /// On a machine that has other things to do.
 const PATIENCE: Duration = Duration::from_secs(600);
 
@@ -76,7 +80,7 @@ fn gpu_worker() -> Worker {
 
 #[test]
 fn a_lost_device_is_opened_anew() {
-    for moment in MOMENTS {
+    for &moment in MOMENTS {
         let worker = gpu_worker();
         worker.lose_device(moment, 1);
         worker.submit(&long_document(), Pace::Still);
@@ -90,8 +94,9 @@ fn a_lost_device_is_opened_anew() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn what_is_lost_again_and_again_is_left_to_the_processor() {
-    for moment in MOMENTS {
+    for &moment in MOMENTS {
         let worker = gpu_worker();
         worker.lose_device(moment, 4);
         worker.submit(&long_document(), Pace::Still);
@@ -142,6 +147,7 @@ fn with_ray_queries() {
 
 /// The adapter's own hierarchies are lost with it, and built again.
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn a_lost_device_comes_back_with_its_ray_queries() {
     passes_alone("device_loss::with_ray_queries");
 }

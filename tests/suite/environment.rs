@@ -1,16 +1,10 @@
 //! Environments: conventions of the map, look-up, and the sampling density against statistics and quadrature.
 
 use std::f64::consts::{PI, TAU};
-
 use glossmith::import::environment::load;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{
-    Environment, EnvironmentSource, SkyParams, brightened, environment_direction, environment_local_from_world,
-    environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction,
-    sun_irradiance, thumbnail,
-};
-
+use glossmith::scene::environment::{Environment, EnvironmentSource, SkyParams, brightened, environment_direction, environment_local_from_world, environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction, sun_irradiance, thumbnail};
 use crate::support::Random;
 
 /// A direction, uniform on the sphere.
@@ -334,44 +328,6 @@ fn built_in_lights_are_right_for_exposure_0() {
         (0.08..0.5).contains(&shadow_side),
         "white on the shadow side: {shadow_side}"
     );
-}
-
-#[test]
-fn a_thumbnail_shows_the_map() {
-    let mut texels = vec![[0.02, 0.02, 0.02, 1.0]; 16 * 8];
-    for row in 0..4 {
-        for column in 0..8 {
-            texels[row * 16 + column] = [2.0, 0.5, 0.5, 1.0];
-        }
-    }
-    let environment = Environment::from_texels("quarters", 16, 8, texels).unwrap();
-    let pixels = thumbnail(&environment, 8, 4);
-    assert_eq!(pixels.len(), 32);
-    let [red, green, _, alpha] = pixels[8 + 2];
-    assert!(red > 150 && red > green && alpha == 255, "{:?}", pixels[10]);
-    assert!(pixels[3 * 8 + 6][0] < 100, "{:?}", pixels[3 * 8 + 6]);
-}
-
-#[test]
-fn the_shader_is_valid() {
-    let stub = "
-        @group(1) @binding(0) var<storage, read_write> result: array<vec4f>;
-        @compute @workgroup_size(1) fn main() {
-            let world = environment_direction(vec2f(0.25, 0.5));
-            let local = environment_local_from_world(world, vec2f(1.0, 0.0));
-            let drawn = environment_sample(vec3f(0.1, 0.2, 0.3), vec2u(4u, 2u));
-            result[0] = vec4f(environment_radiance(local), environment_density(drawn.direction, vec2u(4u, 2u)));
-            result[1] = vec4f(environment_world_from_local(drawn.direction, vec2f(1.0, 0.0)), drawn.density);
-        }";
-    let linked = glossmith::gpu::shader::link_with(&["scene/environment"], stub).unwrap();
-    let source = linked.source;
-    let module =
-        naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
-    let mut validator =
-        naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
-    validator
-        .validate(&module)
-        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
 }
 
 #[test]

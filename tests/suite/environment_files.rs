@@ -1,6 +1,5 @@
 //! Environments from files: what is read right, what is mended, and what is refused in one clear line.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{
@@ -11,7 +10,6 @@ use glossmith::import::environment::EnvironmentError;
 use glossmith::import::environment::load;
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use image::codecs::hdr::HdrEncoder;
-use proptest::prelude::{ProptestConfig, any, proptest};
 use tempfile::TempDir;
 
 const WIDTH: usize = 16;
@@ -222,27 +220,6 @@ fn exr_channels_are_chosen() {
 }
 
 #[test]
-fn the_first_exr_layer_with_colour_is_taken() {
-    let folder = TempDir::new().unwrap();
-    let layer = |name: &str, channels: &[(&str, usize)]| {
-        exr_layer(channels, "half", Compression::ZIP16, LayerAttributes::named(name))
-    };
-    let layers: Vec<_> = vec![
-        layer("depth", &[("Z", 5)]),
-        layer("grey", &[("Y", 4)]),
-        layer("color", &[("R", 0), ("G", 1), ("B", 2)]),
-        layer("later", &[("R", 7), ("G", 8), ("B", 9)]),
-    ];
-    let path = folder.path().join("layers.exr");
-    let window = ImageAttributes::new(IntegerBounds::from_dimensions((WIDTH, HEIGHT)));
-    Image::from_layers(window, layers).write().to_file(&path).unwrap();
-    let mut environment = load_file(&path).unwrap();
-    assert_eq!(environment.warnings.len(), 1, "{:?}", environment.warnings);
-    environment.warnings.clear();
-    assert_shows(&environment, 1.0, [0, 1, 2]);
-}
-
-#[test]
 fn exr_pixels_go_where_the_windows_say() {
     let folder = TempDir::new().unwrap();
     let attributes = LayerAttributes::default().with_position(Vec2(7, -3));
@@ -316,25 +293,6 @@ fn odd_shapes_are_shown_with_a_warning() {
 }
 
 #[test]
-fn every_truncation_is_refused() {
-    let folder = TempDir::new().unwrap();
-    let hdr = hdr_bytes(WIDTH, HEIGHT);
-    for length in 0..hdr.len() {
-        refusal(&write_bytes(&folder, "cut.hdr", &hdr[..length]));
-    }
-    let cut = write_bytes(&folder, "cut.hdr", &hdr[..hdr.len() * 2 / 3]);
-    assert_says(&refusal(&cut), &["cut short", "row ", "of 8", "download it again"]);
-    for compression in [Compression::Uncompressed, Compression::ZIP16, Compression::PIZ] {
-        let exr = std::fs::read(exr_file(&folder, "whole.exr", &RGB, "half", compression)).unwrap();
-        for length in 0..exr.len() {
-            refusal(&write_bytes(&folder, "cut.exr", &exr[..length]));
-        }
-        let cut = write_bytes(&folder, "cut.exr", &exr[..exr.len() - 40]);
-        assert_says(&refusal(&cut), &["cut short", "download it again"]);
-    }
-}
-
-#[test]
 fn what_is_no_environment_is_refused() {
     let folder = TempDir::new().unwrap();
     let text = b"Dear reader, this is a letter and no picture.\n";
@@ -370,108 +328,6 @@ fn what_is_no_environment_is_refused() {
         &refusal(&folder.path().join("folder.hdr")),
         &["folder without six images", "px, nx"],
     );
-}
-
-#[test]
-fn sizes_that_cannot_be_are_refused() {
-    let folder = TempDir::new().unwrap();
-    let header = |size: &str| format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n").into_bytes();
-    let refused = |size: &str| refusal(&write_bytes(&folder, "size.hdr", &header(size)));
-    assert_says(&refused("-Y 0 +X 0"), &["no pixels"]);
-    assert_says(
-        &refused("-Y 4097 +X 32769"),
-        &["32769 × 4097", "32768 × 32768", "scale it down"],
-    );
-    assert_says(&refused("-Y 4294967295 +X 4294967295"), &["scale it down"]);
-    assert_says(&refused("-Y 4096 +X 8192"), &["cut short", "row 1 of 4096"]);
-    assert_says(&refused("+X 8 +Y 4"), &["cut short", "column 1 of 8"]);
-    assert_says(&refused("+Y 4 +Y 8"), &["resolution '+Y 4 +Y 8'"]);
-    assert_says(&refused("-Y 4"), &["resolution '-Y 4'"]);
-}
-
-/// The offset of an attribute's value in an EXR header.
-fn attribute_offset(bytes: &[u8], name_and_type: &[u8]) -> usize {
-    bytes
-        .windows(name_and_type.len())
-        .position(|window| window == name_and_type)
-        .expect("the attribute")
-        + name_and_type.len()
-        + 4
-}
-
-#[test]
-fn exr_features_beyond_reach_are_refused() {
-    let folder = TempDir::new().unwrap();
-    let exr = std::fs::read(exr_file(&folder, "a.exr", &RGB, "half", Compression::ZIP16)).unwrap();
-    let compression = attribute_offset(&exr, b"compression\0compression\0");
-    for code in [10, 11] {
-        let mut bytes = exr.clone();
-        bytes[compression] = code;
-        let error = refusal(&write_bytes(&folder, "htj2k.exr", &bytes));
-        assert_says(&error, &["not supported", "re-save it"]);
-    }
-    let mut bytes = exr.clone();
-    bytes[5] |= 8;
-    assert_says(
-        &refusal(&write_bytes(&folder, "deep.exr", &bytes)),
-        &["deep pixels", "flatten"],
-    );
-}
-
-#[test]
-fn an_exr_header_that_promises_too_much_is_refused() {
-    let folder = TempDir::new().unwrap();
-    for compression in [Compression::Uncompressed, Compression::ZIP16] {
-        let exr = std::fs::read(exr_file(&folder, "a.exr", &RGB, "float", compression)).unwrap();
-        let promise = |width: i32, height: i32| {
-            let mut bytes = exr.clone();
-            let chunks = height.div_euclid(compression.scan_lines_per_block() as i32);
-            let chunk_count = attribute_offset(&bytes, b"chunkCount\0int\0");
-            bytes[chunk_count..chunk_count + 4].copy_from_slice(&chunks.to_le_bytes());
-            for window in [b"dataWindow\0box2i\0".as_slice(), b"displayWindow\0box2i\0"] {
-                let corner = attribute_offset(&bytes, window) + 8;
-                bytes[corner..corner + 4].copy_from_slice(&(width - 1).to_le_bytes());
-                bytes[corner + 4..corner + 8].copy_from_slice(&(height - 1).to_le_bytes());
-            }
-            refusal(&write_bytes(&folder, "promise.exr", &bytes))
-        };
-        assert_says(&promise(8192, 4096), &["cut short", "header promises"]);
-        assert_says(&promise(40_000, 4096), &["40000 × 4096", "scale it down"]);
-        promise(i32::MAX / 2, i32::MAX / 2);
-        promise(0, 0);
-        promise(-5, 3);
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
-
-    /// Whatever the damage: a picture that can be rendered or an error, no panic.
-    #[test]
-    fn damaged_files_never_panic(kind in 0..10_usize, damage in any::<[(u16, u8); 3]>()) {
-        let folder = TempDir::new().unwrap();
-        let exr_kinds = [
-            Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16, Compression::PIZ,
-            Compression::PXR24, Compression::B44A, Compression::DWAA(None), Compression::DWAB(None),
-        ];
-        let (name, mut bytes) = match exr_kinds.get(kind) {
-            Some(compression) => {
-                ("a.exr", std::fs::read(exr_file(&folder, "a.exr", &RGB, "half", *compression)).unwrap())
-            }
-            None => ("a.hdr", hdr_bytes(WIDTH, HEIGHT)),
-        };
-        for (place, byte) in damage {
-            let place = usize::from(place) % bytes.len();
-            bytes[place] = byte;
-        }
-        let mut file = std::fs::File::create(folder.path().join(name)).unwrap();
-        file.write_all(&bytes).unwrap();
-        drop(file);
-        if let Ok(environment) = load_file(&folder.path().join(name)) {
-            assert!(environment.texels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0));
-            assert!(environment.distribution(true).cells.iter().all(|cell| cell.density.is_finite() && cell.density >= 0.0));
-        }
-    }
 }
 
 /// The file of colours of ACEScg, half of them white, half a saturated green.

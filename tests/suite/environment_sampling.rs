@@ -1,19 +1,15 @@
 //! Environments: the density that they are sampled with, against quadrature and statistics.
 
 use std::f64::consts::{PI, TAU};
-
-use glossmith::analysis::chi_square::upper_tail;
+use glossmith::analysis::chi_square::test_counts;
 use glossmith::import::environment::load;
-use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
-    Distribution, Environment, EnvironmentSource, SkyParams, environment_density, environment_direction,
+    Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction,
     environment_radiance, environment_sample, environment_uv, furnace, sky, thumbnail,
 };
 use glossmith::scene::inversion::{DRAW_BITS, drawn, find, place_in, shares};
-
-use crate::environment::{assert_near, constant_map, random_direction, random_map, sun_map, triple};
+use crate::environment::{assert_near, constant_map, random_map, sun_map, triple};
 use crate::support::Random;
 
 #[test]
@@ -62,15 +58,15 @@ fn density_integral(distribution: &Distribution, columns: u32, rows: u32) -> f64
 fn density_integrates_to_one() {
     // The error is that of borders between cells that fall between midpoints: it goes with 1 / rows.
     assert_near(
-        density_integral(random_map(37, 19).distribution(true), 37 * 4, 40_000),
+        density_integral(random_map(37, 19).distribution(true), 37 * 4, 10_000),
         1.0,
-        2e-4,
+        8e-4,
         "random 37 × 19",
     );
     assert_near(
-        density_integral(sun_map().distribution(true), 256, 40_000),
+        density_integral(sun_map().distribution(true), 256, 10_000),
         1.0,
-        1e-3,
+        4e-3,
         "sun",
     );
     assert_near(
@@ -87,31 +83,6 @@ fn density_integrates_to_one() {
     );
 }
 
-#[test]
-fn a_large_map_has_merged_cells() {
-    let (width, height) = (3001, 1401);
-    let environment = random_map(width, height);
-    let distribution = environment.distribution(true);
-    assert_eq!((distribution.width, distribution.height), (1501, 701));
-    let total: f64 = (0..distribution.cells.len())
-        .map(|index| f64::from(distribution.cells[index].density) * cell_solid_angle(distribution, index))
-        .sum();
-    assert_near(total, 1.0, 1e-5, "sum of density times solid angle");
-    // A merged cell is black only where the picture is.
-    let mut random = Random::new(3);
-    for _ in 0..20_000 {
-        let direction = random_direction(&mut random);
-        if environment_radiance(&environment, direction).luminance() > 0.0 {
-            assert!(
-                environment_density(distribution, direction) > 0.0,
-                "light without density at {direction:?}"
-            );
-        }
-    }
-    let p = chi_square_p::<f32>(distribution, [19, 19], 400_000, |_| 1.0);
-    assert!(p > 1e-3, "p = {p}");
-}
-
 /// The solid angle of a cell, told by the cosines of its borders.
 fn cell_solid_angle(distribution: &Distribution, index: usize) -> f64 {
     let row = (index as u32 / distribution.width) as f64;
@@ -119,76 +90,45 @@ fn cell_solid_angle(distribution: &Distribution, index: usize) -> f64 {
     TAU / f64::from(distribution.width) * (cosine(row) - cosine(row + 1.0))
 }
 
-/// The p-value of `count` samples against the integral of the density over blocks of cells, each expectation times
-/// `tamper(block)`.
-fn chi_square_p<T: Scalar>(
-    distribution: &Distribution,
-    block: [u32; 2],
-    count: u32,
-    tamper: impl Fn(usize) -> f64,
-) -> f64 {
+/// So many samples see a density that is off by 1 % on half of some fifty blocks with 99.9 %.
+const COUNT: u32 = 1_000_000;
+
+/// The p-value of samples against the integral of the density over blocks of cells, and that of a density that is 1 % too
+/// high or low in every other block.
+fn p_values(distribution: &Distribution, block: [u32; 2]) -> [f64; 2] {
     let columns = distribution.width.div_ceil(block[0]) as usize;
     let rows = distribution.height.div_ceil(block[1]) as usize;
     let block_of = |cell: [u32; 2]| (cell[1] / block[1]) as usize * columns + (cell[0] / block[0]) as usize;
     let mut expected = vec![0.0; columns * rows];
     for (index, cell) in distribution.cells.iter().enumerate() {
-        let index_u32 = index as u32;
-        let place = [index_u32 % distribution.width, index_u32 / distribution.width];
-        expected[block_of(place)] += f64::from(cell.density) * cell_solid_angle(distribution, index) * f64::from(count);
+        let place = [index as u32 % distribution.width, index as u32 / distribution.width];
+        expected[block_of(place)] += f64::from(cell.density) * cell_solid_angle(distribution, index) * f64::from(COUNT);
     }
-    let mut found = vec![0.0; columns * rows];
+    let mut found = vec![0; columns * rows];
     let mut random = Random::new(11);
-    for _ in 0..count {
-        let (direction, density) = environment_sample::<T>(distribution, triple(&mut random));
-        assert!(density.to_f64() > 0.0 && density.to_f64().is_finite());
-        assert_near(direction.length().to_f64(), 1.0, 1e-6, "length");
+    for _ in 0..COUNT {
+        let (direction, density) = environment_sample::<f32>(distribution, triple(&mut random));
+        assert!(density > 0.0 && density.is_finite());
         let uv = environment_uv(Vec3::<f64>::from_f64(direction.to_f64()));
         let size = [distribution.width, distribution.height];
-        found[block_of([0, 1].map(|axis| ((uv[axis] * f64::from(size[axis])) as u32).min(size[axis] - 1)))] += 1.0;
+        found[block_of([0, 1].map(|axis| ((uv[axis] * f64::from(size[axis])) as u32).min(size[axis] - 1)))] += 1;
     }
-    let (mut statistic, mut cells, mut pooled) = (0.0, 0, (0.0, 0.0));
-    for (block, (found, expected)) in found.iter().zip(&expected).enumerate() {
-        let expected = expected * tamper(block);
-        if expected < 10.0 {
-            pooled = (pooled.0 + found, pooled.1 + expected);
-        } else {
-            statistic += (found - expected) * (found - expected) / expected;
-            cells += 1;
-        }
-    }
-    if pooled.1 >= 1.0 {
-        statistic += (pooled.0 - pooled.1) * (pooled.0 - pooled.1) / pooled.1;
-        cells += 1;
-    } else {
-        assert!(pooled.0 < 12.0, "{} samples where {} were expected", pooled.0, pooled.1);
-    }
-    upper_tail(statistic, f64::from(cells - 1))
+    let tampered: Vec<f64> = expected.iter().enumerate().map(|(i, x)| x * [1.01, 0.99][i % 2]).collect();
+    [&expected, &tampered].map(|expected| test_counts(&found, expected).p_value)
 }
 
 #[test]
 fn samples_follow_the_density() {
     let cases = [
-        ("random 37 × 19", random_map(37, 19), [1, 1]),
-        ("random 2000 × 1000", random_map(2000, 1000), [40, 40]),
-        ("single sun", sun_map(), [2, 2]),
-        ("sky", load(&EnvironmentSource::Sky).unwrap(), [32, 32]),
-        ("studio", load(&EnvironmentSource::Studio).unwrap(), [16, 16]),
+        ("random", random_map(37, 19), [5, 3], true),
+        ("single sun", sun_map(), [4, 4], true),
+        ("sky", load(&EnvironmentSource::Sky).unwrap(), [256, 128], false),
+        ("studio", load(&EnvironmentSource::Studio).unwrap(), [128, 64], true),
     ];
-    for (name, environment, block) in &cases {
-        for (kind, is_alone) in [("all", true), ("excess", false)] {
-            let distribution = environment.distribution(is_alone);
-            let double = chi_square_p::<f64>(distribution, *block, 1_000_000, |_| 1.0);
-            assert!(double > 1e-3, "{name}, {kind}, in f64: p = {double}");
-            let single = chi_square_p::<f32>(distribution, *block, 1_000_000, |_| 1.0);
-            assert!(single > 1e-3, "{name}, {kind}, in f32: p = {single}");
-            // The test sees a density that is off by two per cent.
-            let off = |block| if block % 2 == 0 { 1.02 } else { 0.98 };
-            let tampered = chi_square_p::<f32>(distribution, *block, 1_000_000, off);
-            assert!(
-                tampered < 1e-6,
-                "{name}, {kind}: a tampered density passed with p = {tampered}"
-            );
-        }
+    for (name, environment, block, is_alone) in &cases {
+        let [right, tampered] = p_values(environment.distribution(*is_alone), *block);
+        assert!(right > 1e-3, "{name}: p = {right}");
+        assert!(tampered < 1e-3, "{name}: a tampered density passed with p = {tampered}");
     }
 }
 
@@ -210,31 +150,6 @@ fn what_lobes_find_as_well_is_left_to_them() {
             .iter()
             .all(|cell| (f64::from(cell.density) * 4.0 * PI - 1.0).abs() < 1e-3)
     );
-}
-
-#[test]
-fn samples_are_uniform_inside_a_cell() {
-    for environment in [constant_map(1, 1, 2.0), furnace().unwrap(), constant_map(3, 3, 1.0)] {
-        const ROWS: usize = 24;
-        const COLUMNS: usize = 48;
-        let mut found = vec![0.0; ROWS * COLUMNS];
-        let mut random = Random::new(5);
-        let count = 500_000;
-        for _ in 0..count {
-            let (direction, density) = environment_sample::<f32>(environment.distribution(true), triple(&mut random));
-            assert_near(density.into(), 0.25 / PI, 1e-6, "density");
-            let row = ((1.0 - direction.y) / 2.0 * ROWS as f32) as usize;
-            let column = environment_uv(direction)[0] * COLUMNS as f32;
-            found[row.min(ROWS - 1) * COLUMNS + column as usize] += 1.0;
-        }
-        let expected = f64::from(count) / (ROWS * COLUMNS) as f64;
-        let statistic: f64 = found
-            .iter()
-            .map(|found: &f64| (found - expected).powi(2) / expected)
-            .sum();
-        let p = upper_tail(statistic, (ROWS * COLUMNS - 1) as f64);
-        assert!(p > 1e-3, "{} × {}: p = {p}", environment.width, environment.height);
-    }
 }
 
 #[test]
@@ -306,36 +221,6 @@ fn a_black_map_has_no_density_and_no_trouble() {
             .iter()
             .all(|pixel| *pixel == [0, 0, 0, 255])
     );
-}
-
-/// The squared error of the light that arrives on a surface that faces upwards, by so many samples, over the square of it.
-fn relative_error(environment: &Environment, sequence: Sequence, samples: u32) -> f64 {
-    let arriving = |pixel: u32, samples: u32, sequence| {
-        let sample = |sample| {
-            let state = random_state(pixel, 0, 1, sample, sequence);
-            let ([x, y], [z, _]) = (random_pair(state, 0), random_pair(state, 1));
-            let (direction, density) = environment_sample::<f64>(environment.distribution(true), vec3(x, y, z));
-            let cosine = direction.y.max(0.0);
-            environment_radiance(environment, direction).luminance() * cosine / density
-        };
-        (0..samples).map(sample).sum::<f64>() / f64::from(samples)
-    };
-    let truth = arriving(0, 1 << 18, Sequence::Sobol);
-    let squared = |pixel| (arriving(pixel, samples, sequence) / truth - 1.0).powi(2);
-    (1..=64).map(squared).sum::<f64>() / 64.0
-}
-
-#[test]
-fn numbers_that_are_spread_evenly_draw_directions_that_are() {
-    let texel = |index: u32| {
-        let (column, row) = (f64::from(index % 128) / 128.0, f64::from(index / 128) / 64.0);
-        let radiance = (1.2 + (TAU * column).cos()) * (1.5 - row);
-        [radiance as f32, radiance as f32, radiance as f32, 1.0]
-    };
-    let smooth = Environment::from_texels("smooth", 128, 64, (0..128 * 64).map(texel).collect()).unwrap();
-    let error = |sequence| relative_error(&smooth, sequence, 64);
-    let (even, independent) = (error(Sequence::Sobol), error(Sequence::Independent));
-    assert!(even < 0.05 * independent, "{even:.2e} of {independent:.2e}");
 }
 
 /// How many numbers there are to draw with.

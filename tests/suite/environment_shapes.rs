@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use exr::prelude::{Blocks, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Vec2, WritableImage};
 use glossmith::import::environment::{load, load_encoded};
 use glossmith::optics::vector::vec3;
 use glossmith::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance};
@@ -212,99 +211,4 @@ fn pictures_too_large_to_keep_are_made_smaller() {
         warnings.contains("8195 × 2") && warnings.contains("4098 × 1"),
         "{warnings}"
     );
-}
-
-#[test]
-fn tiled_exr_files_are_read_with_their_cube_or_their_levels() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("tiles.exr");
-    let size = Vec2(40, 20);
-    let value = |place: Vec2<usize>| (place.x() as f32, place.y() as f32, 0.25);
-    let encoding = Encoding {
-        blocks: Blocks::Tiles(Vec2(16, 16)),
-        line_order: LineOrder::Increasing,
-        ..Encoding::SMALL_LOSSLESS
-    };
-    let layer = Layer::new(size, LayerAttributes::default(), encoding, SpecificChannels::rgb(value));
-    Image::from_layer(layer).write().to_file(&path).unwrap();
-    let environment = load_file(&path);
-    assert_eq!((environment.width, environment.height), (40, 20));
-    for (index, texel) in environment.texels.iter().enumerate() {
-        assert_eq!(*texel, [(index % 40) as f32, (index / 40) as f32, 0.25, 1.0]);
-    }
-}
-
-/// An attribute of an EXR header.
-fn attribute(name: &str, kind: &str, value: &[u8]) -> Vec<u8> {
-    let size = (value.len() as i32).to_le_bytes();
-    [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &size, value].concat()
-}
-
-#[test]
-fn coarse_chroma_is_spread_over_the_luminance() {
-    let (width, height) = (8_usize, 4_usize);
-    let numbers = |values: &[i32]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
-    let channel = |name: &str, step: i32| [name.as_bytes(), b"\0", &numbers(&[1, 0, step, step])].concat();
-    let window = numbers(&[0, 0, width as i32 - 1, height as i32 - 1]);
-    let float = |x: f32| x.to_le_bytes();
-    let channels = [channel("BY", 2), channel("RY", 2), channel("Y", 1), vec![0]].concat();
-    let mut bytes = [
-        vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0],
-        attribute("channels", "chlist", &channels),
-        attribute("compression", "compression", &[0]),
-        attribute("dataWindow", "box2i", &window),
-        attribute("displayWindow", "box2i", &window),
-        attribute("lineOrder", "lineOrder", &[0]),
-        attribute("pixelAspectRatio", "float", &float(1.0)),
-        attribute("screenWindowCenter", "v2f", &[float(0.0), float(0.0)].concat()),
-        attribute("screenWindowWidth", "float", &float(1.0)),
-        vec![0],
-        vec![0; 8 * height],
-    ]
-    .concat();
-    let header = bytes[..bytes.len() - 8 * height].to_vec();
-    let half = |x: f32| exr::prelude::f16::from_f32(x).to_le_bytes();
-    for row in 0..height {
-        let mut line: Vec<u8> = Vec::new();
-        if row % 2 == 0 {
-            // BY, then RY: −0.5 on the left, 0.5 on the right.
-            line.extend((0..width / 2).flat_map(|_| half(-0.5)));
-            line.extend((0..width / 2).flat_map(|x| half(if x < 2 { -0.5 } else { 0.5 })));
-        }
-        line.extend((0..width).flat_map(|x| half(1.0 + x as f32)));
-        bytes.extend(numbers(&[row as i32, line.len() as i32]));
-        bytes.extend(line);
-    }
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("chroma.exr");
-    std::fs::write(&path, &bytes).unwrap();
-    let environment = load_file(&path);
-    for (index, [red, green, blue, _]) in environment.texels.iter().enumerate() {
-        let (x, luminance) = (index % width, (1 + index % width) as f32);
-        // Between the third and the fifth column the chroma is interpolated.
-        let ry = [-0.5, -0.5, -0.5, 0.0, 0.5, 0.5, 0.5, 0.5][x];
-        // The weights of the luminance are of the primaries, so that it is theirs to the digits that those have.
-        for (found, expected) in [(*red, (1.0 + ry) * luminance), (*blue, 0.5 * luminance)] {
-            assert!((found / expected - 1.0).abs() < 1e-5, "texel {index}: {found}");
-        }
-        let sum = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-        assert!((sum / luminance - 1.0).abs() < 1e-4, "texel {index}: {sum}");
-    }
-    for length in (0..bytes.len()).step_by(7) {
-        std::fs::write(&path, &bytes[..length]).unwrap();
-        assert!(load(&EnvironmentSource::File(path.clone())).is_err(), "{length} bytes");
-    }
-    // The same header with another compression, and one chunk.
-    let words = b"compression\0compression\0\x01\0\0\0";
-    let place = header.windows(words.len()).position(|window| window == words);
-    let place = place.expect("the attribute") + words.len();
-    for code in [6, 7] {
-        let mut bytes = [header.clone(), vec![0; 8], numbers(&[0, 4]), vec![0; 4]].concat();
-        bytes[place] = code;
-        std::fs::write(&path, &bytes).unwrap();
-        let error = load(&EnvironmentSource::File(path.clone())).unwrap_err().to_string();
-        let told = ["B44", "coarse chroma", "not supported", "re-save it as a plain RGB"];
-        assert!(told.into_iter().all(|part| error.contains(part)), "{error}");
-        assert!(!error.contains("damaged"), "{error}");
-    }
 }

@@ -168,26 +168,6 @@ fn the_engines_agree_with_f64() {
     }
 }
 
-#[test]
-fn clear_glass_reflects_or_transmits_all_light() {
-    let place = Workplace::new();
-    for (engine, sides) in ENGINES
-        .into_iter()
-        .zip([&["above", "below"][..], &["below"], &["above", "below"]])
-    {
-        for side in sides {
-            let arguments = format!("--material Glass --albedo 1,0.6,0.1 --count 65536 --side {side} {engine}");
-            let albedos = evaluate(&place, &arguments);
-            let sums: Vec<f64> = std::iter::zip(albedos.column("R_r"), albedos.column("T_r"))
-                .map(|(r, t)| r + t)
-                .collect();
-            assert_near(&sums, &[1.0; 3], 2e-3, &format!("{side}, {engine}"));
-            assert_near(&albedos.column("cos_theta_o"), &[1.0, 0.6, 0.1], 0.0, "cosines");
-            assert!(albedos.column("se_R").iter().all(|error| (0.0..1e-2).contains(error)));
-        }
-    }
-}
-
 /// A file's angles count from the normal on the side that is named; above 90 degrees they are on the other one.
 #[test]
 fn the_side_turns_the_angles_over() {

@@ -52,35 +52,6 @@ fn every_preset_comes_back_from_every_format_as_it_was() {
 }
 
 #[test]
-fn the_report_says_what_is_exact_and_how_far_off_the_highlight_is() {
-    let place = Workplace::new();
-    let run = place.done("convert gold gold.mtlx --report -");
-    let report: Json = serde_json::from_str(&run.stdout).unwrap();
-    let material = &report[0]["materials"][0];
-    assert_eq!(report[0]["format"], "materialx");
-    assert_eq!(material["carries_exact_parameters"], true);
-    let entries = material["entries"].as_array().unwrap();
-    let highlight = entries.iter().find(|entry| entry["what"] == "highlight").unwrap();
-    assert_eq!(highlight["outcome"], "approximated");
-    let residual = highlight["residual"].as_f64().unwrap();
-    // The table of section 5 of docs/MATHEMATICS.md: 0.15 to 0.17 for the smooth curve.
-    assert!((0.02..0.3).contains(&residual), "{residual}");
-    assert!(run.stderr.contains("total variation"), "{}", run.stderr);
-    assert!(entries.iter().any(|entry| entry["outcome"] == "exact"));
-    // GGX itself is exact.
-    let ggx = MaterialSettings {
-        lobe: glossmith::optics::lobe::Lobe::Ggx,
-        ..MaterialSettings::default()
-    };
-    save_material(&place.path("ggx.json"), &ggx).unwrap();
-    let run = place.done("convert ggx.json ggx.mtlx --report -");
-    let report: Json = serde_json::from_str(&run.stdout).unwrap();
-    let entries = report[0]["materials"][0]["entries"].as_array().unwrap();
-    let highlight = entries.iter().find(|entry| entry["what"] == "highlight").unwrap();
-    assert_eq!(highlight["outcome"], "exact");
-}
-
-#[test]
 fn without_the_exact_parameters_what_is_shown_comes_back() {
     let place = Workplace::new();
     let material = MaterialSettings {
@@ -260,42 +231,6 @@ fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
 }
 
 #[test]
-fn widths_that_a_format_does_not_reach_are_no_exact_ones() {
-    let place = Workplace::new();
-    let mut material = MaterialSettings {
-        lobe: glossmith::optics::lobe::Lobe::Ggx,
-        fresnel: glossmith::optics::fresnel::Fresnel::Conductor,
-        metalness: 1.0,
-        roughness: 0.3,
-        anisotropy: 0.5,
-        ..MaterialSettings::default()
-    };
-    let formats = [
-        ("materialx", "mtlx"),
-        ("standard-surface", "mtlx"),
-        ("gltf", "glb"),
-        ("mitsuba", "xml"),
-        ("blender", "py"),
-    ];
-    let mut outcomes = |roughness: f32, anisotropy: f32| {
-        (material.roughness, material.anisotropy) = (roughness, anisotropy);
-        save_material(&place.path("a.json"), &material).unwrap();
-        formats.map(|(format, ending)| {
-            let run = place.done(&format!("convert a.json a.{ending} --to {format} --report -"));
-            let report: Json = serde_json::from_str(&run.stdout).unwrap();
-            let entries = report[0]["materials"][0]["entries"].as_array().unwrap();
-            let entry = entries.iter().find(|entry| entry["what"] == "anisotropy").unwrap();
-            entry["outcome"] == "exact"
-        })
-    };
-    assert_eq!(outcomes(0.3, 0.5), [true; 5]);
-    // Disney's surface is not stretched more than 10 : 1; Mitsuba's conductor has both widths as they are.
-    assert_eq!(outcomes(0.3, 1.0), [true, true, true, true, false]);
-    // α is 1 at most.
-    assert_eq!(outcomes(0.95, 0.9), [false, false, false, true, true]);
-}
-
-#[test]
 fn a_file_that_was_edited_elsewhere_is_taken_as_it_is() {
     let place = Workplace::new();
     for (format, ending, from, to) in [
@@ -403,39 +338,6 @@ fn documents_that_include_others_are_read_whole() {
     place.refused(1, "convert whole.mtlx m.json", &["whole.mtlx", "no <surfacematerial>"]);
 }
 
-#[test]
-fn a_report_in_a_file_has_pictures_beside_it() {
-    let place = Workplace::new();
-    let ggx = MaterialSettings {
-        lobe: glossmith::optics::lobe::Lobe::Ggx,
-        ..MaterialSettings::default()
-    };
-    save_material(&place.path("ggx.json"), &ggx).unwrap();
-    let difference = |name: &str| {
-        place.done(&format!("convert {name} out.mtlx --report loss.json"));
-        let report: Json = serde_json::from_str(&place.read("loss.json")).unwrap();
-        let picture = image::open(place.path("loss-out.png")).unwrap();
-        assert!(picture.width() > 3 * 64, "three pictures in a row");
-        report[0]["materials"][0]["difference"].as_f64().unwrap()
-    };
-    // GGX is GGX there; the geometric lobe is not.
-    let (exact, off) = (difference("ggx.json"), difference("gold"));
-    assert!(exact < 0.02 && off > 2.0 * exact, "{exact} and {off}");
-}
-
-#[test]
-fn materials_of_other_programs_are_rendered_as_they_are() {
-    let place = Workplace::new();
-    place.done("convert gold gold.mtlx");
-    place.done("convert gold gold.py");
-    let scene = "--model sphere --size 12x12 --samples 2";
-    let gold = place.picture(&format!("{scene} --material gold"));
-    for file in ["gold.mtlx", "gold.py"] {
-        assert!(place.picture(&format!("{scene} --material {file}")) == gold, "{file}");
-        assert!(place.picture(&format!("{scene} {file}")) == gold, "{file}");
-    }
-}
-
 /// The material of a MaterialX document of one surface with these numbers.
 pub fn read_surface(place: &Workplace, node: &str, numbers: &[(&str, f32)]) -> MaterialSettings {
     let input = |(name, value): &(&str, f32)| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>");
@@ -514,27 +416,4 @@ fn what_is_no_document_is_refused_with_the_files_name() {
     save_material(&place.path("mirror.json"), &mirror).unwrap();
     place.refused(1, "convert mirror.json b.binary", &["b.binary", "roughness"]);
     place.refused(1, "convert mirror.json b.csv", &["b.csv", "roughness"]);
-}
-
-#[test]
-fn a_measurement_looks_like_the_material_that_it_was_made_of() {
-    let place = Workplace::new();
-    place.done("convert gold gold.binary");
-    let run = place.done("fit --target gold.binary --output like.json");
-    let like = load_material(&place.path("like.json")).unwrap().value;
-    // nearest  TV 0.0340  Geometric 0.16097, smooth
-    let nearest = run.stdout.lines().find(|line| line.starts_with("nearest")).unwrap();
-    let numbers: Vec<f64> = nearest.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
-    let gold = PRESETS.iter().find(|material| material.name == "Gold").unwrap();
-    assert!(numbers[0] < 0.06, "{}", run.stdout);
-    assert!(
-        (numbers[1] / f64::from(gold.roughness) - 1.0).abs() < 0.03,
-        "{}",
-        run.stdout
-    );
-    // What η and k reflect head-on.
-    for (like, gold) in like.base_color.into_iter().zip([0.967, 0.802, 0.324]) {
-        assert!((like - gold).abs() < 0.03, "{}", run.stdout);
-    }
-    assert_eq!(like.metalness, 1.0);
 }

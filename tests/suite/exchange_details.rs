@@ -4,14 +4,9 @@ use glossmith::document::{CoatLobe, ImportLobe, MaterialSettings};
 use glossmith::import::{gltf_from_widths, load};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
-use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Precision};
 use glossmith::scene::ModelSource;
 use glossmith::scene::texture::TextureTarget;
-use glossmith::store::exchange::report::Outcome;
-use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
 use glossmith::store::{load_material, save_document, save_material};
-use glossmith::study::evaluate::Evaluator;
 use serde_json::Value as Json;
 
 use crate::cli_support::Workplace;
@@ -88,38 +83,6 @@ fn mitsuba_gets_the_surface_that_a_material_is() {
     assert_eq!(surfaces(&half), ["principled"]);
 }
 
-#[test]
-fn a_tinted_reflection_of_glass_has_its_weight() {
-    let place = Workplace::new();
-    let tinted = MaterialSettings {
-        specular_weight: 0.5,
-        specular_color: [0.5, 0.25, 1.0],
-        ..glass()
-    };
-    let text = written(&place, &tinted, "mitsuba", "xml");
-    let line = text.lines().find(|line| line.contains("specular_reflectance")).unwrap();
-    let value = line.split("value=\"").nth(1).unwrap().split('"').next().unwrap();
-    let numbers: Vec<f32> = value
-        .split([',', ' '])
-        .filter_map(|number| number.parse().ok())
-        .collect();
-    assert_eq!(numbers, [0.25, 0.125, 0.5], "{line}");
-}
-
-#[test]
-fn usd_has_the_surface_for_programs_that_know_open_pbr() {
-    let place = Workplace::new();
-    let text = written(&place, &metal(), "usd", "usda");
-    let shader = text.split("ND_open_pbr_surface_surfaceshader").nth(1).unwrap();
-    for input in [
-        "float inputs:base_metalness = 1",
-        "float inputs:specular_roughness = 0.3",
-    ] {
-        assert!(shader.contains(input), "{input}: {shader}");
-    }
-    assert!(shader.contains("color3f inputs:base_color = ("), "{shader}");
-}
-
 /// OpenPBR's coat comes back as it went, and one that leaves the base as it is does not without a word.
 #[test]
 fn what_a_coat_does_to_the_base_is_in_open_pbr() {
@@ -156,51 +119,6 @@ fn what_a_coat_does_to_the_base_is_in_open_pbr() {
     assert!(!report_of(&plain, "xml").contains("what the coat changes below it"));
 }
 
-/// A coat that leaves the base as it is looks the same in OpenPBR, whose coat changes the base's index and roughness.
-#[test]
-fn a_coat_that_leaves_the_base_looks_the_same_in_open_pbr() {
-    let place = Workplace::new();
-    let cosines = [1.0_f64, 0.7, 0.3];
-    for (coat_weight, metalness) in [(1.0, 0.0), (0.6, 0.0), (1.0, 1.0)] {
-        let mut material = MaterialSettings {
-            lobe: Lobe::Ggx,
-            fresnel: Fresnel::Dielectric,
-            base_color: [0.42, 0.008, 0.012],
-            metalness,
-            roughness: 0.35,
-            coat_weight,
-            coat_lobe: CoatLobe::Ggx,
-            coat_roughness: 0.2,
-            ..MaterialSettings::default()
-        };
-        material.keep_below_coat();
-        save_material(&place.path("a.json"), &material).unwrap();
-        place.done("convert a.json a.mtlx");
-        place.done("convert a.mtlx b.json --without-exact --import-lobe ggx");
-        let back = load_material(&place.path("b.json")).unwrap().value;
-        assert!(back.coat_on_base && back.roughness < material.roughness, "{back:?}");
-        let pairs: Vec<_> = cosines
-            .iter()
-            .map(|&cosine| {
-                let sine = (1.0 - cosine * cosine).sqrt();
-                [[sine, 0.0, cosine], [-sine, 0.0, cosine]].map(Vec3::from_f64)
-            })
-            .collect();
-        let [before, after] = [&material, &back].map(|material| {
-            let evaluator = Evaluator::open(material, EngineChoice::Cpu, Precision::Double).unwrap();
-            evaluator.evaluate(&pairs).unwrap()
-        });
-        for (before, after) in before.iter().zip(&after) {
-            for (before, after) in before.value.iter().zip(after.value) {
-                assert!(
-                    (before / after - 1.0).abs() < 1e-3,
-                    "{coat_weight}, {metalness}: {before}, {after}"
-                );
-            }
-        }
-    }
-}
-
 #[test]
 fn what_a_material_lacks_is_not_reported() {
     let place = Workplace::new();
@@ -226,60 +144,6 @@ fn what_a_material_lacks_is_not_reported() {
         assert!(!has(&of_metal, word), "{word}: {of_metal:?}");
     }
     assert!(has(&entries(&glass()), "refraction"));
-}
-
-/// The stretch that Blender's surface shows is that of the widths that it is given.
-#[test]
-fn what_a_format_shows_of_a_stretch_is_what_its_widths_are() {
-    use glossmith::optics::lobe::stretch_from_anisotropy;
-    use glossmith::store::exchange::surface::{Law, Surface, Takes};
-    let material = MaterialSettings {
-        anisotropy: 0.5,
-        ..metal()
-    };
-    let (surface, _) = Surface::of(&material);
-    let takes = Takes {
-        law: Law::Schlick,
-        widths: |_| [0.4, 0.1],
-        ..Takes::OPEN_PBR
-    };
-    let taken = surface.as_taken(&material, &takes);
-    let stretch = stretch_from_anisotropy(f64::from(taken.anisotropy));
-    assert!((stretch * stretch - 4.0).abs() < 1e-3, "{stretch}");
-    assert!((taken.roughness.powi(2) - 0.2).abs() < 1e-4, "{}", taken.roughness);
-}
-
-#[test]
-fn reports_count_what_came_of_each_part() {
-    let place = Workplace::new();
-    let coated = MaterialSettings {
-        coat_weight: 0.5,
-        coat_ior: 1.8,
-        ..metal()
-    };
-    save_material(&place.path("a.json"), &coated).unwrap();
-    let subject = read(&place.path("a.json"), ReadOptions::default()).unwrap();
-    let format = by_name("gltf").unwrap();
-    let report = prepare(&subject, "a.json", &place.path("a.glb"), format)
-        .unwrap()
-        .report;
-    let entries = || report.materials.iter().flat_map(|material| &material.entries);
-    for outcome in [Outcome::Exact, Outcome::Approximated, Outcome::Dropped] {
-        let expected = entries().filter(|entry| entry.outcome == outcome).count();
-        assert_eq!(report.count(outcome), expected, "{outcome:?}");
-    }
-    assert!(report.count(Outcome::Exact) > 1, "{report}");
-}
-
-#[test]
-fn a_name_with_a_folder_is_a_file() {
-    let place = Workplace::new();
-    let said = |name: &str| place.run(&format!("render --material {name}")).stderr;
-    let of_name = said("no-such-material");
-    assert!(of_name.contains("no material is called no-such-material"), "{of_name}");
-    let of_file = said("folder/no-such-material");
-    assert!(of_file.contains("folder/no-such-material"), "{of_file}");
-    assert!(!of_file.contains("no material is called"), "{of_file}");
 }
 
 #[test]

@@ -8,10 +8,8 @@ use glossmith::cli::Arguments;
 use glossmith::import::picture::mean_of_file;
 use glossmith::render::output;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::PRESETS;
-use glossmith::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
-use glossmith::store::file_kind::{FileKind, MATERIAL_KINDS, OPENED, PICTURE_KINDS, endings, may_hold_document};
-use glossmith::store::shelf::{ItemKind, Shelf};
+use glossmith::store::exchange::FORMATS;
+use glossmith::store::file_kind::{FileKind, OPENED, PICTURE_KINDS, endings, may_hold_document};
 use image::{ImageFormat, RgbImage};
 use tempfile::tempdir;
 
@@ -89,55 +87,5 @@ fn the_help_names_every_ending() {
     let help = Arguments::command().render_long_help().to_string();
     for ending in endings(OPENED) {
         assert!(help.contains(&format!(".{ending}")), "--help says nothing of .{ending}");
-    }
-}
-
-/// A watched folder shows every picture of light and every material; scripts and tables that are none it passes over.
-#[test]
-fn a_watched_folder_shows_every_kind() {
-    let folder = tempdir().unwrap();
-    let path = |ending: &str| folder.path().join(format!("kind.{ending}"));
-    for ending in FileKind::Light.endings() {
-        std::fs::write(path(ending), vec![0; 1 << 13]).unwrap();
-    }
-    let subject = Subject::of(PRESETS[0].clone());
-    let formats: Vec<&Registered> = FORMATS.iter().filter(|format| format.is_material_alone()).collect();
-    for format in formats.iter().rev() {
-        for ending in format.extensions {
-            exchange::prepare(&subject, "", &path(ending), format)
-                .unwrap()
-                .save()
-                .unwrap();
-        }
-    }
-    glossmith::store::save_material(&path("json"), &PRESETS[0]).unwrap();
-    for ending in ["py", "csv", "c"] {
-        std::fs::write(folder.path().join(format!("nothing.{ending}")), "nothing of ours").unwrap();
-    }
-    let listed = Shelf::default().list(&[folder.path().to_owned()]);
-    let items = listed[0].items.as_ref().unwrap();
-    let wanted = endings(&[MATERIAL_KINDS, &[FileKind::Light]].concat());
-    assert_eq!(items.len(), wanted.len(), "{items:?}");
-    for ending in wanted {
-        let item = items.iter().find(|item| item.path == path(ending)).unwrap();
-        let is_light = FileKind::of(&item.path) == Some(FileKind::Light);
-        let is_shown = match &item.kind {
-            ItemKind::Environment => is_light,
-            ItemKind::Material(material) => !is_light && material.is_ok(),
-        };
-        assert!(is_shown, ".{ending}: {:?}", item.kind);
-    }
-}
-
-/// Of the same file the library, the command line and a dialog make the same.
-#[test]
-fn materials_of_every_format_are_found_by_their_path() {
-    let folder = tempdir().unwrap();
-    for format in FORMATS.iter().filter(|format| format.is_material_alone()) {
-        let path = folder.path().join(format!("material.{}", format.extensions[0]));
-        let prepared = exchange::prepare(&Subject::of(PRESETS[1].clone()), "", &path, format).unwrap();
-        prepared.save().unwrap();
-        let found = exchange::find(path.to_str().unwrap(), ReadOptions::default());
-        assert_eq!(found.map(|found| found.value).unwrap(), PRESETS[1], "{}", format.name);
     }
 }

@@ -2,13 +2,12 @@
 
 use glossmith::document::{ImportLobe, MaterialSettings};
 use glossmith::import::{FileParameter, Goes, MTL_PARAMETERS};
-use glossmith::scene::{Fate, Model};
+use glossmith::scene::Model;
 use glossmith::store::exchange::report::Entry;
 use glossmith::store::exchange::{ReadOptions, SURFACES, read};
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::{Folder, png};
-use crate::gltf_extensions::says;
 
 /// Parameters with their values.
 type Values = Vec<(&'static str, &'static str)>;
@@ -192,25 +191,5 @@ fn no_keyword_of_a_library_is_dropped_in_silence() {
         if let Goes::Nowhere(what) = row.goes {
             assert!(after.1.iter().any(|said| said == what), "{}: {:?}", row.place, after.1);
         }
-    }
-}
-
-/// Numbers out of range and words in a number's place are told, and none of them is not finite; one number is a grey.
-#[test]
-fn odd_numbers_of_a_library_are_told() {
-    let folder = Folder::new();
-    let lines = ["Kd 0.25", "Ke nan 0 0", "Pm nan", "Pr much", "d 7", "illum 4", "zz 1"].map(str::to_owned);
-    let model = painted(&folder, &lines);
-    let slot = &model.slots[0];
-    assert_eq!((slot.base_color, slot.metalness, slot.opacity), ([0.25; 3], 0.0, 1.0));
-    assert_eq!(slot.emission, [0.0; 3]);
-    for (fate, words) in [
-        (Fate::Approximated, "Pm beyond 0 to 1"),
-        (Fate::Approximated, "d beyond 0 to 1"),
-        (Fate::Ignored, "Pr of a .mtl material, which is no number"),
-        (Fate::Approximated, "illumination model 4"),
-        (Fate::Ignored, "zz of a .mtl material"),
-    ] {
-        says(&model, fate, words);
     }
 }

@@ -10,11 +10,11 @@ use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::Projection;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Fate, LIGHTS_MAX, Model, ModelSource};
+use glossmith::scene::{Fate, Model, ModelSource};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::gltf_extensions::{load_plain, says};
+use super::gltf_extensions::says;
 use super::renders::{document, render};
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
@@ -128,29 +128,6 @@ fn spots_keep_their_cone_and_direction() {
         assert_eq!(light.color, [1.0, 0.5, 0.0]);
         says(&model, Fate::Ignored, "the range of a light");
     }
-}
-
-#[test]
-fn lights_beyond_those_that_there_may_be_are_told() {
-    let of_count = |count: usize| {
-        let node = |place: usize| json!({"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0.0, 0.0, 1.0 + place as f64 / 8.0]});
-        let nodes: Vec<Value> = (0..count).map(node).collect();
-        let (buffer, file) = lit(&nodes, &[json!({"type": "point"})]);
-        let model = load_plain(&file, &buffer);
-        let mut document = Document::default();
-        let left_out = document.add_lights_and_cameras(&model);
-        (left_out, document.lighting.area_lights.len(), model)
-    };
-    let (left_out, there, model) = of_count(10);
-    assert_eq!((left_out, there), (0, 10));
-    assert!(!model.report.entries.iter().any(|entry| entry.what.contains("too many")));
-    let (left_out, there, model) = of_count(LIGHTS_MAX + 6);
-    assert_eq!((left_out, there), (6, LIGHTS_MAX));
-    let told = model
-        .report
-        .of(Fate::Ignored)
-        .find(|entry| entry.what == "lights of too many");
-    assert_eq!(told.map(|entry| entry.count), Some(6));
 }
 
 /// A camera keeps what is up; an orthographic one sees as much; one on a hidden node is there.

@@ -3,21 +3,18 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use glossmith::analysis::fit::basis::Hats;
 use glossmith::analysis::fit::merl::{CELLS, SCALES};
 use glossmith::analysis::fit::{
-    CurveFit, CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
+    Measure, Merl, Nearest, nearest_roughness, total_variation,
 };
 use glossmith::document::MaterialSettings;
-use glossmith::document::custom_curve::POINTS_MAX;
-use glossmith::matching::{Candidate, MatchError, Target, comparison, curve_from_fit, match_look, nearest_ggx};
+use glossmith::matching::{MatchError, Target, match_look};
 use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
-use glossmith::optics::lobe::{Horizon, Lobe, phong};
-use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::optics::lobe::model::{LobeModel, view_direction};
+use glossmith::optics::lobe::{Lobe, phong};
+use glossmith::optics::vector::vec3;
 use glossmith::store::load_material;
 
-use crate::support::Random;
 
 /// The roughness of `lobe` nearest to a target, at normal incidence unless said otherwise.
 fn nearest(target: &LobeModel, lobe: Lobe, view_angle_deg: f64, measure: Measure) -> Nearest {
@@ -63,103 +60,6 @@ fn table_of_equal_looks_is_reproduced() {
 }
 
 #[test]
-fn hats_add_to_the_density_of_the_optics() {
-    // h = 2 of the square root curve is twice the sum of all hats; h = 3 D of the cube root lies on them too.
-    let hats = Hats::new(22, 1.0);
-    let mut random = Random::new(7);
-    for _ in 0..2000 {
-        let roughness = 0.02 + 0.95 * f64::from(random.unit());
-        let wo = view_direction(1.4 * f64::from(random.unit()));
-        let mirror = wo.mirrored_about(NORMAL);
-        let ball = random.in_ball().to_array().map(f64::from);
-        let wi = (mirror + Vec3::from_f64(ball) * roughness).normalize();
-        let mut densities = vec![0.0; hats.nodes.len()];
-        hats.add_densities(roughness, mirror, wi, &mut densities);
-        let h = |of: fn(f64) -> f64| {
-            hats.nodes
-                .iter()
-                .zip(&densities)
-                .map(|(node, p)| of(*node) * p)
-                .sum::<f64>()
-        };
-        for (curve, value) in [(Curve::Sqrt, h(|_| 2.0)), (Curve::Cbrt, h(|distance| 3.0 * distance))] {
-            let expected = LobeModel::new(Lobe::Geometric, roughness, curve).raw_density(wo, wi);
-            let tolerance = 2e-3 * expected + 1e-6;
-            assert!(
-                (value - expected).abs() < tolerance,
-                "{curve:?} R {roughness} {wi:?}: {value} {expected}"
-            );
-        }
-    }
-}
-
-#[test]
-fn least_squares_recover_known_curves() {
-    for (curve, view_angle_deg) in [(Curve::Smooth, 0.0_f64), (Curve::Cbrt, 0.0), (Curve::Smooth, 40.0)] {
-        let view_angle_rad = view_angle_deg.to_radians();
-        let model = LobeModel::new(Lobe::Geometric, 0.3, curve);
-        let wo = view_direction(view_angle_rad);
-        let profile = |wi| model.evaluate(wo, wi)[0];
-        let target = CurveTarget::new(&profile, view_angle_rad).unwrap();
-        let fit = fit_curve(&target, 0.3, 1.0, Horizon::Mirror, false).unwrap();
-        assert!(fit.residual < 0.004, "{curve:?} {view_angle_deg}: {}", fit.residual);
-        // What the document stores of it.
-        let table = curve_from_fit(&fit).unwrap().table();
-        let stored = LobeModel {
-            curve: Curve::Custom,
-            table,
-            ..model.clone()
-        };
-        let distance = total_variation(&profile, &stored, view_angle_rad, Measure::Evaluate);
-        assert!(distance < 0.01, "{curve:?} {view_angle_deg}: {distance}");
-    }
-}
-
-/// Least squares alone mind a lobe's top most; what is wanted is the least total variation.
-#[test]
-fn a_fit_is_better_than_plain_least_squares() {
-    let ggx = LobeModel::new(Lobe::Ggx, 0.4, Curve::Smooth);
-    let wo = view_direction(0.0);
-    let profile = |wi| ggx.evaluate(wo, wi)[0];
-    let target = CurveTarget::new(&profile, 0.0).unwrap();
-    let fit = fit_curve(&target, 0.3, 1.0, Horizon::Mirror, false).unwrap();
-    // 0.1908; without weights 0.1923.
-    assert!(fit.residual < 0.1915, "{}", fit.residual);
-}
-
-/// A fit has more points than a document stores: as few as must be are left out, those that are nearest to each other.
-#[test]
-fn a_fitted_curve_keeps_the_points_that_it_can() {
-    let nodes: Vec<f64> = (0..=256).map(|i| f64::from(i) / 256.0).collect();
-    // ξ rises ever faster with D.
-    let h = |distance: &f64| (0.25 + 1.5 * distance) / distance.max(1.0 / 256.0);
-    let mut fit = CurveFit {
-        roughness: 0.3,
-        h: nodes.iter().map(h).collect(),
-        nodes,
-        lobe_albedo: 1.0,
-        base_albedo: 0.0,
-        residual: 0.0,
-    };
-    let all = fit.cumulative(1.0);
-    fit.h.iter_mut().for_each(|h| *h /= all);
-    let curve = curve_from_fit(&fit).unwrap();
-    let points = curve.points();
-    assert!(
-        (POINTS_MAX - 3..=POINTS_MAX).contains(&points.len()),
-        "{}",
-        points.len()
-    );
-    for [xi, distance] in points {
-        let expected = fit.cumulative(f64::from(*distance));
-        assert!(
-            (f64::from(*xi) - expected).abs() < 2e-5,
-            "{distance}: {xi}, not {expected}"
-        );
-    }
-}
-
-#[test]
 fn own_curve_comes_closer_to_ggx_than_any_named_one() {
     let wo = view_direction(0.0);
     for (roughness, limit) in [(0.1, 0.02), (0.3, 0.01), (0.6, 0.02)] {
@@ -191,70 +91,6 @@ fn own_curve_comes_closer_to_ggx_than_any_named_one() {
             found.after.total_variation
         );
     }
-}
-
-#[test]
-fn lobe_is_matched_to_itself() {
-    for (lobe, roughness) in [
-        (Lobe::Ggx, 0.25),
-        (Lobe::Phong, 0.4),
-        (Lobe::BlinnPhong, 0.5),
-        (Lobe::Geometric, 0.2),
-    ] {
-        let target = Target::Lobe(LobeModel::new(lobe, roughness, Curve::Smooth));
-        let Candidate { model, total_variation } = match_look(&target, lobe, 30.0).unwrap().after;
-        assert!(
-            (model.roughness / roughness - 1.0).abs() < 2e-3,
-            "{lobe:?} {}",
-            model.roughness
-        );
-        assert!(total_variation < 2e-3, "{lobe:?} {total_variation}");
-    }
-}
-
-#[test]
-fn a_stretched_lobe_is_its_own_nearest_ggx() {
-    for anisotropy in [0.0, 0.6] {
-        let model = LobeModel {
-            anisotropy,
-            ..LobeModel::new(Lobe::Ggx, 0.35, Curve::Smooth)
-        };
-        let found = nearest_ggx(&model);
-        assert!((found.roughness / 0.35 - 1.0).abs() < 5e-3, "{anisotropy}: {found:?}");
-        assert!(found.total_variation < 5e-3, "{anisotropy}: {found:?}");
-    }
-}
-
-#[test]
-fn a_match_is_shown_where_the_target_can_be_seen() {
-    let target = Target::Lobe(LobeModel::new(Lobe::Ggx, 0.3, Curve::Smooth));
-    let found = match_look(&target, Lobe::Geometric, 30.0).unwrap();
-    let plot = comparison(&target, &found).unwrap();
-    let names: Vec<&str> = plot.series.iter().map(|series| series.lobe.as_str()).collect();
-    assert_eq!(names.len(), 4, "{names:?}");
-    // GGX of α 0.09 falls to a thousandth of its top well within the half circle, and its top is in the mirror direction.
-    let [low, high] = plot.x.range;
-    assert!(low > -60.0 && high < 89.0 && low < 0.0 && high > 40.0, "{low} {high}");
-    let values = || {
-        plot.series
-            .iter()
-            .flat_map(|series| &series.points)
-            .map(|point| point[1])
-    };
-    let highest = values().fold(0.0, f64::max);
-    assert!(
-        (plot.y.range[1] / highest - 1.5).abs() < 0.01,
-        "{:?} {highest}",
-        plot.y.range
-    );
-    let of_target = &plot.series[0].points;
-    let top = of_target.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
-    assert!((top[0] - 30.0).abs() < 2.0, "{top:?}");
-    assert!(
-        (plot.y.range[0] / top[1] - 1e-3).abs() < 1e-5,
-        "{:?} {top:?}",
-        plot.y.range
-    );
 }
 
 #[test]
@@ -378,46 +214,6 @@ fn measured_ggx_is_found_again() {
             "{:?}",
             material.base_color
         );
-    }
-}
-
-#[test]
-fn damaged_measurements_are_refused() {
-    let path = Path::new("x.binary");
-    let lambert = LobeModel::new(Lobe::Lambert, 1.0, Curve::Smooth);
-    let whole = merl_file([0.5; 3], [0.0; 3], &lambert);
-    assert!(Merl::parse(path, &whole).is_ok());
-    assert!(matches!(
-        Merl::parse(path, &whole[..whole.len() - 8]),
-        Err(MerlError::Length { .. })
-    ));
-    assert!(matches!(Merl::parse(path, &[]), Err(MerlError::Header { .. })));
-    assert!(matches!(
-        Merl::parse(path, b"a text file, not a measurement"),
-        Err(MerlError::Header { .. })
-    ));
-    let mut other = whole.clone();
-    other[4] = 45;
-    assert!(matches!(Merl::parse(path, &other), Err(MerlError::Header { .. })));
-    let mut black = whole.clone();
-    black[12..].fill(0);
-    assert!(matches!(Merl::parse(path, &black), Err(MerlError::Empty { .. })));
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("long.binary");
-    std::fs::write(&file, [whole.as_slice(), &[0]].concat()).unwrap();
-    assert!(matches!(Merl::load(&file), Err(MerlError::Length { .. })));
-    // On the command line one line that names the file, and nothing written.
-    let output = folder.path().join("fit.json");
-    for bytes in [&whole[..1000], &black[..]] {
-        std::fs::write(&file, bytes).unwrap();
-        let run = glossmith(&["fit", "--target", text(&file), "--output", text(&output)]);
-        let message = String::from_utf8_lossy(&run.stderr);
-        assert_eq!(run.status.code(), Some(1), "{message}");
-        assert!(
-            message.contains("long.binary") && message.lines().count() == 1,
-            "{message}"
-        );
-        assert!(!output.exists());
     }
 }
 

@@ -2,30 +2,23 @@
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
 use glossmith::compile::compile;
-use glossmith::document::{Document, MaterialSettings, Strategy, TextureUse, assign};
+use glossmith::document::{Document, MaterialSettings, assign};
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::layer::{MaterialNumbers, material_density, material_layers, material_sample};
 use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Precision};
-use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::TextureTarget;
 use glossmith::study::evaluate::Evaluator;
-use image::{Rgba, RgbaImage};
-use serde_json::json;
 
 use crate::gltf_builder::Folder;
 use crate::own_textures::coated_on_a_box;
-use crate::renders::{assert_same_picture, render, with_strategy};
-use crate::textures::{head_on, textured_square};
 
 const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
     (EngineChoice::Cpu, Precision::Double),
 ];
-/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
-const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
 /// Albedos of the fits at these cosines, by roughness (review of the physics, part 3.3).
 const COSINES: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 const ALBEDOS: [(f64, [f64; 4]); 3] = [
@@ -61,51 +54,6 @@ pub fn fuzzy_on_a_box(folder: &Folder) -> Document {
     document
 }
 
-/// Textures of the fuzz alone: both engines and all strategies draw the same, and each of the three shows.
-#[test]
-fn strategies_and_engines_agree_on_textured_fuzz() {
-    let folder = Folder::new();
-    let material = json!({
-        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.5, "baseColorFactor": [0.06, 0.03, 0.01, 1]},
-        "extensions": {"KHR_materials_fuzz": {
-            "fuzzFactor": 1, "fuzzTexture": {"index": 0}, "fuzzColorTexture": {"index": 0},
-            "fuzzRoughnessFactor": 1, "fuzzRoughnessTexture": {"index": 0},
-        }},
-    });
-    let texels = [
-        [255, 200, 40, 255],
-        [200, 20, 120, 60],
-        [120, 250, 250, 160],
-        [60, 160, 255, 255],
-    ];
-    let picture = RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(x + 2 * y) as usize]));
-    let (buffer, json) = textured_square(&material, &[picture], &json!({}));
-    let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Studio);
-    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
-    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
-    document.render.samples = 512;
-    let uses = document.materials[0].textures;
-    assert!(uses.fuzz && uses.fuzz_color && uses.fuzz_roughness);
-    let cpu = render(EngineChoice::Cpu, &document);
-    assert_eq!(cpu.dropped(), 0);
-    for strategy in [Strategy::Lobe, Strategy::Light] {
-        let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
-        assert_same_picture(&cpu, &other, &format!("{strategy:?}"));
-    }
-    let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
-    assert_same_picture(&cpu, &gpu, "on the GPU");
-    for leave_out in [
-        (|uses| uses.fuzz = false) as fn(&mut TextureUse),
-        |uses| uses.fuzz_color = false,
-        |uses| uses.fuzz_roughness = false,
-    ] {
-        let mut without = with_strategy(&document, Strategy::Mis, 9);
-        leave_out(&mut without.materials[0].textures);
-        let plain = render(EngineChoice::Cpu, &without);
-        assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without")).is_err());
-    }
-}
-
 #[test]
 fn fuzz_over_black_has_the_albedo_of_the_fits() {
     for (engine, precision) in ENGINES {
@@ -121,76 +69,6 @@ fn fuzz_over_black_has_the_albedo_of_the_fits() {
                     "{what}, {green}, {blue}"
                 );
             }
-        }
-    }
-}
-
-#[test]
-fn the_gpu_has_the_same_fuzz() {
-    let material = fuzzy(0.0, 0.5, &["coat.weight=0.5", "coat.roughness=0.4"]);
-    let [exact, found] = [ENGINES[1], GPU].map(|(engine, precision)| {
-        let evaluator = Evaluator::open(&material, engine, precision).unwrap();
-        let albedos = COSINES.map(|cosine| evaluator.albedo(cosine, 1 << 12, 1).unwrap().reflected[0]);
-        let directions = [[0.6, 0.0, 0.8], [-0.6, 0.48, 0.64], [0.0, 0.96, 0.28]].map(Vec3::from_f64);
-        let pairs = directions.map(|wi| [directions[0], wi]);
-        (albedos, evaluator.evaluate(&pairs).unwrap())
-    });
-    for (exact, found) in std::iter::zip(exact.0, found.0) {
-        assert!((exact - found).abs() < 1e-4, "albedo {found} for {exact}");
-    }
-    for (exact, found) in std::iter::zip(exact.1, found.1) {
-        let apart = (exact.value[0] - found.value[0]).abs() + (exact.density - found.density).abs();
-        assert!(apart < 1e-3 * exact.density, "{found:?} for {exact:?}");
-    }
-}
-
-#[test]
-fn white_fuzz_over_white_layers_keeps_all_light() {
-    for more in [
-        &[][..],
-        &["fuzz.weight=0.3"],
-        &["coat.weight=1", "coat.roughness=0.3"],
-        &["base.metalness=1", "specular.weight=1", "specular.roughness=0.4"],
-        &["specular.weight=1", "specular.lobe=ggx", "specular.roughness=0.5"],
-    ] {
-        for (engine, precision) in ENGINES {
-            let evaluator = Evaluator::open(&fuzzy(1.0, 0.6, more), engine, precision).unwrap();
-            for cosine in COSINES {
-                let found = evaluator.albedo(cosine, 1 << 15, 1).unwrap().reflected[1];
-                assert!((found - 1.0).abs() < 4e-3, "{engine:?}, {more:?}, {cosine}: {found}");
-            }
-        }
-    }
-}
-
-/// Values for themselves and drawn ones agree: the sum over a grid is the albedo.
-#[test]
-fn values_add_up_to_the_albedo() {
-    const STEPS: usize = 60;
-    let direction = |theta: f64, phi: f64| {
-        let (sine, cosine) = theta.sin_cos();
-        Vec3::from_f64([sine * phi.cos(), sine * phi.sin(), cosine])
-    };
-    for (engine, precision) in ENGINES {
-        for (roughness, expected) in ALBEDOS {
-            let evaluator = Evaluator::open(&fuzzy(0.0, roughness, &[]), engine, precision).unwrap();
-            // At 60 degrees, the second cosine.
-            let wo = direction(60.0_f64.to_radians(), 0.7);
-            let step = std::f64::consts::FRAC_PI_2 / STEPS as f64;
-            let thetas: Vec<f64> = (0..STEPS).map(|i| step * (i as f64 + 0.5)).collect();
-            let pairs: Vec<_> = thetas
-                .iter()
-                .flat_map(|theta| (0..2 * STEPS).map(move |turn| (*theta, 2.0 * step * turn as f64)))
-                .map(|(theta, phi)| [wo, direction(theta, phi)])
-                .collect();
-            let found = evaluator.evaluate(&pairs).unwrap();
-            let sum = |of: &dyn Fn(usize) -> f64| -> f64 {
-                let cell = |i: usize| of(i) * thetas[i / (2 * STEPS)].sin() * step * 2.0 * step;
-                (0..pairs.len()).map(cell).sum()
-            };
-            let (albedo, density) = (sum(&|i| found[i].value[0]), sum(&|i| found[i].density));
-            assert!((albedo - expected[1]).abs() < 2e-3, "{engine:?}, {roughness}: {albedo}");
-            assert!((density - 1.0).abs() < 5e-3, "{engine:?}, {roughness}: {density}");
         }
     }
 }
@@ -254,29 +132,4 @@ fn samples_follow_their_density() {
         assert!(found, "{roughness}, {more:?}: another roughness is not seen");
     }
     println!("least p {worst:.3}");
-}
-
-/// Both ends: no weight is no layer, the least roughness and grazing views stay finite.
-#[test]
-fn both_ends_of_fuzz_are_finite() {
-    let bare = fuzzy(0.5, 0.5, &["fuzz.weight=0"]);
-    for (engine, precision) in ENGINES {
-        let evaluator = Evaluator::open(&bare, engine, precision).unwrap();
-        let found = evaluator.albedo(0.5, 1 << 10, 1).unwrap().reflected[0];
-        assert!((found - 0.5).abs() < 1e-5, "{found}");
-        for (weight, roughness) in [(1e-6, 0.5), (1.0, 0.0), (1.0, 1.0)] {
-            let material = fuzzy(1.0, roughness, &[&format!("fuzz.weight={weight}")]);
-            let evaluator = Evaluator::open(&material, engine, precision).unwrap();
-            for cosine in [1.0, 0.3, 1e-3] {
-                let found = evaluator.albedo(cosine, 1 << 12, 1).unwrap().reflected[0];
-                assert!(
-                    (found - 1.0).abs() < 1e-2,
-                    "{engine:?}, {weight}, {roughness}, {cosine}: {found}"
-                );
-            }
-            let grazing = Vec3::from_f64([1.0, 0.0, 1e-7]);
-            let values = evaluator.evaluate(&[[grazing, grazing]]).unwrap()[0];
-            assert!(values.value[0].is_finite() && values.density.is_finite(), "{values:?}");
-        }
-    }
 }

@@ -6,10 +6,9 @@ use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use glossmith::import::load;
 use glossmith::scene::mesh::{Mesh, plane_normal};
 use glossmith::scene::{
-    Geometry, Hit, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, shapes, teapot,
+    Geometry, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, teapot,
 };
 
-use super::support::Random;
 
 const BUILT_IN: [ModelSource; 4] = [
     ModelSource::Teapot,
@@ -226,185 +225,6 @@ fn closed_shapes_are_closed_and_face_outwards() {
 }
 
 #[test]
-fn tessellation_scales_linearly() {
-    let seconds = |segments: u32| {
-        let start = std::time::Instant::now();
-        let mesh = teapot::mesh(segments);
-        assert_eq!(
-            mesh.triangles.len(),
-            (74 * segments * segments - 10 * segments) as usize
-        );
-        start.elapsed().as_secs_f64()
-    };
-    seconds(20);
-    let (small, large) = (seconds(40), seconds(160));
-    // 16 times the triangles; quadratic behaviour would take 256 times as long.
-    assert!(
-        large < 100.0 * small.max(1e-3),
-        "{small} s for 40 segments, {large} s for 160"
-    );
-}
-
-/// Rays that start inside a closed mesh and go to its vertices and to places on its edges.
-fn escaping_rays(geometry: &Geometry, start: impl Fn(&mut Random) -> Vec3, count: usize) -> usize {
-    let mut random = Random::new(7);
-    let mut escaped = 0;
-    for i in 0..count {
-        let corners = geometry
-            .corners(random.below(geometry.triangle_count()))
-            .map(Vec3::from_array);
-        let target = match i % 3 {
-            0 => corners[0],
-            1 => corners[0].lerp(corners[1], random.unit()),
-            _ => corners[1].midpoint(corners[2]),
-        };
-        let origin = start(&mut random);
-        escaped += usize::from(
-            geometry
-                .intersect(origin.into(), (target - origin).into(), f32::INFINITY)
-                .is_none(),
-        );
-    }
-    escaped
-}
-
-#[test]
-fn nothing_leaks_through_edges_and_vertices() {
-    let sphere = Geometry::build(&built_in(&ModelSource::Sphere), false);
-    let anywhere = |random: &mut Random| random.in_ball() * 0.9;
-    assert_eq!(escaping_rays(&sphere, anywhere, 150_000), 0, "from inside a sphere");
-    assert_eq!(
-        escaping_rays(&sphere, |_| Vec3::ZERO, 50_000),
-        0,
-        "from the very centre of a sphere"
-    );
-    // Directions with zeros go along edges of boxes and columns of triangles.
-    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
-        for direction in [axis, -axis] {
-            assert!(
-                sphere.intersect([0.0; 3], direction.into(), f32::INFINITY).is_some(),
-                "{direction}"
-            );
-        }
-    }
-    let body = model_of(part(&built_in(&ModelSource::Shaderball).mesh, 1));
-    let body = Geometry::build(&body, false);
-    // Inside the core, which is at the middle of the ball.
-    let middle = body.units_from_world(DVec3::new(0.0, 1.12, 0.0)).as_vec3();
-    let near = |random: &mut Random| middle + random.in_ball() * 0.5;
-    assert_eq!(
-        escaping_rays(&body, near, 50_000),
-        0,
-        "from inside the core of the ball"
-    );
-}
-
-#[test]
-fn neighbours_share_an_edge_to_the_last_bit() {
-    let mut random = Random::new(3);
-    let mut hits = [0; 3];
-    for _ in 0..200_000 {
-        let [a, b] = [0; 2].map(|_| Vec3A::from(random.in_ball()));
-        let (c, d) = (Vec3A::from(random.in_ball()), Vec3A::from(random.in_ball()));
-        let origin = Vec3A::from(random.in_ball()) * 3.0;
-        let ray = RayFrame::new(origin, a.lerp(b, random.unit()) - origin);
-        // A ray to the common edge ab of two triangles on either side of it as seen from the origin.
-        let side = |p: Vec3A| (a - origin).cross(b - origin).dot(p - origin);
-        if side(c) * side(d) < 0.0 {
-            let found = intersect_triangle(&ray, a, b, c, f32::INFINITY).is_some() as usize
-                + intersect_triangle(&ray, b, a, d, f32::INFINITY).is_some() as usize;
-            hits[found] += 1;
-        }
-    }
-    assert!(hits[1] > 10_000, "{hits:?}");
-    // What is left are ends of the edge, and planes seen so exactly from their side that they have no distance.
-    assert!(hits[0] < hits[1] / 1000, "{hits:?}: rays between the two triangles");
-}
-
-fn brute_force(geometry: &Geometry, ray: &RayFrame, t_max: f32) -> Option<Hit> {
-    let mut nearest: Option<Hit> = None;
-    for triangle in 0..geometry.triangle_count() {
-        let [v0, v1, v2] = geometry.corners(triangle).map(Vec3A::from_array);
-        let limit = nearest.map_or(t_max, |hit| hit.t);
-        if let Some((t, u, v)) = intersect_triangle(ray, v0, v1, v2, limit) {
-            nearest = Some(Hit {
-                t,
-                triangle: triangle as u32,
-                u,
-                v,
-            });
-        }
-    }
-    nearest
-}
-
-#[test]
-fn the_hierarchy_finds_what_brute_force_finds() {
-    let meshes = [
-        model_of(teapot::mesh(4)),
-        model_of(shapes::sphere(24, 16)),
-        built_in(&ModelSource::Plane),
-    ];
-    for (model, ground) in meshes.iter().flat_map(|model| [(model, false), (model, true)]) {
-        let geometry = Geometry::build(model, ground);
-        let mut random = Random::new(11);
-        let mut hits = 0;
-        for i in 0..6_000 {
-            let origin = random.in_ball() * if i % 2 == 0 { 1.0 } else { 5.0 };
-            let towards = random.in_ball() - if i % 4 == 1 { origin } else { Vec3::ZERO };
-            let direction = if i % 7 == 0 {
-                towards * Vec3::new(1.0, 0.0, 1.0)
-            } else {
-                towards
-            };
-            let t_max = if i % 3 == 0 { 1.5 } else { f32::INFINITY };
-            let ray = RayFrame::new(origin.into(), direction.into());
-            let expected = brute_force(&geometry, &ray, t_max);
-            let actual = geometry.intersect(origin.into(), direction.into(), t_max);
-            assert_eq!(
-                actual.map(|hit| hit.t),
-                expected.map(|hit| hit.t),
-                "from {origin} along {direction}"
-            );
-            assert_eq!(
-                geometry.occluded(origin.into(), direction.into(), t_max),
-                expected.is_some()
-            );
-            if let Some(hit) = actual {
-                hits += 1;
-                let [a, b, c] = geometry.corners(hit.triangle as usize).map(Vec3::from_array);
-                let place = a * (1.0 - hit.u - hit.v) + b * hit.u + c * hit.v;
-                let error = place.distance(origin + direction * hit.t);
-                let size = [a, b, c]
-                    .map(|corner| corner.distance(origin))
-                    .into_iter()
-                    .fold(1.0, f32::max);
-                assert!(error < 1e-4 * size, "weights and distance disagree by {error}");
-            }
-        }
-        assert!(hits > 500, "only {hits} rays hit");
-    }
-}
-
-#[test]
-fn hits_of_the_sphere_are_where_they_should_be() {
-    let model = model_of(shapes::sphere(512, 256));
-    let geometry = Geometry::build(&model, false);
-    let mut random = Random::new(5);
-    for _ in 0..2000 {
-        let origin = random.in_ball() * 0.5;
-        let direction = random.in_ball().normalize();
-        let hit = geometry
-            .intersect(origin.into(), direction.into(), f32::INFINITY)
-            .expect("a hit");
-        let half = origin.dot(direction);
-        let expected = -half + (half * half + 1.0 - origin.length_squared()).sqrt();
-        // The chord of a cell is 8e-5 below the sphere.
-        assert!((hit.t - expected).abs() < 3e-4, "{} instead of {expected}", hit.t);
-    }
-}
-
-#[test]
 fn broken_triangles_are_left_out_and_counted() {
     let good = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let geometry = Geometry::build(&model_of(Mesh::default()), false);
@@ -476,40 +296,6 @@ fn the_ground_is_below_and_changes_nothing_else() {
             "{source}: the ground is {gap} below the lowest point"
         );
     }
-}
-
-#[test]
-fn every_triangle_is_in_one_box_of_the_compressed_hierarchy() {
-    let geometry = Geometry::build(&built_in(&ModelSource::Teapot), true);
-    for (part, first) in geometry.parts() {
-        assert_eq!(part.slots.len(), part.triangles.len());
-        assert_eq!(part.vertices.len(), part.positions.len());
-        let compressed = part.compressed();
-        let mut covered = vec![0; part.triangles.len()];
-        for node in &compressed.nodes {
-            for child in (0..8).filter(|&child| node.is_leaf(child) && !node.is_child_empty(child)) {
-                let (start, count) = node.child_primitives(child);
-                let aabb = node.child_aabb(child);
-                for place in start..start + count {
-                    let triangle = compressed.triangles[place as usize] as usize;
-                    assert_eq!(geometry.triangle_at(place + first as u32), (triangle + first) as u32);
-                    covered[triangle] += 1;
-                    for corner in part.corners(triangle).map(Vec3A::from_array) {
-                        assert!(aabb.contains_point(corner), "triangle {triangle} is not in its box");
-                    }
-                }
-            }
-        }
-        assert!(covered.iter().all(|&times| times == 1), "every triangle is in one leaf");
-        let is_place = |(triangle, &place): (usize, &u32)| compressed.triangles[place as usize] as usize == triangle;
-        assert!(
-            compressed.places().iter().enumerate().all(is_place),
-            "places are those of the triangles"
-        );
-    }
-    let lengths = geometry.model.positions.iter().map(|&p| Vec3::from_array(p).length());
-    let radius = lengths.fold(0.0, f32::max);
-    assert!((radius - 1.0).abs() < 1e-6, "bounding radius {radius}");
 }
 
 #[test]

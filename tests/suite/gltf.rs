@@ -1,22 +1,13 @@
 //! What is read from glTF files.
 
 use std::fs;
-use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::document::Document;
-use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::mesh::plane_normal;
 use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{AlphaMode, Fate, Geometry, ModelSource, Wrap};
+use glossmith::scene::{AlphaMode, Fate, Wrap};
 use serde_json::{Value, json};
 
-use super::cli_support::Workplace;
-use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, glb, mirrored_squares, png, square};
-use super::plan::film;
-use super::plan_kernels::assert_same_but_for_rounding;
-use super::random_documents::small;
-use super::support::Random;
+use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, mirrored_squares, png, square};
 
 #[test]
 fn a_square_is_read_as_it_is() {
@@ -138,69 +129,6 @@ fn lists_strips_and_fans_without_normals_are_flat() {
         assert!((area - 1.0).abs() < 1e-12, "mode {mode}: area {area}");
     }
 }
-
-/// Corners that stand for the planes of their triangles are shaded as those that have the planes' normals.
-#[test]
-fn flat_triangles_need_no_vertices_of_their_own() {
-    let folder = Folder::new();
-    let mut shared = Buffer::default();
-    let positions = shared.floats(&PYRAMID);
-    let indices = shared.indices(&PYRAMID_FACES.concat());
-    let shared_json = shared.document(json!([{"attributes": {"POSITION": positions}, "indices": indices}]));
-    let model = folder
-        .load("shared.glb", &glb(&shared_json, &shared.bytes))
-        .expect("loads");
-    assert_eq!(model.mesh.positions.len(), PYRAMID.len());
-
-    let corners: Vec<[f32; 3]> = PYRAMID_FACES
-        .concat()
-        .iter()
-        .map(|&vertex| PYRAMID[usize::from(vertex)])
-        .collect();
-    let normals = corners.chunks(3).flat_map(|face| {
-        let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from_array(face[corner]));
-        [(b - a).cross(c - a).normalize().to_array(); 3]
-    });
-    let normals: Vec<[f32; 3]> = normals.collect();
-    let mut split = Buffer::default();
-    let (positions, normals) = (split.floats(&corners), split.floats(&normals));
-    let split_json = split.document(json!([{"attributes": {"POSITION": positions, "NORMAL": normals}}]));
-    folder
-        .load("split.glb", &glb(&split_json, &split.bytes))
-        .expect("loads");
-
-    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let mut session = Session::open(choice).unwrap();
-        let [shared, split] = ["shared.glb", "split.glb"].map(|name| {
-            let mut document = small(Document::default());
-            document.model = ModelSource::File(folder.path(name));
-            film(&mut session, &document)
-        });
-        assert_same_but_for_rounding(&shared, &split, "a pyramid");
-    }
-    // Other programs get normals.
-    let place = Workplace::new();
-    place.write("shared.glb", &std::fs::read(folder.path("shared.glb")).unwrap());
-    place.done("convert shared.glb written.glb");
-    let written = glossmith::import::load(&ModelSource::File(place.path("written.glb")))
-        .expect("loads")
-        .mesh;
-    for triangle in 0..written.triangles.len() {
-        let normal = plane_normal(written.corners(triangle)).as_vec3();
-        for vertex in written.triangles[triangle] {
-            assert!(written.normals[vertex as usize].distance(normal) < 1e-6, "{triangle}");
-        }
-    }
-}
-
-const PYRAMID: [[f32; 3]; 5] = [
-    [-1.0, 0.0, 1.0],
-    [1.0, 0.0, 1.0],
-    [1.0, 0.0, -1.0],
-    [-1.0, 0.0, -1.0],
-    [0.0, 1.0, 0.0],
-];
-const PYRAMID_FACES: [[u16; 3]; 6] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 3, 2], [0, 2, 1]];
 
 #[test]
 fn sparse_interleaved_and_quantised_accessors_are_read() {
@@ -368,79 +296,4 @@ fn buffers_and_pictures_may_be_beside_the_file_or_in_its_text() {
         .load("inside.gltf", document.to_string().as_bytes())
         .expect("loads");
     assert_eq!(model.mesh.corners(0), [DVec3::ZERO, DVec3::X, DVec3::Y]);
-}
-
-/// A soup of triangles in a box of 2, moved and scaled by a node.
-fn soup_geometry(folder: &Folder, scale: f64, translation: [f64; 3]) -> Geometry {
-    let mut random = Random::new(21);
-    let positions: Vec<[f32; 3]> = (0..600).map(|_| random.in_ball().to_array()).collect();
-    let mut buffer = Buffer::default();
-    let positions = buffer.floats(&positions);
-    let mut document = buffer.document(json!([{"attributes": {"POSITION": positions}}]));
-    document["nodes"] = json!([
-        {"children": [1], "translation": translation},
-        {"mesh": 0, "scale": [scale, scale, scale]},
-    ]);
-    Geometry::build(&folder.load_glb(&document, &buffer).expect("loads"), false)
-}
-
-#[test]
-fn scale_and_place_do_not_change_the_geometry() {
-    let folder = Folder::new();
-    let sorted = |geometry: &Geometry| {
-        let mut positions = geometry.model.positions.clone();
-        positions.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
-        positions
-    };
-    let plain = soup_geometry(&folder, 1.0, [0.0; 3]);
-    let expected = sorted(&plain);
-    for (scale, translation) in [
-        (1e-6, [0.0; 3]),
-        (1e6, [0.0; 3]),
-        (1.0, [1e5, -1e5, 3e4]),
-        (1e-3, [1e2, 50.0, -7.0]),
-        (3.0, [0.0; 3]),
-    ] {
-        let geometry = soup_geometry(&folder, scale, translation);
-        let actual = sorted(&geometry);
-        assert_eq!(actual.len(), expected.len());
-        let same = actual.iter().zip(&expected).filter(|(a, b)| a == b).count();
-        for (a, b) in actual.iter().zip(&expected) {
-            assert!(
-                Vec3::from_array(*a).distance(Vec3::from_array(*b)) < 1.3e-7,
-                "{a:?} is not {b:?}"
-            );
-        }
-        assert!(
-            same * 100 > expected.len() * 95,
-            "scale {scale}: only {same} of {} are the same",
-            expected.len()
-        );
-        let ratio = geometry.world_units_per_unit / plain.world_units_per_unit / f64::from(scale as f32);
-        assert!(
-            (ratio - 1.0).abs() < 1e-9,
-            "scale {scale}: radius {}",
-            geometry.world_units_per_unit
-        );
-        let moved = geometry.center_world - plain.center_world * f64::from(scale as f32);
-        let expected_move = Vec3::from_array(translation.map(|x| x as f32)).as_dvec3();
-        assert!(
-            moved.distance(expected_move) < 1e-9 * (1.0 + expected_move.length()),
-            "moved by {moved}"
-        );
-    }
-}
-
-#[test]
-fn file_names_are_given_to_the_model() {
-    let (buffer, document) = square();
-    let folder = Folder::new();
-    let model = folder
-        .load("My Part.v2.glb", &glb(&document, &buffer.bytes))
-        .expect("loads");
-    assert_eq!(model.name, "My Part.v2");
-    assert_eq!(
-        Path::new("My Part.v2.glb").file_stem().and_then(|stem| stem.to_str()),
-        Some(model.name.as_str())
-    );
 }

@@ -8,7 +8,7 @@ use glossmith::import::load_with;
 use glossmith::scene::{Fate, LightKind, Model, ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, SQUARE, glb, square};
+use super::gltf_builder::{Buffer, Folder, glb, square};
 
 pub fn load(document: &Value, buffer: &Buffer, options: &ModelOptions) -> Model {
     let folder = Folder::new();
@@ -358,18 +358,4 @@ fn cameras_become_bookmarks_and_lights_balls_and_suns() {
     );
     assert!(sun.strength == 3.0 && (sun.pitch_deg - 90.0).abs() < 1e-3, "{sun:?}");
     opened.check().expect("in range");
-}
-
-#[test]
-fn accessors_without_a_view_are_zeros() {
-    let mut buffer = Buffer::default();
-    let positions = buffer.floats(&SQUARE);
-    buffer
-        .accessors
-        .push(json!({"componentType": 5126, "count": 4, "type": "VEC3"}));
-    let primitive = json!({"attributes": {"POSITION": positions, "NORMAL": 1}, "mode": 6});
-    let model = load_plain(&buffer.document(json!([primitive])), &buffer);
-    // Normals of no length stand for the triangles' planes, which is told.
-    assert!(model.mesh.normals.iter().all(|normal| *normal == glam::Vec3::ZERO));
-    says(&model, Fate::Approximated, "normals without a length");
 }

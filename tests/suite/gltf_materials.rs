@@ -3,7 +3,6 @@
 use glossmith::compile::compile_textured;
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{ImportLobe, MaterialSettings};
-use glossmith::import::{gltf_from_widths, widths_from_gltf};
 use glossmith::optics::lobe::stretch_from_anisotropy;
 use glossmith::optics::thin_film::film_path;
 use glossmith::optics::tone::linear_from_srgb;
@@ -107,41 +106,6 @@ fn a_stretched_highlight_has_the_widths_of_the_extension() {
 }
 
 #[test]
-fn a_texture_of_the_roughness_widens_with_it() {
-    // Both texels have 20/255 of roughness.
-    let model = slot_of(&json!({
-        "pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}},
-        "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.2}},
-    }));
-    let slot = &model.slots[0];
-    let texture = &model.textures[slot.texture(TextureTarget::Roughness).unwrap().texture];
-    let mut material = materials_of(&model, ImportLobe::Ggx)[0].clone();
-    assert_eq!(material.roughness, 1.0);
-    material.roughness *= f32::from(texture.rgba8[1]) / 255.0;
-    let widths = widths_from_gltf(20.0 / 255.0, 0.2);
-    // To a code of the texture.
-    assert!((material.roughness - widths.roughness).abs() < 0.5 / 255.0 + 1e-6);
-    assert_eq!(material.anisotropy, widths.stretch);
-    assert_eq!(texture.rgba8[2], 30, "metalness stays");
-}
-
-#[test]
-fn widths_come_back_from_gltf() {
-    for roughness in [0.05, 0.2, 0.3, 0.45] {
-        for anisotropy in [0.0, 0.3, 0.8, 1.0] {
-            let there = gltf_from_widths(roughness, -anisotropy);
-            assert!(there.is_exact, "{roughness}, {anisotropy}");
-            let back = widths_from_gltf(there.roughness, there.stretch);
-            assert!(back.is_exact, "{roughness}, {anisotropy}");
-            assert!((back.roughness - roughness).abs() < 1e-5, "{there:?} {back:?}");
-            assert!((back.stretch - anisotropy).abs() < 1e-4, "{there:?} {back:?}");
-        }
-    }
-    // Wider than 1.
-    assert!(!gltf_from_widths(0.9, 0.9).is_exact);
-}
-
-#[test]
 fn unlit_materials_shine_and_reflect_nothing() {
     let model = slot_of(&json!({
         "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 0.75, 1.0], "baseColorTexture": {"index": 0}},
@@ -186,33 +150,6 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
     let surface = &model.textures[slot.texture(TextureTarget::Roughness).unwrap().texture];
     assert_eq!(color.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
     assert_eq!(surface.rgba8[..4], [255, 128, 0, 255]);
-}
-
-#[test]
-fn what_cannot_be_shown_yet_is_kept_in_the_material() {
-    let model = slot_of(&json!({"extensions": {
-        "KHR_materials_dispersion": {"dispersion": 0.0},
-        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
-    }}));
-    says(&model, Fate::Ignored, "diffuse transmission, kept in the material");
-    assert!(
-        !model
-            .report
-            .entries
-            .iter()
-            .any(|entry| entry.what.contains("dispersion")),
-        "there is none"
-    );
-    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
-    let folder = Folder::new();
-    let path = folder.path("kept.json");
-    glossmith::store::save_material(&path, &material).unwrap();
-    let read = glossmith::store::load_material(&path).unwrap();
-    assert_eq!(
-        (read.value.extra.clone(), read.warnings),
-        (material.extra, Vec::<String>::new())
-    );
-    assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
 }
 
 /// A sheen comes as fuzz of about its albedo, and older files that kept it show it.
@@ -346,45 +283,6 @@ fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
     let small = load(&document, &buffer, &options);
     assert_eq!((small.textures[0].width, small.textures[0].height), (16, 8));
     says(&small, Fate::Approximated, "64 × 32, used at 16 × 8");
-}
-
-#[test]
-fn ktx2_pictures_of_plain_bytes_are_read() {
-    let ktx2 = |format: u32, size: [u32; 2], texels: &[u8]| {
-        let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
-        // Format, size of a number, width, height, depth, layers, faces, levels, compression.
-        let numbers = [format, 1, size[0], size[1], 0, 0, 1, 1, 0];
-        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
-        bytes.resize(80, 0);
-        let level = [104, texels.len() as u64, texels.len() as u64];
-        bytes.extend(level.iter().flat_map(|number| number.to_le_bytes()));
-        bytes.extend(texels);
-        bytes
-    };
-    let of = |picture: &[u8]| {
-        let (mut buffer, _) = square();
-        let view = buffer.view(picture);
-        let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 3, "material": 0});
-        let mut document = buffer.document(json!([primitive]));
-        document["images"] = json!([{"bufferView": view, "mimeType": "image/ktx2"}]);
-        document["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
-        document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
-        load_plain(&document, &buffer)
-    };
-    let rgb = of(&ktx2(29, [2, 1], &[1, 2, 3, 4, 5, 6]));
-    assert_eq!(rgb.textures[0].rgba8, [1, 2, 3, 255, 4, 5, 6, 255]);
-    let bgra = of(&ktx2(44, [1, 2], &[1, 2, 3, 4, 5, 6, 7, 8]));
-    assert_eq!(bgra.textures[0].rgba8, [3, 2, 1, 4, 7, 6, 5, 8]);
-    // Too few bytes, a format of depths, Basis Universal that is none.
-    for broken in [
-        ktx2(37, [2, 2], &[0; 12]),
-        ktx2(126, [1, 1], &[0; 16]),
-        ktx2(0, [4, 4], &[0; 16]),
-    ] {
-        let grey = of(&broken);
-        says(&grey, Fate::Missing, "a texture, grey instead");
-        assert_eq!((grey.textures.len(), grey.slots[0].base_color), (0, [0.5; 3]));
-    }
 }
 
 #[test]

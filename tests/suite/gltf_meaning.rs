@@ -5,12 +5,11 @@ use glossmith::document::{Background, Document, ImportLobe};
 use glossmith::import::{GLTF_PARAMETERS, Goes, load};
 use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Fate, ModelOptions, ModelSource};
+use glossmith::scene::{ModelOptions, ModelSource};
 use serde_json::{Value, json};
 
-use super::cli_support::Workplace;
 use super::gltf_builder::{Buffer, Folder, glb, png, square};
-use super::gltf_extensions::{load_plain, says};
+use super::gltf_extensions::load_plain;
 use super::renders::render;
 
 const SIZE: u32 = 17;
@@ -198,57 +197,6 @@ fn the_alpha_of_vertices_is_their_opacity() {
     }
 }
 
-/// By way of a file of the same format, without the exact parameters, it is what it was.
-#[test]
-fn specular_parameters_come_back_as_they_were() {
-    let place = Workplace::new();
-    let material = json!({
-        "name": "Half metal",
-        "pbrMetallicRoughness": {"metallicFactor": 0.5, "roughnessFactor": 0.5},
-        "extensions": {"KHR_materials_specular": {"specularFactor": 0.25, "specularColorFactor": [4, 2, 1]}},
-    });
-    let (buffer, document) = painted(material, None);
-    place.write("half.glb", &glb(&document, &buffer.bytes));
-    place.done("convert half.glb half.gltf");
-    let written: Value = serde_json::from_str(&place.read("half.gltf")).unwrap();
-    let specular = &written["materials"][0]["extensions"]["KHR_materials_specular"];
-    assert_eq!(specular["specularFactor"], json!(0.25));
-    assert_eq!(specular["specularColorFactor"], json!([4.0, 2.0, 1.0]));
-    place.done("convert half.gltf back.json --without-exact");
-    let back: Value = serde_json::from_str(&place.read("back.json")).unwrap();
-    let back = &back["material"];
-    assert_eq!(back["specular.on_metal"], json!(false));
-    assert_eq!(back["specular.color"], json!([4.0, 2.0, 1.0]));
-    assert_eq!(
-        (&back["specular.weight"], &back["base.metalness"]),
-        (&json!(0.25), &json!(0.5))
-    );
-}
-
-/// Specular-glossiness that reflects less than other dielectrics do reflects no more than it says: before, 4 %.
-#[test]
-fn specular_glossiness_without_specular_reflects_nothing() {
-    let workflow = json!({"diffuseFactor": [0, 0, 0, 1], "specularFactor": [0, 0.02, 0], "glossinessFactor": 1});
-    let file = painted(
-        json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": workflow}}),
-        None,
-    );
-    for choice in ENGINES {
-        let found = middle(&pixels(&file, None, choice, 1.0));
-        assert_near(found, [0.0, 0.02, 0.0], 0.002, &format!("{choice:?}"));
-    }
-}
-
-/// Directions that point everywhere have a mean of no length: before, the highlight was stretched by the strength alone.
-#[test]
-fn a_mean_of_all_directions_stretches_nothing() {
-    let png = strip(&[[255, 128, 255], [0, 128, 255], [128, 255, 255], [128, 0, 255]]);
-    let anisotropy = json!({"anisotropyStrength": 1, "anisotropyTexture": {"index": 0}});
-    let material = json!({"extensions": {"KHR_materials_anisotropy": anisotropy}});
-    let file = pictured(material, &png);
-    assert_eq!(load_plain(&file.1, &file.0).slots[0].anisotropy, 0.0);
-}
-
 /// A square with this material, and a picture within the file.
 fn pictured(material: Value, png: &[u8]) -> (Buffer, Value) {
     let (mut buffer, document) = square();
@@ -285,26 +233,6 @@ fn put(material: &mut Value, place: &str, value: Value) {
     *keys.fold(material, |at, key| &mut at[key]) = value;
 }
 
-/// A surface that the file shows from its front alone is told where it is open; a closed one looks the same.
-#[test]
-fn open_surfaces_of_one_side_are_told() {
-    let words = "from their front alone";
-    let told = |material: Value| {
-        let (buffer, file) = painted(material, None);
-        let report = load_plain(&file, &buffer).report;
-        report.of(Fate::Approximated).any(|entry| entry.what.contains(words))
-    };
-    assert!(told(json!({})));
-    assert!(!told(json!({"doubleSided": true})));
-    // The same square once more, seen from behind: together they are closed.
-    let (mut buffer, _) = square();
-    let closed = buffer.indices(&[0, 1, 2, 0, 2, 3, 2, 1, 0, 3, 2, 0]);
-    let mut file = buffer.document(json!([{"attributes": {"POSITION": 0}, "indices": closed, "material": 0}]));
-    file["materials"] = json!([{}]);
-    let model = load_plain(&file, &buffer);
-    assert!(model.report.is_clean(), "{:?}", model.report);
-}
-
 /// Each parameter of the table, off its default, changes the material or the report.
 #[test]
 fn no_parameter_of_a_material_is_dropped_in_silence() {
@@ -337,33 +265,5 @@ fn no_parameter_of_a_material_is_dropped_in_silence() {
                 after.1
             );
         }
-    }
-}
-
-/// Neither is what no table has, nor an extension whose values are of the wrong kind.
-#[test]
-fn parameters_that_nobody_knows_are_told() {
-    let mut material = layered(false);
-    put(&mut material, "/pbrMetallicRoughness/porosity", json!(0.5));
-    put(
-        &mut material,
-        "/extensions/KHR_materials_specular/specularGloss",
-        json!(0.5),
-    );
-    put(&mut material, "/extensions/ACME_glitter/amount", json!(0.5));
-    put(
-        &mut material,
-        "/extensions/KHR_materials_anisotropy/anisotropyStrength",
-        json!("much"),
-    );
-    let file = pictured(material, &png());
-    let model = load_plain(&file.1, &file.0);
-    for words in [
-        "porosity",
-        "specularGloss",
-        "ACME_glitter",
-        "KHR_materials_anisotropy, whose values",
-    ] {
-        says(&model, Fate::Ignored, words);
     }
 }

@@ -90,6 +90,7 @@ fn the_table_of_stability_is_the_programs_own() {
 
 /// Every shipped material, on the shipped models by turns, under the shipped lights by turns.
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn shipped_scenes_drop_no_sample() {
     let models = [
         ModelSource::Teapot,

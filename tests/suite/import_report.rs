@@ -5,17 +5,11 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
-use glossmith::document::of_model::materials_of;
-use glossmith::document::{Document, ImportLobe};
-use glossmith::import::load;
-use glossmith::render::EngineChoice;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Model, ModelOptions, ModelSource};
+use glossmith::scene::ModelSource;
 use serde_json::{Value, json};
 
 use super::cli_support::Workplace;
 use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::renders::render;
 use super::ui::{editor, request, see_label, wait};
 
 /// A square in two variants, one with a texture that is not there.
@@ -92,62 +86,4 @@ fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
         std::thread::sleep(Duration::from_millis(5));
     }
     assert_eq!(harness.state().document().materials[0].name, "Night");
-}
-
-/// The picture of a model seen from the front in even light, as an engine draws it.
-fn front(model: &Model, source: &ModelSource, choice: EngineChoice) -> Vec<[f64; 3]> {
-    let mut document = Document {
-        model: source.clone(),
-        import: ModelOptions::default(),
-        materials: materials_of(model, ImportLobe::Ggx),
-        ..Document::default()
-    };
-    for material in &mut document.materials {
-        material.specular_weight = 0.0;
-    }
-    document.lighting.environment = EnvironmentSource::Furnace;
-    (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
-    (document.render.width, document.render.height, document.render.samples) = (16, 16, 16);
-    let image = render(choice, &document).image();
-    let color = |pixel: &[f32; 4]| [pixel[0], pixel[1], pixel[2]].map(f64::from);
-    image.pixels.iter().map(color).collect()
-}
-
-#[test]
-fn colours_at_vertices_are_seen_by_both_engines() {
-    let (mut buffer, _) = square();
-    let colors = buffer.floats(&[
-        [1.0f32, 0.0, 0.25],
-        [0.0, 1.0, 0.25],
-        [0.0, 1.0, 0.25],
-        [1.0, 0.0, 0.25],
-    ]);
-    let primitive = json!({
-        "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "COLOR_0": colors}, "indices": 3, "material": 0,
-    });
-    let mut document = buffer.document(json!([primitive]));
-    document["materials"] = json!([{"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [1, 0.5, 1, 1]}}]);
-    let folder = Folder::new();
-    let path = folder.path("paint.glb");
-    std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
-    let source = ModelSource::File(path);
-    let model = load(&source).unwrap();
-    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let pixels = front(&model, &source, choice);
-        // Across the middle row the red falls from 1 to 0 as the green grows from 0 to a half; blue stays.
-        for column in 5..11 {
-            let [red, green, blue] = pixels[8 * 16 + column];
-            let place = 1.0 - red;
-            assert!(
-                (green - 0.5 * place).abs() < 1e-3,
-                "{choice:?}, column {column}: {red} {green}"
-            );
-            assert!((blue - 0.25).abs() < 1e-3, "{choice:?}, column {column}: {blue}");
-        }
-        let [left, right] = [5, 10].map(|column| pixels[8 * 16 + column][0]);
-        assert!(
-            left > right + 0.3,
-            "{choice:?}: {left} on the left, {right} on the right"
-        );
-    }
 }

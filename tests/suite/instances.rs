@@ -203,31 +203,3 @@ fn instances_look_as_meshes_of_their_own_do_on_both_engines() {
         assert_same_picture(&seen(&shared, EngineChoice::Gpu), &expected, &format!("{name}, GPU"));
     }
 }
-
-#[test]
-fn a_flat_node_of_a_repeated_mesh_has_a_mesh_of_its_own() {
-    let folder = Folder::new();
-    let ModelSource::File(path) = teapots(&folder, &json!({}), true) else {
-        unreachable!("it is a file");
-    };
-    let text = std::fs::read(&path).unwrap();
-    let whole = load(&ModelSource::File(path)).expect("loads");
-    // The same number of characters, so that the file's lengths hold: a node flattened to nothing along x.
-    let from = text
-        .windows(8)
-        .position(|window| window == b"\"matrix\"")
-        .expect("there");
-    let mut flat = text;
-    let numbers = from + 10..from + 10 + flat[from + 10..].iter().position(|byte| *byte == b']').expect("ends");
-    let zero = format!("0,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1{}", " ".repeat(numbers.len()));
-    let length = numbers.len();
-    flat[numbers].copy_from_slice(&zero.as_bytes()[..length]);
-    let model = folder.load("flat.glb", &flat).expect("loads");
-    assert_eq!((model.instances.len(), whole.instances.len()), (NODES - 1, NODES));
-    assert_eq!(model.mesh.triangles.len(), model.repeated[0].triangles.len());
-    let count = |model: &Model| Geometry::build(model, false).triangle_count();
-    assert!(
-        count(&model) > count(&whole) / NODES * (NODES - 1),
-        "the flat one is there besides"
-    );
-}

@@ -65,60 +65,6 @@ fn plots_numbers_and_reports_are_replaced_whole_or_not_at_all() {
     );
 }
 
-#[test]
-fn a_batch_makes_a_picture_anew_that_was_damaged() {
-    let place = Workplace::new();
-    place.write(
-        "batch.toml",
-        b"materials = [\"gold\"]\n[common]\nsize = \"16x16\"\nsamples = 1\n",
-    );
-    let status = |run: &str| serde_json::from_str::<serde_json::Value>(run.lines().next().unwrap()).unwrap();
-    let first = place.done("batch batch.toml --engine cpu");
-    let row = status(&first.stdout);
-    assert_eq!(row["status"], "rendered");
-    let file = std::path::PathBuf::from(row["files"][0].as_str().unwrap());
-    let file = place.path("").join(file);
-    assert_eq!(
-        status(&place.done("batch batch.toml --engine cpu").stdout)["status"],
-        "kept"
-    );
-    let mut bytes = std::fs::read(&file).unwrap();
-    let whole = bytes.clone();
-    let middle = bytes.len() / 2;
-    bytes[middle] ^= 0xff;
-    std::fs::write(&file, bytes).unwrap();
-    assert_eq!(
-        status(&place.done("batch batch.toml --engine cpu").stdout)["status"],
-        "rendered"
-    );
-    assert_eq!(std::fs::read(&file).unwrap(), whole);
-}
-
-/// Who reads the lines of a batch finds whole ones, and the old file until there is one.
-#[cfg(unix)]
-#[test]
-fn the_lines_of_a_batch_are_replaced_whole() {
-    use std::os::unix::fs::MetadataExt as _;
-    let place = Workplace::new();
-    let batch = "materials = [\"gold\", \"silver\"]\n[common]\nsize = \"16x16\"\nsamples = 1\n";
-    place.write("batch.toml", batch.as_bytes());
-    place.write("lines.json", b"old");
-    let old = std::fs::File::open(place.path("lines.json")).unwrap();
-    place.done("batch batch.toml --engine cpu --json lines.json");
-    assert_ne!(
-        old.metadata().unwrap().ino(),
-        place.path("lines.json").metadata().unwrap().ino()
-    );
-    assert_eq!(std::io::read_to_string(old).unwrap(), "old");
-    let lines = place.read("lines.json");
-    let status = |line: &str| serde_json::from_str::<serde_json::Value>(line).unwrap()["status"].clone();
-    assert_eq!(lines.lines().map(status).collect::<Vec<_>>(), ["rendered", "rendered"]);
-    // Devices are written into.
-    place.done("batch batch.toml --engine cpu --json /dev/null");
-    use std::os::unix::fs::FileTypeExt as _;
-    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
-}
-
 /// A target that can't be written is told before the work, whichever command it is of: the model is not even read.
 #[test]
 fn every_target_is_asked_before_the_work() {

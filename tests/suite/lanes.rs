@@ -41,12 +41,8 @@ functions! {
     Cos = |x, _y| x.cos();
     Exp = |x, _y| x.exp();
     Ln = |x, _y| x.ln();
-    Sqrt = |x, _y| x.sqrt();
-    Floor = |x, _y| x.floor();
     Powf = |x, y| x.powf(y);
     Atan2 = |x, y| x.atan2(y);
-    Min = |x, y| x.min(y);
-    Max = |x, y| x.max(y);
 }
 
 /// What a function makes of pairs of numbers, sixteen at a time.
@@ -127,67 +123,6 @@ fn elementary_functions_are_within_two_units_in_the_last_place_alone_and_in_lane
     });
 }
 
-/// What is not a number, too small or too large, and signs of 0.
-#[test]
-fn functions_in_lanes_treat_odd_numbers_as_alone() {
-    let odd = [
-        0.0,
-        -0.0,
-        1.0,
-        -1.0,
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::MIN_POSITIVE,
-        1e-42,
-        f32::MAX,
-        -200.0,
-        200.0,
-        0.5,
-        1.5,
-        -2.5,
-        3.0,
-    ];
-    let pairs: Vec<[f32; 2]> = odd.iter().flat_map(|&x| odd.map(|y| [x, y])).collect();
-    fn assert_same<F: Function>(name: &str, pairs: &[[f32; 2]]) {
-        for (set, level) in sets() {
-            let values = in_lanes(level, Values::<F>(pairs, std::marker::PhantomData));
-            for (&[x, y], value) in pairs.iter().zip(values) {
-                let alone = F::of(x, y);
-                let is_same = value.to_bits() == alone.to_bits() || (value.is_nan() && alone.is_nan());
-                // Which zero the smaller of two is, hardware may choose.
-                let is_zero = value == 0.0 && alone == 0.0;
-                assert!(
-                    is_same || is_zero,
-                    "{name} of {x} and {y} under {set}: {value} instead of {alone}"
-                );
-            }
-        }
-    }
-    assert_same::<Min>("min", &pairs);
-    assert_same::<Max>("max", &pairs);
-    assert_same::<Floor>("floor", &pairs);
-    assert_same::<Exp>("exp", &pairs);
-    assert_same::<Ln>("ln", &pairs);
-    let finite: Vec<[f32; 2]> = pairs
-        .iter()
-        .copied()
-        .filter(|pair| pair.iter().all(|x| x.is_finite()))
-        .collect();
-    let positive: Vec<[f32; 2]> = finite.iter().map(|pair| pair.map(f32::abs)).collect();
-    let whole = |pairs: Vec<[f32; 2]>| pairs[..pairs.len() / 16 * 16].to_vec();
-    assert_same::<Sqrt>("sqrt", &whole(positive.clone()));
-    assert_same::<Powf>("powf", &whole(positive));
-    assert_same::<Atan2>("atan2", &whole(finite));
-    assert!(f32::exp(f32::NAN).is_nan() && Exp::of(f32::NAN, 0.0).is_nan() && Ln::of(f32::NAN, 0.0).is_nan());
-    assert_eq!([Exp::of(-200.0, 0.0), Exp::of(200.0, 0.0)], [0.0, f32::INFINITY]);
-    assert_eq!(
-        [Ln::of(0.0, 0.0), Ln::of(f32::INFINITY, 0.0)],
-        [f32::NEG_INFINITY, f32::INFINITY]
-    );
-    assert!(Ln::of(-1.0_f32, 0.0).is_nan());
-}
-
 /// Directions drawn from a lobe, with their values and densities: eight numbers each.
 struct Drawn<'a>(&'a Case, &'a [[f32; 3]]);
 
@@ -233,11 +168,12 @@ impl InLanes for Drawn<'_> {
     }
 }
 
-/// Every lobe, a million draws on each instruction set.
+/// Every lobe, so many draws of each case on each instruction set.
 #[test]
 fn lobes_give_the_same_bits_in_lanes_as_alone() {
+    const COUNT: usize = if cfg!(feature = "thorough") { 3072 } else { 128 };
     let mut random = Random::new(5);
-    let numbers: Vec<[f32; 3]> = (0..3072).map(|_| std::array::from_fn(|_| random.unit())).collect();
+    let numbers: Vec<[f32; 3]> = (0..COUNT).map(|_| std::array::from_fn(|_| random.unit())).collect();
     for (lobe, curve) in lobes_and_curves() {
         for &horizon in Horizon::ALL {
             let mut cases = Case::grid(

@@ -2,23 +2,15 @@
 //! needs no new samples.
 
 use std::collections::BTreeSet;
-
-use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
-use glossmith::app::layout::Pane;
 use glossmith::document::light_groups::emission_group;
 use glossmith::document::{AreaLight, Background, Document, GroundKind, GroupName, LightMix};
 use glossmith::job::film::Film;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::project::parse_document;
-
 use super::cli_support::{Workplace, channels};
 use super::lights::lit_scenes;
 use super::renders::{document, render};
-use super::ui::{Editor, editor_with, picture, settle, undo};
-use super::worker::small_document;
 
 /// Scenes whose groups are summed apart: with lights, emission and a shadow catcher, of few samples.
 fn scenes() -> Vec<(&'static str, Document)> {
@@ -223,74 +215,6 @@ fn the_command_line_writes_and_mixes_groups() {
     place.refused(2, "render --light-mix key", &["GROUP=FACTOR"]);
     place.refused(2, "render --light-mix key=-1", &["-1", "0 to 1000"]);
     place.refused(2, "render --spot group=a.b", &["a.b", "letters"]);
-}
-
-/// Files without groups open as before; those with them keep them.
-#[test]
-fn projects_keep_groups_and_mix() {
-    let text = r#"{"glossmith-document": 1, "lighting": {"light_groups": true, "area_lights": [{"group": "Rim light"}, {}],
-        "light_mix": [{"group": "Rim-light", "factor": 0.25}]}}"#;
-    let document = parse_document("p.json".as_ref(), text.as_bytes()).unwrap().value;
-    let names: Vec<String> = document.light_groups().into_iter().map(String::from).collect();
-    assert_eq!(names, ["environment", "Rim-light", "lights"]);
-    assert_eq!(document.light_factors()[1], [0.25; 3]);
-    let json = serde_json::to_value(&document.lighting).unwrap();
-    assert_eq!(json["area_lights"][0]["group"], "Rim-light");
-    assert!(json["area_lights"][1].get("group").is_none());
-    let plain = serde_json::to_value(Document::default().lighting).unwrap();
-    assert!(plain.get("light_groups").is_none() && plain.get("light_mix").is_none());
-}
-
-fn spin(harness: &mut Editor, label: &str, value: f64) {
-    let row = harness.get_by_role_and_label(Role::SpinButton, label);
-    row.set_value_accesskit(value);
-    settle(harness);
-}
-
-#[test]
-fn the_window_mixes_what_has_been_rendered() {
-    let mut document = small_document();
-    document.lighting.area_lights = vec![AreaLight::default()];
-    let mut harness = editor_with(document, Vec::new());
-    settle(&mut harness);
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(4);
-    let before = harness.state().document().clone();
-    assert!(
-        harness.query_by_label("Area light 1 group").is_none(),
-        "there are no groups yet"
-    );
-    harness
-        .get_by_role_and_label(Role::CheckBox, "Light groups")
-        .click_accesskit();
-    settle(&mut harness);
-    assert!(harness.state().document().lighting.light_groups);
-    let all = picture(&harness);
-    // A name of its own.
-    let field = harness.get_by_role_and_label(Role::TextInput, "Area light 1 group");
-    field.set_text_value_accesskit("Key light");
-    settle(&mut harness);
-    assert_eq!(
-        harness.state().document().lighting.area_lights[0].group,
-        GroupName::new("Key-light")
-    );
-    assert_eq!(picture(&harness), all);
-    let samples = |harness: &Editor| harness.state().snapshot().progress.render_seconds;
-    let spent = samples(&harness);
-    spin(&mut harness, "Mix of Key-light", 0.0);
-    spin(&mut harness, "Mix of environment", 0.0);
-    let is_dark = |harness: &Editor| picture(harness).iter().all(|[r, g, b, _]| r + g + b == 0.0);
-    assert!(is_dark(&harness), "{:?}", harness.state().document().lighting.light_mix);
-    assert_eq!(samples(&harness), spent, "nothing is rendered again");
-    spin(&mut harness, "Mix of environment", 1.0);
-    assert!(!is_dark(&harness) && picture(&harness) != all);
-    spin(&mut harness, "Mix of Key-light", 1.0);
-    assert_eq!(picture(&harness), all);
-    assert!(harness.state().document().lighting.light_mix.is_empty());
-    for _ in 0..6 {
-        undo(&mut harness);
-    }
-    assert_eq!(*harness.state().document(), before);
 }
 
 #[test]

@@ -2,18 +2,14 @@
 
 use std::f32::consts::SQRT_2;
 
-use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
-use glossmith::document::{Background, Document, GroundKind, LightPaths, Strategy};
+use glossmith::document::{Background, Document, GroundKind, LightPaths};
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
 use super::cli_support::{Workplace, read_exr};
 use super::lights::lit_scenes;
-use super::parting::Pair;
 use super::renders::{document, render};
-use super::ui::{Editor, editor, picture, settle, undo};
 
 /// Scenes where light is reflected between surfaces, with lights and without, and with a shadow catcher.
 fn scenes() -> Vec<(&'static str, Document)> {
@@ -76,29 +72,6 @@ fn direct_and_indirect_light_are_all_light() {
 }
 
 #[test]
-fn engines_find_the_same_parts() {
-    let mut pair = Pair::open();
-    for (name, mut document) in scenes() {
-        document.render.samples = 1;
-        for strategy in Strategy::ALL {
-            document.render.strategy = *strategy;
-            for paths in [LightPaths::Direct, LightPaths::Indirect] {
-                let what = format!("{name}, {strategy:?}, {paths:?}");
-                pair.assert_same_paths(&of(&document, paths), [5e-3, 1e-3], &what);
-            }
-        }
-    }
-    // A part of the light casts no shadow into alpha.
-    let (_, mut caught) = scenes().pop().expect("the shadow catcher");
-    caught.lighting.background = Background::Transparent;
-    caught.render.samples = 1;
-    pair.assert_same_paths(&of(&caught, LightPaths::Indirect), [5e-3, 1e-3], "alpha");
-    let film = render(EngineChoice::Cpu, &of(&caught, LightPaths::Indirect));
-    let below = film.color(24 * 24 - 12);
-    assert_eq!(below, [0.0; 4], "the ground before the teapot");
-}
-
-#[test]
 fn a_convex_body_in_the_open_has_no_indirect_light() {
     let sphere = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
     let film = render(EngineChoice::Cpu, &of(&sphere, LightPaths::Indirect));
@@ -127,33 +100,4 @@ fn the_command_line_renders_parts_of_the_light() {
         .stdout;
     assert!(told.contains("is not of the light that is shown"), "{told}");
     place.refused(2, "render --light-paths some", &["direct", "indirect"]);
-}
-
-fn look_at(harness: &mut Editor, part: &str) {
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Viewport shows")
-        .click_accesskit();
-    harness.run_steps(2);
-    harness.get_by_label(part).click_accesskit();
-    harness.run_steps(2);
-    settle(harness);
-}
-
-#[test]
-fn the_viewport_shows_parts_of_the_light() {
-    let mut harness = editor();
-    settle(&mut harness);
-    let all = picture(&harness);
-    look_at(&mut harness, "Indirect light");
-    assert_eq!(harness.state().document().render.light_paths, LightPaths::Indirect);
-    assert!(
-        picture(&harness).iter().all(|[r, g, b, _]| r + g + b == 0.0),
-        "a sphere has none"
-    );
-    look_at(&mut harness, "Direct light");
-    assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);
-    look_at(&mut harness, "Image");
-    assert_eq!(picture(&harness), all);
-    undo(&mut harness);
-    assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);
 }

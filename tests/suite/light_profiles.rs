@@ -2,13 +2,8 @@
 //! names on the command line, in projects and in the window. The files are built here.
 
 use std::f64::consts::PI;
-
-use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
 use glam::DVec3;
-use glossmith::app::Options;
-use glossmith::app::actions::Action;
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile, Strategy};
+use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile};
 use glossmith::import::light_profile;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::EngineChoice;
@@ -17,16 +12,11 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::light_profile::{LightProfile, profile_share};
 use glossmith::scene::{AreaFrame, AreaShape, ModelSource, Outline};
 use glossmith::store::{load_document, save_document};
-
 use super::cli_support::{Workplace, read_exr};
-use super::renders::{assert_same_picture, document, render, with_strategy};
-use super::ui::{Editor, editor_of, options, request, settle, undo};
-use super::ui_files::says;
-use super::ui_hands::type_path;
-use super::worker::small_document;
+use super::renders::{document, render};
 
 /// A lamp that shines along its width, hardly along its height, and not upwards.
-const LAMP: &str =
+pub const LAMP: &str =
     "IESNA:LM-63-2002\n[TEST] built by a test\nTILT=NONE\n1 1000 2.0 2 2 1 2 0 0 0\n1 1 20\n0 90\n0 90\n50 20\n50 0\n";
 
 /// Its intensity in candela in a direction in units of its axis, width and height.
@@ -38,12 +28,13 @@ fn candela([axis, width, height]: [f64; 3]) -> f64 {
 }
 
 const SIDE: usize = 16;
+
 /// Height of lamp and camera above the floor, half its side.
 const LAMP_HEIGHT: f64 = 0.8;
 const CAMERA_HEIGHT: f64 = 3.0;
 
 /// A white floor below a small lamp with a file's profile and its lumens, seen from above.
-fn floor(file: &std::path::Path) -> (Document, AreaLight, f64) {
+pub fn floor(file: &std::path::Path) -> (Document, AreaLight, f64) {
     let matt = ["base.metalness=0", "specular.weight=0", "base.color=1,1,1"];
     let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &matt);
     document.lighting.strength = 0.0;
@@ -108,33 +99,6 @@ fn a_floor_is_lit_by_the_intensities_of_the_file() {
     }
 }
 
-/// Light that is found by the lobe has the profile, too, and both engines agree about it.
-#[test]
-fn strategies_and_engines_agree_on_a_profile() {
-    let place = Workplace::new();
-    place.write("lamp.ies", LAMP.as_bytes());
-    let (mut document, lamp, radius) = floor(&place.path("lamp.ies"));
-    let mut large = AreaLight {
-        width: 0.5,
-        is_hidden: false,
-        ..lamp
-    };
-    large.set_power(1000.0, radius);
-    document.lighting.area_lights = vec![large];
-    document.render.samples = 512;
-    let mis = render(EngineChoice::Cpu, &document);
-    for strategy in [Strategy::Light, Strategy::Lobe] {
-        let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 7));
-        assert_same_picture(&mis, &other, strategy.name());
-    }
-    let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
-    assert_same_picture(&mis, &gpu, "GPU");
-    // Without the file the light is even, which is another image of the same power.
-    document.lighting.area_lights[0].profile = None;
-    let even = render(EngineChoice::Cpu, &document);
-    assert!(mis.difference_in_sigma(&even).abs() > 10.0);
-}
-
 #[test]
 fn the_command_line_and_projects_name_profiles() {
     let place = Workplace::new();
@@ -180,51 +144,6 @@ fn the_command_line_and_projects_name_profiles() {
     let run = place.done("render lamp.png --engine cpu --output without.exr");
     assert!(run.stderr.contains("lamp.ies: cannot be read"), "{}", run.stderr);
     assert!(read_exr(&place.path("without.exr")) == read_exr(&place.path("even.exr")));
-}
-
-fn light(harness: &Editor) -> AreaLight {
-    harness.state().document().lighting.area_lights[0]
-}
-
-#[test]
-fn a_profile_is_chosen_dropped_and_removed_in_the_window() {
-    let place = Workplace::new();
-    place.write("lamp.ies", LAMP.as_bytes());
-    place.write("broken.ies", b"TILT=NONE\n");
-    let mut document = small_document();
-    document.lighting.area_lights = vec![AreaLight {
-        shape: AreaLightShape::Sphere,
-        ..AreaLight::default()
-    }];
-    let mut harness = editor_of(Options {
-        document: Some(document),
-        typed_paths: Some(place.path("")),
-        ..options()
-    });
-    settle(&mut harness);
-    let before = light(&harness);
-    for (name, profile) in [
-        ("broken.ies", None),
-        ("lamp.ies", Some(ProfileFile::new(&place.path("lamp.ies")))),
-    ] {
-        harness
-            .get_by_role_and_label(Role::Button, "Area light 1 profile")
-            .click_accesskit();
-        harness.run_steps(3);
-        type_path(&mut harness, &place.path(name), "Open");
-        settle(&mut harness);
-        assert_eq!(light(&harness).profile, profile, "{name}");
-    }
-    assert!(says(&harness, "broken.ies: not a light profile: it ends too early"));
-    harness.get_by_label("Remove area light 1 profile").click_accesskit();
-    settle(&mut harness);
-    assert_eq!(light(&harness), before);
-    // Dropped on the window it is for the only light, of any shape.
-    request(&mut harness, Action::Drop(vec![place.path("lamp.ies")]));
-    settle(&mut harness);
-    assert!(light(&harness).has_profile());
-    (0..3).for_each(|_| undo(&mut harness));
-    assert_eq!(light(&harness), before);
 }
 
 fn lamp_frame() -> AreaFrame {

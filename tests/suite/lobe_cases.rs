@@ -5,7 +5,6 @@ use glossmith::optics::frame::{Frame, frame_from_normal};
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
 use glossmith::optics::vector::{Vec3, vec3};
 
-use crate::support::is_thorough;
 
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
 pub const ROUGHNESS: [f64; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
@@ -146,7 +145,7 @@ pub fn is_quick(curve: Curve) -> bool {
 /// The same with quick curves alone: for what is done to a lobe whatever its curve. With all in `make test-thorough`.
 pub fn lobes_and_quick_curves() -> Vec<(Lobe, Curve)> {
     let mut all = lobes_and_curves();
-    all.retain(|&(_, curve)| is_quick(curve) || is_thorough());
+    all.retain(|&(_, curve)| is_quick(curve) || cfg!(feature = "thorough"));
     all
 }
 

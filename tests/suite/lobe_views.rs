@@ -40,18 +40,6 @@ fn geometric_lobe_with_mirror_policy_loses_nothing() {
     }
 }
 
-/// GGX loses light at high roughness, and gets it back as renders have it; what loses none has one line.
-#[test]
-fn the_albedo_shows_what_multiple_scattering_brings() {
-    let lobe = LobeModel::new(Lobe::Ggx, 1.0, Curve::Smooth);
-    let plot = lines(ViewKind::Albedo, &lobe, &[0.0, 45.0, 80.0]);
-    let [single, whole] = ["albedo", "compensated"].map(|quantity| values(&plot, quantity));
-    assert!((single[0] - 0.3069).abs() < 3e-3, "{single:?}");
-    assert!(whole.iter().all(|albedo| (albedo - 1.0).abs() < 5e-3), "{whole:?}");
-    let geometric = LobeModel::new(Lobe::Geometric, 1.0, Curve::Smooth);
-    assert_eq!(lines(ViewKind::Albedo, &geometric, &[45.0]).series.len(), 1);
-}
-
 #[test]
 fn albedo_is_the_mean_weight_of_samples() {
     let absorbing = LobeModel {
@@ -91,26 +79,6 @@ fn albedo_is_the_mean_weight_of_samples() {
                 lobe.name
             );
         }
-    }
-}
-
-#[test]
-fn share_below_the_horizon_is_the_measured_one() {
-    // docs/MATHEMATICS.md, section 3, in percent at 80 degrees.
-    let cases = [
-        (Curve::Sqrt, 0.3, 6.2),
-        (Curve::Sqrt, 0.6, 10.1),
-        (Curve::Cbrt, 0.6, 11.5),
-        (Curve::Smooth, 0.6, 6.5),
-    ];
-    for (curve, roughness, percent) in cases {
-        let lobe = LobeModel::new(Lobe::Geometric, roughness, curve);
-        let below = values(&lines(ViewKind::Horizon, &lobe, &[80.0, 20.0]), "fraction_below");
-        assert!(
-            (100.0 * below[0] - percent).abs() < 0.1,
-            "{curve:?} {roughness}: {below:?}"
-        );
-        assert!(below[1] < 1e-12, "{curve:?} {roughness}: {below:?}");
     }
 }
 
@@ -189,37 +157,4 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
             kind.name()
         );
     }
-}
-
-#[test]
-fn densities_of_the_distance_add_to_one_whatever_the_roughness() {
-    for curve in [Curve::Linear, Curve::Sqrt, Curve::Cbrt, Curve::Smooth, Curve::LongTail] {
-        let sum = [0.2, 0.8].map(|roughness| {
-            let lobe = LobeModel::new(Lobe::Geometric, roughness, curve);
-            let plot = lines(ViewKind::Distance, &lobe, &[0.0]);
-            let trapezia = plot.series[0].points.windows(2);
-            trapezia
-                .map(|ends| 0.5 * (ends[0][1] + ends[1][1]) * (ends[1][0] - ends[0][0]))
-                .sum::<f64>()
-        });
-        assert_eq!(sum[0], sum[1], "{curve:?}");
-        // The long tail is shown to D = 5: (1 - e^-5)^2 of it.
-        assert!(
-            (sum[0] - 1.0).abs() < if curve == Curve::LongTail { 0.014 } else { 1e-4 },
-            "{curve:?}: {sum:?}"
-        );
-    }
-}
-
-#[test]
-fn densities_of_a_map_add_to_one() {
-    let lobe = LobeModel::new(Lobe::Geometric, 0.5, Curve::Smooth);
-    let LobeView::Maps(plot) = lobe_view(ViewKind::Hemisphere, &[lobe], &[30.0]) else {
-        panic!("no map");
-    };
-    let map = &plot.maps[0];
-    // Equal areas: each pixel stands for 2π over the disc's π/4 of the square.
-    let solid_angle = 8.0 / (map.size * map.size) as f64;
-    let sum: f64 = map.values.iter().filter(|value| value.is_finite()).sum::<f64>() * solid_angle;
-    assert!((sum - 1.0).abs() < 0.01, "{sum}");
 }

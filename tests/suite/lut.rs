@@ -1,19 +1,12 @@
 //! Tables of colours: by the command line, in projects, in the window.
 
-use glossmith::app::Options;
-use glossmith::app::actions::Action;
 use glossmith::document::Document;
 use glossmith::optics::tone::Lut;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::ModelSource;
 use glossmith::store::lut::load;
 use glossmith::store::{load_document, save_document};
-
 use super::cli_support::Workplace;
-use super::ui::{Editor, editor_of, options, request, see, settle, undo};
-use super::ui_files::says;
-use super::ui_hands::type_path;
-use super::worker::small_document;
 
 /// Black for white and white for black.
 const NEGATIVE: &str = "TITLE \"negative\"\nLUT_1D_SIZE 2\n1 1 1\n0 0 0\n";
@@ -65,45 +58,6 @@ fn a_picture_goes_through_a_table_last() {
     let run = place.done("render p.json --engine cpu --output without.png");
     assert!(run.stderr.contains("negative.cube: cannot be read"), "{}", run.stderr);
     assert_eq!(codes("without.png"), codes("plain.png"));
-}
-
-fn shown(harness: &Editor) -> Vec<u8> {
-    harness.state().snapshot().picture.as_ref().unwrap().rgba.clone()
-}
-
-fn choose(harness: &mut Editor, path: &std::path::Path) {
-    request(harness, Action::ChooseLut);
-    type_path(harness, path, "Open");
-    settle(harness);
-}
-
-#[test]
-fn a_table_is_chosen_and_removed_in_the_window() {
-    let place = Workplace::new();
-    place.write("negative.cube", NEGATIVE.as_bytes());
-    place.write("broken.cube", b"LUT_1D_SIZE 2\n0 0\n");
-    let mut harness = editor_of(Options {
-        document: Some(small_document()),
-        typed_paths: Some(place.path("")),
-        ..options()
-    });
-    settle(&mut harness);
-    let plain = shown(&harness);
-    choose(&mut harness, &place.path("broken.cube"));
-    assert!(says(&harness, "broken.cube: not a table of colours"));
-    assert_eq!(harness.state().document().view.lut, None);
-    choose(&mut harness, &place.path("negative.cube"));
-    let samples = harness.state().snapshot().picture.as_ref().unwrap().samples_per_pixel;
-    assert!(samples > 0, "the samples stay");
-    let negative = shown(&harness);
-    for (a, b) in std::iter::zip(plain.chunks_exact(4), negative.chunks_exact(4)) {
-        assert!((i32::from(a[0]) + i32::from(b[0]) - 255).abs() <= 1);
-    }
-    // Written anew, as by the program that makes it.
-    place.write("negative.cube", b"LUT_1D_SIZE 2\n0 0 0\n1 1 1\n");
-    see(&mut harness, "the new table", |harness| shown(harness) == plain);
-    undo(&mut harness);
-    assert_eq!(shown(&harness), plain);
 }
 
 /// A cube that swaps red and blue, with a bend in green, on a domain of its own.

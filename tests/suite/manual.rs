@@ -1,18 +1,15 @@
 //! The manual in the window: F1 and each *?* lead to a page of the book that is there.
 
-use egui::accesskit::Role;
 use egui::{Key, Vec2};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
 use glossmith::app::book::{self, CONTENTS, OF_SHEETS, Pages, Section};
 use glossmith::app::layout::Pane;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::LazyLock;
 
-use super::docs::{root, text_of};
-use super::ui::{Editor, editor, request};
+use super::docs::text_of;
+use super::ui::{Editor, editor};
 use super::ui_hands::press;
-use super::words::sources;
 
 macro_rules! pages {
     ($($path:literal)*) => {
@@ -75,20 +72,6 @@ fn the_manual_has_the_pages_of_the_book() {
     }
 }
 
-/// Pages that the library embedded would compile it and all tests again at every edit of a page.
-#[test]
-fn the_program_alone_embeds_pages() {
-    let mut files = Vec::new();
-    sources(&root().join("src"), &mut files);
-    let embeds = |file: &PathBuf| {
-        let text = std::fs::read_to_string(file).expect("a source");
-        text.lines()
-            .any(|line| line.contains("include_str!") && line.contains("docs/"))
-    };
-    files.retain(embeds);
-    assert_eq!(files, [root().join("src/main.rs")]);
-}
-
 #[test]
 fn links_of_the_manual_lead_to_pages_and_headings() {
     let mut count = 0;
@@ -146,69 +129,4 @@ fn the_question_mark_of_a_panel_opens_its_page() {
         assert!(shows(&harness, pane.manual()), "{}", pane.title());
         close(&mut harness);
     }
-}
-
-/// The manual lies over a dialog, and its links work there.
-#[test]
-fn f1_over_a_dialog_opens_its_page() {
-    let mut harness = editor();
-    request(&mut harness, Action::Do(Command::Turntable));
-    harness.key_press(Key::F1);
-    harness.run_steps(5);
-    assert!(shows(&harness, "how-to/turntable.md"));
-    press(&mut harness, "Contents");
-    harness.run_steps(3);
-    harness.get_by_role_and_label(Role::Link, "Use textures").click();
-    harness.run_steps(5);
-    assert!(shows(&harness, "how-to/textures.md"));
-    press(&mut harness, "Back");
-    assert!(shows(&harness, CONTENTS));
-    close(&mut harness);
-    assert!(
-        harness.query_by_label("Turntable").is_some(),
-        "the dialog is still open"
-    );
-}
-
-#[test]
-fn the_question_mark_of_a_dialog_opens_its_page() {
-    let mut harness = editor();
-    request(&mut harness, Action::Do(Command::ModelFile));
-    harness.run_steps(3);
-    press(&mut harness, "Manual: Model file");
-    harness.run_steps(3);
-    assert!(shows(&harness, "FORMATS.md#models"));
-}
-
-#[test]
-fn the_help_menu_opens_the_contents() {
-    let mut harness = editor();
-    harness.get_by_role_and_label(Role::Button, "Help").click();
-    harness.run_steps(2);
-    // Its keys are part of the entry's name.
-    harness.get_by_label("Manual F1").click();
-    harness.run_steps(5);
-    assert!(shows(&harness, CONTENTS));
-    harness.check_accessibility();
-}
-
-/// Text that no font of the window has would be empty boxes.
-#[test]
-fn every_character_of_the_manual_has_a_glyph() {
-    let harness = editor();
-    let fonts = [egui::FontId::proportional(13.0), egui::FontId::monospace(12.0)];
-    let mut lacking = Vec::new();
-    for (page, text) in manual_pages() {
-        for character in text.chars().filter(|character| !character.is_control()) {
-            let is_there = harness
-                .ctx
-                .fonts_mut(|fonts_of_window| fonts.iter().all(|font| fonts_of_window.has_glyph(font, character)));
-            if !is_there {
-                lacking.push(format!("{page}: {character} (U+{:04X})", u32::from(character)));
-            }
-        }
-    }
-    lacking.sort();
-    lacking.dedup();
-    assert!(lacking.is_empty(), "{lacking:?}");
 }

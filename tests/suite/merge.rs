@@ -83,19 +83,6 @@ fn render_whole_and_joined(place: &Workplace, scene: &str) {
     place.done("merge a.exr b.exr --output joined.exr");
 }
 
-#[test]
-fn a_region_of_a_picture_joins_like_the_whole() {
-    let place = Workplace::new();
-    let scene = format!("{SCENE} --region 0.25,0.1,0.7,0.8");
-    render_whole_and_joined(&place, &scene);
-    assert_joined(&bits(&place.path("joined.exr")), &bits(&place.path("whole.exr")));
-    // Another region is another picture.
-    place.done(&format!(
-        "render {SCENE} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
-    ));
-    place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another image"]);
-}
-
 /// Light groups: the sums of each and the mix.
 #[test]
 fn light_groups_join_with_their_mix() {
@@ -109,20 +96,6 @@ fn light_groups_join_with_their_mix() {
         "render {SCENE} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
     ));
     place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another image"]);
-}
-
-/// The GPU sums in f32 before it hands over: pictures agree to its rounding.
-#[test]
-fn films_of_the_gpu_join_to_rounding() {
-    let place = Workplace::new();
-    let scene = SCENE.replace("--engine cpu", "--engine gpu");
-    render_whole_and_joined(&place, &scene);
-    let (whole, joined) = (read_exr(&place.path("whole.exr")), read_exr(&place.path("joined.exr")));
-    for (pixel, (a, b)) in whole.pixels.iter().zip(&joined.pixels).enumerate() {
-        for (a, b) in a.iter().zip(b) {
-            assert!((a - b).abs() <= 2e-6 * (1.0 + a.abs()), "pixel {pixel}: {a} and {b}");
-        }
-    }
 }
 
 /// Films that end at a noise or with a time, whose pixels have as many samples as they have: each pixel's mean is that of all

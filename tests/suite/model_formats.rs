@@ -1,14 +1,13 @@
 //! Models in other formats than glTF: OBJ with its materials, PLY, STL; folders and archives.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use glam::{DVec3, Vec2, Vec3};
 use glossmith::document::ImportLobe;
 use glossmith::document::of_model::materials_of;
 use glossmith::import::load;
 use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Entry, Fate, Geometry, Model, ModelSource, Wrap};
+use glossmith::scene::{Fate, Model, ModelSource, Wrap};
 
 use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;
@@ -113,110 +112,6 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     says(&grey, Fate::Missing, "a texture, grey instead");
 }
 
-/// Some vertices with a colour, a file in UTF-16, one that begins with a mark, and colours of one number: all are read.
-#[test]
-fn what_other_programs_write_into_obj_files_is_read() {
-    let folder = Folder::new();
-    std::fs::write(folder.path("m.mtl"), "newmtl \nKs 0\nKd 0.5 0.5\nKe\n").unwrap();
-    let text = "mtllib m.mtl\nusemtl \nv 0 0 0\nv 1 0 0 0 0 1\nv 0 1 0\nf 1 2 3\n";
-    let wide = |bytes: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
-    let marked = ["\u{feff}", text].concat().into_bytes();
-    let big = [vec![0xfe, 0xff], wide(u16::to_be_bytes)].concat();
-    let little = [vec![0xff, 0xfe], wide(u16::to_le_bytes)].concat();
-    for (name, bytes) in [
-        ("plain", text.into()),
-        ("marked", marked),
-        ("big", big),
-        ("little", little),
-    ] {
-        let model = folder.load(&format!("{name}.obj"), &bytes).expect(name);
-        let white = [1.0; 4];
-        assert_eq!(model.mesh.colors, [white, [0.0, 0.0, 1.0, 1.0], white], "{name}");
-        assert_eq!(model.slots[0].base_color, [0.5; 3], "{name}: {:?}", model.report);
-        says(&model, Fate::Ignored, "a line of a library of materials");
-    }
-}
-
-/// Two squares with each kind of line damaged: what cannot be read costs itself alone, and the report tells its line.
-#[test]
-fn unreadable_lines_of_an_obj_file_cost_themselves_alone() {
-    let folder = Folder::new();
-    let good = "v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
-                f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/1/1\nf 2/1/1 5/2/1 6/3/1\n";
-    let whole = folder.load("good.obj", good.as_bytes()).expect("loads");
-    assert_eq!(whole.mesh.triangles.len(), 3);
-    assert!(whole.report.is_clean(), "{:?}", whole.report);
-    for (from, to, lost, told) in [
-        ("v 2 0 0", "v 2 0 x", 1, "a vertex"),
-        ("v 2 0 0", "v 2 0", 1, "a vertex"),
-        ("v 2 0 0", "v 2 0 0 0", 0, "the colour or weight of a vertex"),
-        ("v 2 0 0", "v 2 0 0 1 1", 0, "the colour or weight of a vertex"),
-        ("v 2 0 0", "v 2 0 0 red 1 1", 0, "the colour or weight of a vertex"),
-        ("vt 1 0", "vt 1 ?", 0, "a texture coordinate"),
-        ("vn 0 0 1", "vn 0 0", 0, "a normal"),
-        ("f 2/1/1 5/2/1", "f 2/1/1 5/2/x", 1, "a face"),
-        ("f 2/1/1 5/2/1", "f 2/1/1 7/2/1", 1, "a face"),
-        ("f 2/1/1 5/2/1", "f 2/1/1 0/2/1", 1, "a face"),
-        ("f 2/1/1 5/2/1", "f 2/9/1 -9/2/1", 1, "a face"),
-        ("f 2/1/1 5/2/1 6/3/1", "f", 1, "a face"),
-    ] {
-        let text = good.replace(from, to);
-        let line = 1 + good.lines().position(|line| line.starts_with(from)).expect(from);
-        let model = folder.load("bad.obj", text.as_bytes()).expect(to);
-        let lost_triangles = whole.triangle_count() - Geometry::build(&model, false).triangle_count();
-        assert_eq!(lost_triangles, lost, "{to}: {:?}", model.report);
-        let is_told = |entry: &Entry| entry.what.starts_with(told) && entry.names == [format!("line {line}")];
-        assert!(model.report.of(Fate::Ignored).any(is_told), "{to}: {:?}", model.report);
-        assert!(model.mesh.uvs.iter().any(|uv| uv.x == 1.0), "{to}");
-    }
-    for (from, to, fate, words) in [
-        ("vn 0 0 1", "vn 0 0 nan", Fate::Approximated, "normals without a length"),
-        (
-            "vt 1 0",
-            "vt 1e999 0",
-            Fate::Ignored,
-            "texture coordinates that are not finite",
-        ),
-    ] {
-        let model = folder.load("odd.obj", good.replace(from, to).as_bytes()).expect(to);
-        says(&model, fate, words);
-        assert!(model.mesh.uvs.iter().all(|uv| uv.is_finite()), "{to}");
-    }
-    // Infinite numbers can be read: their triangles are told.
-    let model = folder.load("far.obj", good.replace("v 2 0 0", "v 2 0 1e999").as_bytes());
-    says(&model.expect("loads"), Fate::Ignored, "a corner that is not finite");
-    let partly = good.replace("f 2/1/1 5/2/1 6/3/1", "f 2 5 6");
-    let model = folder.load("partly.obj", partly.as_bytes()).expect("loads");
-    for words in ["texture coordinates that only some", "normals that only some"] {
-        says(&model, Fate::Ignored, words);
-    }
-}
-
-/// Libraries and textures whose names are Latin-1 are found, with names on the disk in Latin-1 or UTF-8.
-#[test]
-fn names_in_latin_1_are_found() {
-    let text = b"mtllib \xe9t\xe9.mtl\nusemtl Bl\xe5\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    let library = b"newmtl Bl\xe5\nKd 0 0 1\nmap_Kd b\xf6rk.png\n";
-    let names = |is_latin: bool| -> [PathBuf; 2] {
-        #[cfg(target_os = "linux")]
-        if is_latin {
-            use std::os::unix::ffi::OsStrExt as _;
-            return [&b"\xe9t\xe9.mtl"[..], b"b\xf6rk.png"].map(|name| std::ffi::OsStr::from_bytes(name).into());
-        }
-        let _ = is_latin;
-        ["été.mtl", "börk.png"].map(PathBuf::from)
-    };
-    for is_latin in [true, false] {
-        let folder = Folder::new();
-        let [mtl, picture] = names(is_latin);
-        std::fs::write(folder.0.path().join(mtl), library).unwrap();
-        std::fs::write(folder.0.path().join(picture), png()).unwrap();
-        let model = folder.load("m.obj", text).expect("loads");
-        assert_eq!(model.slots[0].name, "Blå", "{is_latin}: {:?}", model.report);
-        assert_eq!(model.textures.len(), 1, "{is_latin}: {:?}", model.report);
-    }
-}
-
 /// Surfaces without a material are clay in every format. What is coloured by its vertices has no other colour.
 #[test]
 fn surfaces_without_a_material_are_clay() {
@@ -311,40 +206,6 @@ fn ply_files_may_be_text_or_bytes() {
         assert_colored_square(&folder.load("square.ply", &bytes).expect("loads"));
         assert!(folder.load("cut.ply", &bytes[..bytes.len() - 3]).is_err(), "{format}");
     }
-}
-
-/// Of a text PLY file an unreadable number costs itself alone, and a file that is cut short shows what it has.
-#[test]
-fn unreadable_numbers_of_a_ply_file_cost_themselves_alone() {
-    let folder = Folder::new();
-    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
-                  property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
-                  property list uchar int vertex_indices\nend_header\n";
-    let body = "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 8 9\n3 0 1 2\n3 0 2 3\n";
-    let whole = folder
-        .load("whole.ply", [header, body].concat().as_bytes())
-        .expect("loads");
-    assert_eq!(whole.mesh.triangles.len(), 2);
-    for (from, to, left) in [
-        ("0 1 0 9 8 9", "0 x 0 9 8 9", 1),
-        ("0 1 0 9 8 9", "0 nan .0 9 8 9", 1),
-        ("0 1 0 9 8 9", "0 1", 1),
-        ("0 1 0 9 8 9", "0 1 0 red 8 9", 2),
-        ("3 0 2 3", "3 0 2", 1),
-        ("3 0 2 3", "x 0 2 3", 1),
-        ("3 0 2 3", "3 0 2 1.5", 1),
-    ] {
-        let text = [header, &body.replace(from, to)].concat();
-        let line = 1 + text.lines().position(|line| line == to).expect(to);
-        let model = folder.load("bad.ply", text.as_bytes()).expect(to);
-        assert_eq!(Geometry::build(&model, false).triangle_count(), left, "{to}");
-        let is_told = |entry: &Entry| entry.names == [format!("line {line}")];
-        assert!(model.report.of(Fate::Ignored).any(is_told), "{to}: {:?}", model.report);
-    }
-    let cut = [header, body.strip_suffix("3 0 2 3\n").expect("its end")].concat();
-    let model = folder.load("cut.ply", cut.as_bytes()).expect("loads");
-    assert_eq!(Geometry::build(&model, false).triangle_count(), 1);
-    says(&model, Fate::Missing, "elements called face after the end of the file");
 }
 
 #[test]

@@ -1,11 +1,9 @@
 //! Several files as one model, what is told while they are read, and reading them again.
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
 use glossmith::import::{ModelError, load_watched, load_with};
-use glossmith::render::Assets;
 use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::{Fate, Geometry, Loading, ModelOptions, ModelSource};
@@ -124,93 +122,4 @@ fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
         let error = load(&loading).expect_err("called off").to_string();
         assert!(error.contains("cancelled"), "{error}");
     }
-}
-
-/// Each step of loading a large model ends soon after it is called off: reading, parsing, normals, tangents, hierarchy, the proof
-/// that it is convex. It is called off at ever later times, until it is done before.
-#[test]
-fn loading_ends_soon_wherever_it_is_called_off() {
-    const SIDE: usize = 350;
-    let folder = Folder::new();
-    let place = |i: usize| (i as f32 / SIDE as f32, ((i * i) % 97) as f32 / 9700.0);
-    let mut ply = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n\
-         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        (SIDE + 1) * (SIDE + 1),
-        SIDE * SIDE
-    )
-    .into_bytes();
-    for (i, j) in (0..=SIDE).flat_map(|i| (0..=SIDE).map(move |j| (i, j))) {
-        let numbers = [place(i).0, place(j).0, place(i).1 + place(j).1];
-        numbers.iter().for_each(|number| ply.extend(number.to_le_bytes()));
-    }
-    for (i, j) in (0..SIDE).flat_map(|i| (0..SIDE).map(move |j| (i, j))) {
-        ply.push(4);
-        let first = i * (SIDE + 1) + j;
-        let corners = [first, first + SIDE + 1, first + SIDE + 2, first + 1];
-        corners
-            .iter()
-            .for_each(|corner| ply.extend((*corner as u32).to_le_bytes()));
-    }
-    let path = folder.path("wavy.ply");
-    std::fs::write(&path, ply).unwrap();
-    let source = ModelSource::File(path);
-    let load = |loading: &Loading| {
-        let model = load_watched(&source, &ModelOptions::default(), loading);
-        model.is_ok_and(|model| Geometry::of_model(&model, &[], loading).is_ok())
-    };
-    for wait_ms in (0..).map(|step| 30 * step) {
-        let loading = Loading::default();
-        let (is_done, late) = std::thread::scope(|scope| {
-            let loads = scope.spawn(|| (load(&loading), Instant::now()));
-            std::thread::sleep(Duration::from_millis(wait_ms));
-            let called_off = Instant::now();
-            loading.cancel();
-            let (is_done, ended) = loads.join().unwrap();
-            (is_done, ended.saturating_duration_since(called_off))
-        });
-        assert!(
-            is_done || late < Duration::from_secs(2),
-            "called off after {wait_ms} ms, at {}: {late:?} late",
-            loading.doing()
-        );
-        if is_done {
-            return;
-        }
-    }
-}
-
-#[test]
-fn files_are_read_again_unless_they_are_broken() {
-    let folder = Folder::new();
-    let path = folder.path("square.glb");
-    let (buffer, mut document) = square();
-    std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
-    let assets = Assets::default();
-    let source = ModelSource::File(path.clone());
-    let options = ModelOptions::default();
-    let reload = || {
-        assets.reload(
-            &source,
-            &options,
-            &EnvironmentSource::Furnace,
-            EnvironmentEncoding::Display,
-        )
-    };
-    let first = assets.model(&source, &options).unwrap();
-    document["materials"] = json!([{"name": "New"}]);
-    document["meshes"][0]["primitives"][0]["material"] = json!(0);
-    std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
-    assert_eq!(assets.model(&source, &options).unwrap().slots[0].name, "Clay", "kept");
-    let again = reload().expect("it is whole");
-    assert_eq!(again.before.as_deref(), Some(&*first));
-    assert_eq!(again.model.slots[0].name, "New");
-    assert_eq!(assets.model(&source, &options).unwrap(), again.model);
-    std::fs::write(&path, "half writt").unwrap();
-    assert!(reload().is_err());
-    assert_eq!(
-        assets.model(&source, &options).unwrap(),
-        again.model,
-        "what was there stays"
-    );
 }

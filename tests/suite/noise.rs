@@ -130,27 +130,6 @@ fn the_true_error_lies_inside_the_band() {
     assert!((0.90..=0.99).contains(&share), "{inside} of {cases}");
 }
 
-/// The GPU tells the error that it has, and no other than the processor.
-#[test]
-fn both_engines_tell_the_same_error() {
-    let mut document = scenes()[0].clone();
-    document.render.samples = 16;
-    let estimate = [EngineChoice::Cpu, EngineChoice::Gpu].map(|choice| {
-        let mut session = Session::open(choice).unwrap();
-        let films = renders(&mut session, &document, 12);
-        let estimate = films
-            .iter()
-            .map(|film| noise(film).unwrap().relative.powi(2))
-            .sum::<f64>();
-        let ratio = estimate / true_errors(&films).iter().sum::<f64>();
-        assert!((ratio - 1.0).abs() < 0.1, "{choice:?}: {ratio}");
-        let progress = session.progress();
-        assert!(progress.engine_seconds > 0.0 && progress.engine_seconds <= progress.render_seconds);
-        (estimate / 12.0).sqrt()
-    });
-    assert!((estimate[0] / estimate[1] - 1.0).abs() < 0.03, "{estimate:?}");
-}
-
 /// Rendering stops at the error that was asked for, even or adaptive, and that is the true error.
 #[test]
 fn a_render_stops_at_the_error_asked_for() {
@@ -201,63 +180,6 @@ fn a_render_stops_at_the_error_asked_for() {
 /// The samples of each pixel.
 fn counts(film: &Film) -> Vec<f64> {
     (0..film.pixel_count()).map(|pixel| film.samples_of(pixel)).collect()
-}
-
-/// Steps until the render ends; none goes on for ever.
-fn samples_at_the_end(session: &mut Session, document: &Document) -> (Vec<f64>, Option<StopReason>) {
-    session.submit(document).unwrap();
-    let begun = std::time::Instant::now();
-    while !session.step(Duration::from_millis(50)).unwrap().is_done {
-        assert!(
-            begun.elapsed() < Duration::from_secs(600),
-            "it does not end: {:?}",
-            session.progress()
-        );
-    }
-    (counts(session.film().unwrap()), session.progress().stopped_by)
-}
-
-/// Of a part of the picture the error of that part counts, and nothing else is rendered.
-#[test]
-fn a_part_of_the_picture_is_rendered_to_an_error() {
-    let matt = ["base.metalness=0", "specular.weight=0"];
-    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
-    (document.render.width, document.render.height) = (64, 64);
-    document.render.region = Some([0.25, 0.25, 0.75, 0.75]);
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    for (adaptive, noise) in [(false, Some(0.05)), (true, Some(0.05)), (true, None)] {
-        (document.render.adaptive, document.render.noise) = (Some(adaptive), noise);
-        document.render.samples = if noise.is_some() { 20_000 } else { 64 };
-        let (samples, stopped_by) = samples_at_the_end(&mut session, &document);
-        let reason = if noise.is_some() {
-            StopReason::Noise
-        } else {
-            StopReason::Samples
-        };
-        assert_eq!(stopped_by, Some(reason), "adaptive {adaptive}, {noise:?}");
-        for (pixel, samples) in samples.into_iter().enumerate() {
-            let is_inside = [pixel % 64, pixel / 64].iter().all(|side| (16..48).contains(side));
-            assert_eq!(samples >= 16.0, is_inside, "pixel {pixel}: {samples} samples");
-            assert!(is_inside || samples == 0.0, "pixel {pixel}: {samples} samples");
-        }
-    }
-}
-
-/// Every pixel has the least samples, even where tiles rest and they are raised when the picture is finished.
-#[test]
-fn the_least_samples_may_be_raised() {
-    let matt = ["base.metalness=0", "specular.weight=0"];
-    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
-    (document.render.width, document.render.height) = (48, 48);
-    (document.render.samples, document.render.noise) = (4096, Some(0.1));
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    let fewest = |samples: &[f64]| samples.iter().copied().fold(f64::INFINITY, f64::min);
-    let (samples, _) = samples_at_the_end(&mut session, &document);
-    assert!(fewest(&samples) < 200.0);
-    document.render.min_samples = 200;
-    let (samples, stopped_by) = samples_at_the_end(&mut session, &document);
-    assert_eq!(stopped_by, Some(StopReason::Noise));
-    assert!(fewest(&samples) >= 200.0, "{}", fewest(&samples));
 }
 
 /// Means of the luminances of several films, each film counting alike, with the variances of these means.

@@ -4,16 +4,15 @@ use std::path::Path;
 use std::time::Duration;
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::{App, Options};
 use glossmith::document::Document;
-use glossmith::scene::ModelSource;
 use glossmith::store::examples::still_life;
 use glossmith::store::{PRESETS, load_document, save_document};
 
-use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, wait};
+use super::ui::{Editor, editor_of, options, request, see, wait};
 
 /// An editor that keeps unsaved edits in a folder.
 pub(super) fn keeping_editor(data: &Path) -> Editor {
@@ -161,29 +160,6 @@ fn two_windows_keep_their_edits_apart() {
 }
 
 #[test]
-fn saved_and_undone_edits_are_not_kept() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = keeping_editor(folder.path());
-    edit_until_kept(&mut harness, folder.path(), 0.66);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    see(&mut harness, "the copy to go", |_| kept(folder.path()).is_empty());
-    assert!(closes(&mut harness));
-}
-
-#[test]
-fn a_data_folder_that_cannot_be_written_is_said_once() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let file = folder.path().join("file");
-    std::fs::write(&file, "no folder").expect("a temporary file");
-    let mut harness = keeping_editor(&file);
-    wait(&mut harness, "the message", |app| !app.messages().is_empty());
-    edit(&mut harness, 0.5);
-    edit(&mut harness, 0.6);
-    let about = |text: &&String| text.contains("not kept for a crash");
-    assert_eq!(harness.state().messages().iter().filter(about).count(), 1);
-}
-
-#[test]
 fn closing_asks_about_unsaved_edits_and_cancel_means_cancel() {
     let mut harness = editor_of(options());
     harness.run_steps(3);
@@ -237,32 +213,6 @@ fn closing_saves_first_where_that_was_chosen() {
 }
 
 #[test]
-fn a_save_that_fails_or_is_cancelled_does_not_close() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let inner = folder.path().join("inner");
-    std::fs::create_dir(&inner).expect("a temporary folder");
-    let project = inner.join("project.json");
-    save_document(&project, &options().document.expect("given")).expect("a temporary file");
-    let mut harness = editor_of(Options {
-        files: vec![project],
-        ..options()
-    });
-    wait(&mut harness, "the start", App::is_settled);
-    edit(&mut harness, 0.5);
-    std::fs::remove_dir_all(&inner).expect("the folder goes");
-    assert!(!closes(&mut harness));
-    press(&mut harness, "Save");
-    wait(&mut harness, "the message", |app| {
-        app.messages().iter().any(|text| text.contains("cannot be saved"))
-    });
-    for _ in 0..5 {
-        assert!(!commands(&harness).contains(&ViewportCommand::Close));
-        harness.step();
-    }
-    assert!(!closes(&mut harness), "the edits are still unsaved");
-}
-
-#[test]
 fn new_and_open_ask_and_what_can_be_undone_does_not() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let project = folder.path().join("project.json");
@@ -298,44 +248,4 @@ fn new_and_open_ask_and_what_can_be_undone_does_not() {
     request(&mut harness, Action::Do(Command::New));
     harness.run_steps(3);
     assert!(!asks(&harness), "a new document holds nothing to lose");
-}
-
-#[test]
-fn recent_files_are_kept_and_missing_ones_are_greyed() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let [there, gone] = ["there.json", "gone.json"].map(|name| folder.path().join(name));
-    let other = Document {
-        model: ModelSource::Sphere,
-        ..options().document.expect("given")
-    };
-    for path in [&there, &gone] {
-        save_document(path, &other).expect("a temporary file");
-    }
-    let mut harness = editor_of(options());
-    for path in [&there, &gone] {
-        request(&mut harness, Action::Open(path.clone()));
-        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        see(&mut harness, "the project", |harness| {
-            let title = ViewportCommand::Title(format!("{name} – Glossmith"));
-            commands(harness).contains(&title)
-        });
-    }
-    let mut memory = Memory::default();
-    eframe::App::save(harness.state_mut(), &mut memory);
-    drop(harness);
-    std::fs::remove_file(&gone).expect("it is there");
-    let mut harness = editor_remembering(memory, options());
-    harness.run_steps(2);
-    press(&mut harness, "File");
-    harness.run_steps(2);
-    harness.get_by_label_contains("Open recent").hover();
-    see(&mut harness, "the missing file", |harness| {
-        harness.query_by_label("gone.json (not there any more)").is_some()
-    });
-    let missing = harness.get_by_label("gone.json (not there any more)");
-    assert!(missing.accesskit_node().is_disabled());
-    press(&mut harness, "there.json");
-    wait(&mut harness, "the project", |app| {
-        app.document().model == ModelSource::Sphere
-    });
 }

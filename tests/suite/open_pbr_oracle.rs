@@ -5,12 +5,10 @@
 //! albedos with it.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
-use glossmith::compile::compile;
 use glossmith::document::{ImportLobe, MaterialSettings, assign};
-use glossmith::optics::fresnel::{fresnel, fresnel_dielectric, fresnel_f0};
+use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_f0};
 use glossmith::optics::layer::coat::inner_reflection;
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Precision};
@@ -283,139 +281,4 @@ fn darkened(material: &MaterialSettings, cosine: f64) -> [f64; 3] {
         let base = (head_on + (1.0 - head_on) * color) * (1.0 - metalness) + color * metalness;
         1.0 + ((1.0 - inner) / (1.0 - base * inner) - 1.0) * weight
     })
-}
-
-/// What an albedo is held to.
-enum Bare {
-    /// The oracle's own within 0.005.
-    Oracle,
-    /// The base below a gloss by the specification's albedo scaling: the oracle's takes less at grazing angles.
-    Scaled,
-    /// What a coloured metal's facets scatter more than once: there a lobe of its own, over separable masking, here a factor
-    /// (Turquin 2019).
-    Metal,
-    /// The same of glass, which shares that otherwise between both sides: there a lobe of its own, here as what facets
-    /// scatter once.
-    Glass,
-    /// The fuzz over what is below it: the oracle's table of fuzz is a fit here.
-    Fuzz,
-}
-
-fn bare_held_to(name: &str, material: &MaterialSettings) -> Bare {
-    let is_glass = name.starts_with("trans") || name == "film_transmission";
-    match name {
-        "ior3.0" => Bare::Scaled,
-        _ if name.starts_with("fuzz") => Bare::Fuzz,
-        _ if name.starts_with("metal_gold") && material.roughness >= 0.6 => Bare::Metal,
-        _ if is_glass => Bare::Glass,
-        _ => Bare::Oracle,
-    }
-}
-
-/// The mean of a material's Fresnel factor over all directions, by channel, and the factor head-on.
-fn mean_fresnel(material: &MaterialSettings) -> [[f64; 3]; 2] {
-    const STEPS: usize = 512;
-    let terms = compile(std::slice::from_ref(material)).0[0]
-        .cast::<f64>()
-        .fresnel_terms(false);
-    let mut mean = [0.0; 3];
-    for step in 0..STEPS {
-        let cosine = (step as f64 + 0.5) / STEPS as f64;
-        let there = fresnel(&terms, cosine).to_f64();
-        mean = [0, 1, 2].map(|channel| mean[channel] + 2.0 * cosine * there[channel] / STEPS as f64);
-    }
-    [mean, fresnel(&terms, 1.0).to_f64()]
-}
-
-/// The albedo of a rough metal with separable masking, by a sum over directions.
-fn separable_albedo(material: &MaterialSettings, cosine: f64) -> [f64; 3] {
-    const STEPS: usize = 96;
-    let evaluator = Evaluator::open(material, EngineChoice::Cpu, Precision::Double).unwrap();
-    let wo = direction(cosine.acos().to_degrees(), 0.0);
-    let middle = |step: usize| (step as f64 + 0.5) / STEPS as f64;
-    let cells = (0..STEPS * STEPS).map(|i| (middle(i / STEPS), 180.0 * middle(i % STEPS)));
-    let pairs: Vec<_> = cells
-        .map(|(height, phi)| [wo, direction(height.acos().to_degrees(), phi)])
-        .collect();
-    let alpha = f64::from(material.roughness).powi(2);
-    let mut sum = [0.0; 3];
-    for ([_, wi], found) in pairs.iter().zip(evaluator.evaluate(&pairs).unwrap()) {
-        // Both halves of the circle, per cell of equal solid angle.
-        let share = separable_over_correlated(alpha, [cosine, f64::from(wi.z)]) * TAU / pairs.len() as f64;
-        sum = [0, 1, 2].map(|channel| sum[channel] + share * found.value[channel]);
-    }
-    sum
-}
-
-#[test]
-fn albedos_are_the_oracle_s() {
-    let place = Workplace::new();
-    let (mut worst, mut faults) = ((0.0_f64, ""), Vec::new());
-    for (name, inputs, cells) in rows("albedo") {
-        let side = if cells[0] == "below" { -1.0 } else { 1.0 };
-        let numbers: Vec<f64> = cells[1..].iter().map(|cell| cell.parse().unwrap()).collect();
-        let cosine = side * numbers[0];
-        let with = |more: &str, is_single| albedo(&place, &format!("{inputs}{more}"), is_single, cosine).0;
-        let (found, material) = albedo(&place, inputs, false, cosine);
-        let mut near = |what: &str, found: f64, expected: f64, tolerance: f64| {
-            let is_near = (found - expected).abs() < tolerance;
-            if !is_near {
-                faults.push(format!("{name} at {cells:?}, {what}: {found} for {expected}"));
-            }
-            (found - expected).abs()
-        };
-        match bare_held_to(name, &material) {
-            Bare::Oracle => {
-                let all = found.reflected.into_iter().chain(found.transmitted);
-                for (value, expected) in all.zip(&numbers[1..]) {
-                    let off = near("albedo", value, *expected, 5e-3);
-                    worst = if off > worst.0 { (off, name) } else { worst };
-                }
-            }
-            Bare::Scaled => {
-                let kept = with(";base_weight=0", false).reflected[0];
-                near("scaled", found.reflected[0], kept + 0.8 * (1.0 - kept), 2e-3);
-            }
-            Bare::Metal => {
-                let to_white = ";base_weight=1;base_color=1 1 1;specular_color=1 1 1";
-                let [single, white] = ["", to_white].map(|more| with(more, true).reflected);
-                let separable = |more: &str| {
-                    let material = self::material(&place, &format!("{inputs}{more}"), true);
-                    separable_albedo(&material, numbers[0])
-                };
-                let [there, white_there] = ["", to_white].map(separable);
-                let [mean, head_on] = mean_fresnel(&material);
-                for channel in 0..3 {
-                    let factor = 1.0 + head_on[channel] * (1.0 - white[0]) / white[0];
-                    near("factor", found.reflected[channel], single[channel] * factor, 3e-3);
-                    let lobe = there[channel] + mean[channel].powi(2) * (1.0 - white_there[0]);
-                    near("its own lobe", lobe, numbers[1 + channel], 5e-3);
-                }
-            }
-            Bare::Glass => {
-                let single = with("", true);
-                for channel in 0..3 {
-                    let [reflected, transmitted] = [single.reflected[channel], single.transmitted[channel]];
-                    let kept = reflected + transmitted;
-                    near("reflected", found.reflected[channel], reflected / kept, 3e-3);
-                    near("transmitted", found.transmitted[channel], transmitted / kept, 3e-3);
-                    // Of the light that is lost either side gets some there.
-                    for (once, expected) in [(reflected, numbers[1 + channel]), (transmitted, numbers[4 + channel])] {
-                        let least = expected.clamp(once, once + f64::max(1.0 - kept, 0.0));
-                        near("a share of what is lost", least, expected, 5e-3);
-                    }
-                }
-            }
-            Bare::Fuzz => {
-                let closed = under_fuzz(&place, inputs, cosine);
-                for channel in 0..3 {
-                    near("fuzz", found.reflected[channel], closed[channel], 3e-3);
-                    // The fits leave the table by up to 0.0099, at roughness 0.7 head-on.
-                    near("table of fuzz", found.reflected[channel], numbers[1 + channel], 0.011);
-                }
-            }
-        }
-    }
-    println!("albedos: {} off at most, {}", worst.0, worst.1);
-    assert!(faults.is_empty(), "{faults:#?}");
 }

@@ -5,10 +5,8 @@ use std::sync::Arc;
 
 use glossmith::compile::compile_textured;
 use glossmith::document::{Document, PixelFilter, texture_assignments};
-use glossmith::job::effect::EffectId;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::{
     Pack, TextureAssignment, TextureChannel, TextureProjection, TextureSpace, TextureTarget, Textures, UserTexture,
@@ -19,10 +17,8 @@ use glossmith::store::{PRESETS, load_document, load_material, save_document, sav
 use image::{Rgba, RgbaImage};
 use serde_json::json;
 
-use crate::cli_support::{Workplace, read_exr};
 use crate::gltf_builder::Folder;
 use crate::random_documents::of_material;
-use crate::renders::{assert_same_picture, render};
 use crate::textures::{four_texels, textured_square};
 
 /// The picture of [`four_texels`] in a file.
@@ -192,23 +188,6 @@ fn channels_spaces_strength_and_inversion_are_what_they_say() {
     assert!((number - share).abs() < 1e-6);
 }
 
-/// A picture of one value is a number, with all that is done to it.
-#[test]
-fn own_pictures_of_one_value_are_numbers() {
-    let grey = RgbaImage::from_pixel(2, 2, Rgba([64, 128, 200, 255]));
-    let half = UserTexture {
-        strength: 0.5,
-        inverted: true,
-        ..UserTexture::default()
-    };
-    let slot = with(&square(), TextureTarget::Roughness, &half, &grey).slots[0];
-    let [value, ..] = slot.constant(TextureTarget::Roughness).unwrap();
-    assert!((value - (1.0 - 0.5 * 64.0 / 255.0)).abs() < 1e-6, "{value}");
-    let colour = with(&square(), TextureTarget::BaseColor, &UserTexture::default(), &grey).slots[0];
-    let [r, ..] = colour.constant(TextureTarget::BaseColor).unwrap();
-    assert!((f64::from(r) - linear(64)).abs() < 1e-6);
-}
-
 /// A bump to the right of a picture that is turned a quarter is a bump upwards; upside down, it is one downwards.
 #[test]
 fn normals_turn_with_their_picture() {
@@ -308,7 +287,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
 }
 
 /// A shaderball with a picture on everything.
-fn dressed(folder: &Folder) -> Document {
+pub fn dressed(folder: &Folder) -> Document {
     let mut document = Document {
         model: ModelSource::Shaderball,
         ..Document::default()
@@ -345,49 +324,6 @@ fn dressed(folder: &Folder) -> Document {
 }
 
 #[test]
-fn both_engines_show_pictures_of_ones_own() {
-    let folder = Folder::new();
-    let document = dressed(&folder);
-    let cpu = render(EngineChoice::Cpu, &document);
-    let gpu = render(EngineChoice::Gpu, &document);
-    assert_same_picture(&cpu, &gpu, "everything");
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    session.submit(&document).unwrap();
-    let plan = session.job().unwrap().plan.clone();
-    assert!(plan.has(EffectId::CoatTexture) && plan.has(EffectId::BoxProjection));
-    // Each of them shows.
-    for &target in TextureTarget::ALL {
-        let mut other = document.clone();
-        let texture = other.materials[0].user_textures.get_mut(target).unwrap();
-        (texture.rotation_deg, texture.scale) = (texture.rotation_deg + 90.0, 2.5);
-        let turned = render(EngineChoice::Cpu, &other);
-        let difference: f64 = std::iter::zip(turned.luminance(), cpu.luminance())
-            .map(|(a, b)| (a - b).abs())
-            .sum();
-        assert!(difference > 0.0, "{} is not seen", target.name());
-    }
-}
-
-/// Editing how a picture lies packs none of it anew.
-#[test]
-fn turning_a_picture_keeps_its_texels() {
-    let folder = Folder::new();
-    let mut document = dressed(&folder);
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    session.submit(&document).unwrap();
-    let before = session.job().unwrap().textures.clone();
-    document.materials[0]
-        .user_textures
-        .get_mut(TextureTarget::BaseColor)
-        .unwrap()
-        .rotation_deg = 77.0;
-    session.submit(&document).unwrap();
-    let after = session.job().unwrap().textures.clone();
-    assert!(before.records != after.records);
-    assert!(Arc::ptr_eq(&before.words, &after.words));
-}
-
-#[test]
 fn files_keep_pictures_by_relative_paths() {
     let folder = Folder::new();
     let document = dressed(&folder);
@@ -418,179 +354,4 @@ fn files_keep_pictures_by_relative_paths() {
     std::fs::write(&path, broken).unwrap();
     let error = load_document(&path).unwrap_err().to_string();
     assert!(error.contains("scale") && error.contains("-2"), "{error}");
-}
-
-/// Projects of before had pictures beside the model.
-#[test]
-fn projects_of_before_keep_their_pictures() {
-    let folder = Folder::new();
-    own_texture(&folder);
-    let path = folder.path("old.json");
-    let old = json!({"glossmith-document": 1, "model": "sphere", "import": {"pictures": [{"slot": 0, "file": "own.png"}]},
-        "materials": [{"name": "Wood", "material": {"base.color_texture": true}}]});
-    std::fs::write(&path, old.to_string()).unwrap();
-    let document = load_document(&path).unwrap().value;
-    let own = document.materials[0]
-        .user_textures
-        .get(TextureTarget::BaseColor)
-        .unwrap();
-    assert_eq!(own.file, folder.path("own.png"));
-    save_document(&path, &document).unwrap();
-    let text = std::fs::read_to_string(&path).unwrap();
-    assert!(!text.contains("\"pictures\""), "{text}");
-}
-
-#[test]
-fn the_command_line_puts_pictures_on_materials() {
-    let place = Workplace::new();
-    let save = |name: &str, picture: RgbaImage| picture.save(place.path(name)).unwrap();
-    save(
-        "red.png",
-        RgbaImage::from_fn(2, 2, |x, y| Rgba([255 * ((x + y) % 2) as u8, 0, 0, 255])),
-    );
-    std::fs::create_dir(place.path("wood")).unwrap();
-    save(
-        "wood/wood_basecolor.png",
-        RgbaImage::from_pixel(2, 2, Rgba([0, 255, 0, 255])),
-    );
-    save("wood/wood_rough.png", RgbaImage::from_pixel(2, 2, Rgba([200; 4])));
-    let scene = "--model sphere --environment furnace --set base.metalness=0 --set specular.weight=0";
-    let picture = |options: &str| {
-        place.done(&format!(
-            "render --engine cpu --size 24x24 --samples 16 --output t.exr {scene} {options}"
-        ));
-        read_exr(&place.path("t.exr"))
-    };
-    // Half of a checkerboard of red and black, wherever it lies.
-    let checkered =
-        picture("--texture base-color=red.png --set base.color_map.projection=box --set base.color_map.scale=4");
-    let plain = picture("--set base.color=1,1,1");
-    let [red, green] = [0, 1].map(|channel| checkered.mean(channel) / plain.mean(channel));
-    assert!(red > 0.5 && red < 0.9 && green < red - 0.2, "{red} {green}");
-    let turned = picture(
-        "--texture base-color=red.png --set base.color_map.projection=box --set base.color_map.scale=4 \
-         --set base.color_map.rotation=45",
-    );
-    assert!(turned.difference(&checkered) > 0.01);
-    // A folder by the names in it; a slot by number and by name.
-    let set = picture("--texture wood");
-    assert!(
-        set.at(12, 12)[1] > 0.5 && set.at(12, 12)[0] < 0.1,
-        "{:?}",
-        set.at(12, 12)
-    );
-    picture("--texture 1:base-color=red.png");
-    place.refused(
-        1,
-        &format!("render {scene} --output t.exr --texture nowhere:base-color=red.png"),
-        &["no material nowhere"],
-    );
-    place.refused(
-        2,
-        "render --texture base-color=gone.png --output t.exr",
-        &["gone.png: there is no such file"],
-    );
-    place.refused(
-        2,
-        "render --texture shine=red.png --output t.exr",
-        &["shine takes no texture"],
-    );
-    place.refused(
-        2,
-        "render --texture red.png --output t.exr",
-        &["red.png: no name here says"],
-    );
-    place.refused(
-        1,
-        "render --output t.exr --set base.color_map.scale=2",
-        &["there is no such texture"],
-    );
-    place.refused(
-        2,
-        "render --output t.exr --texture base-color=red.png --set base.color_map.scale=0",
-        &["does not take 0"],
-    );
-    place.refused(
-        2,
-        "render --output t.exr --texture base-color=red.png --set base.color_map.glow=0",
-        &["glow", "rotation"],
-    );
-    // What is missing later is told, and the rest goes on.
-    let mut document = Document {
-        model: ModelSource::Sphere,
-        ..Document::default()
-    };
-    document.materials[0].put_texture(
-        TextureTarget::Roughness,
-        UserTexture::of(place.path("wood/wood_rough.png")),
-    );
-    (document.render.width, document.render.height, document.render.samples) = (8, 8, 1);
-    save_document(&place.path("p.json"), &document).unwrap();
-    std::fs::remove_file(place.path("wood/wood_rough.png")).unwrap();
-    let run = place.done("render p.json --engine cpu --output t.exr");
-    assert!(
-        run.stderr
-            .contains("wood_rough.png: the roughness texture can't be had"),
-        "{}",
-        run.stderr
-    );
-}
-
-/// What a glTF file can say of them goes with it, and looks the same there; what it can't is told.
-#[test]
-fn pictures_of_ones_own_travel_in_gltf() {
-    let folder = Folder::new();
-    let place = Workplace::new();
-    let (buffer, json) = textured_square(&json!({"name": "Square"}), &[], &json!({}));
-    std::fs::write(place.path("square.glb"), crate::gltf_builder::glb(&json, &buffer.bytes)).unwrap();
-    let own = own_texture(&folder);
-    let mut document = Document {
-        model: ModelSource::File(place.path("square.glb")),
-        ..Document::default()
-    };
-    document.lighting.environment = EnvironmentSource::Studio;
-    (document.camera.yaw_deg, document.camera.pitch_deg) = (20.0, 15.0);
-    (document.render.width, document.render.height, document.render.samples) = (32, 32, 128);
-    let material = document.material_mut(0);
-    material.lobe = glossmith::optics::lobe::Lobe::Ggx;
-    for (target, channel) in [
-        (TextureTarget::BaseColor, TextureChannel::Auto),
-        (TextureTarget::Roughness, TextureChannel::Green),
-        (TextureTarget::Metalness, TextureChannel::Red),
-        (TextureTarget::Emission, TextureChannel::Auto),
-        (TextureTarget::Fuzz, TextureChannel::Auto),
-        (TextureTarget::FuzzColor, TextureChannel::Auto),
-        (TextureTarget::FuzzRoughness, TextureChannel::Green),
-    ] {
-        let texture = UserTexture {
-            channel,
-            scale: 2.0,
-            rotation_deg: 30.0,
-            strength: 0.6,
-            inverted: target == TextureTarget::Roughness,
-            ..own.clone()
-        };
-        material.put_texture(target, texture);
-    }
-    let boxed = UserTexture {
-        projection: TextureProjection::Box,
-        ..own
-    };
-    material.put_texture(TextureTarget::Coat, boxed);
-    (material.coat_weight, material.emission_strength) = (0.0, 0.3);
-    material.textures.coat = true;
-    save_document(&place.path("scene.json"), &document).unwrap();
-    place.done("convert scene.json scene.glb --report losses.json");
-    let told = place.read("losses.json");
-    assert!(told.contains("your texture of the roughness") && told.contains("your texture of the metalness"));
-    assert!(told.contains("no projection from the sides of a box"), "{told}");
-    let mut there = document.clone();
-    there.model = ModelSource::File(place.path("scene.glb"));
-    let model = glossmith::import::load(&there.model).unwrap();
-    assert_eq!(model.textures.len(), 6, "{:?}", model.slots[0]);
-    there.materials = glossmith::document::of_model::materials_of(&model, glossmith::document::ImportLobe::Ggx);
-    there.materials[0].fresnel = document.materials[0].fresnel;
-    let [here, there] = [&document, &there].map(|document| render(EngineChoice::Cpu, document));
-    let means = [here, there].map(|film| film.luminance().iter().sum::<f64>());
-    assert!((means[0] / means[1] - 1.0).abs() < 0.02, "{means:?}");
 }

@@ -19,17 +19,15 @@ pub struct Pair {
     assets: Assets,
     cpu: Session,
     gpu: Session,
-    /// Changes what the GPU is given: to see the engines part.
-    pub tamper: fn(&mut Document),
 }
 
 /// How far two engines are apart.
 #[derive(Clone, Copy, Debug)]
-pub struct Apart {
+struct Apart {
     /// The share of pixels that are off.
-    pub pixels: f64,
+    pixels: f64,
     /// The whole image, relative.
-    pub whole: f64,
+    whole: f64,
     /// The pixel that is off the most.
     worst: [u32; 2],
 }
@@ -42,7 +40,6 @@ impl Pair {
             cpu: open(EngineChoice::Cpu),
             gpu: open(EngineChoice::Gpu),
             assets,
-            tamper: |_| {},
         }
     }
 
@@ -57,18 +54,16 @@ impl Pair {
         let mut document = document.clone();
         // One kernel for all documents.
         document.render.effects = EffectSwitches::all_on();
-        let mut of_gpu = document.clone();
-        (self.tamper)(&mut of_gpu);
-        [(&mut self.cpu, &document), (&mut self.gpu, &of_gpu)].map(|(session, document)| {
+        [&mut self.cpu, &mut self.gpu].map(|session| {
             session.reset();
-            session.submit(document).unwrap();
+            session.submit(&document).unwrap();
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
             session.film().unwrap().clone()
         })
     }
 
     /// Compares a document's pictures.
-    pub fn compare(&mut self, document: &Document) -> Apart {
+    fn compare(&mut self, document: &Document) -> Apart {
         let [cpu, gpu] = self.films(document);
         assert_eq!((cpu.dropped(), gpu.dropped()), (0, 0));
         let pixels = cpu.pixel_count();
@@ -114,7 +109,7 @@ impl Pair {
 
     /// Where the engines part on the first samples of a pixel: the fewest bounces with which they differ, and what the
     /// processor's path did from there on.
-    pub fn parting(&mut self, document: &Document, pixel: [u32; 2]) -> String {
+    fn parting(&mut self, document: &Document, pixel: [u32; 2]) -> String {
         let mut document = document.clone();
         let index = (pixel[1] * document.render.width + pixel[0]) as usize;
         let samples = document.render.samples;
@@ -142,7 +137,7 @@ impl Pair {
     }
 
     /// The account of the processor's path.
-    pub fn account(&mut self, document: &Document, pixel: [u32; 2], sample: u32) -> PathAccount {
+    fn account(&mut self, document: &Document, pixel: [u32; 2], sample: u32) -> PathAccount {
         self.cpu.submit(document).unwrap();
         let model = self.assets.model(&document.model, &document.import).unwrap();
         explain(document, &model, self.cpu.job().unwrap(), pixel, sample)

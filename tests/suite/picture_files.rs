@@ -4,7 +4,6 @@ use std::collections::HashMap;
 use std::io::Cursor;
 use std::path::Path;
 use std::time::Duration;
-
 use glossmith::document::{AreaLight, Background, Document, MaterialSettings, assign};
 use glossmith::job::film::{Film, Image};
 use glossmith::optics::tone::ToneCurve;
@@ -15,7 +14,6 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::picture::{load_picture_document, parse_picture_document, png_bytes};
 use glossmith::store::project::document_text;
 use glossmith::store::{FileError, Loaded, snapshots};
-
 use crate::cli_support::{Workplace, channels};
 use crate::support::Random;
 
@@ -209,37 +207,6 @@ fn the_same_picture_is_the_same_file() {
     for _ in 0..12 {
         assert!(written() == first, "another file");
     }
-}
-
-#[test]
-fn the_command_line_writes_the_film() {
-    let place = Workplace::new();
-    let run = |outputs: &str| {
-        place.done(&format!(
-            "render --model sphere --background transparent --area-light 80,0,3,1,1,10,#ff4020 --set base.metalness=0 \
-             --set base.color=0.9,0.3,0.05 --tone-map none --exposure 1 --size 21x17 --samples 5 --engine cpu {outputs}"
-        ))
-    };
-    run("--output plain.exr");
-    run("--aovs --output layers.exr --output a.png --output a.hdr");
-    // The .png says what was rendered.
-    let document = load_picture_document(&place.path("a.png")).unwrap().value;
-    let (film, layers) = rendered(&document);
-    assert_color(&channels(&place.path("plain.exr")), &film);
-    assert_layers(&channels(&place.path("layers.exr")), &film, &layers);
-    assert_png(&place.path("a.png"), &film, 2.0);
-    assert_hdr(&place.path("a.hdr"), &film);
-}
-
-#[test]
-fn a_pinned_state_keeps_its_pixels() {
-    let place = Workplace::new();
-    let pixels = image::RgbaImage::from_fn(7, 5, |x, y| {
-        image::Rgba([10 * x as u8, 200, 20 * y as u8, 30 * x as u8])
-    });
-    let path = snapshots::add(&place.path("pinned"), &document(), [7, 5], pixels.as_raw()).unwrap();
-    assert_eq!(image::open(&path).unwrap().into_rgba8(), pixels);
-    assert_eq!(load_picture_document(&path).unwrap().value, document());
 }
 
 const SAVED_SIZE: [u32; 2] = [5, 3];

@@ -1,31 +1,21 @@
 //! The plan: its rules, those broken on purpose, and switches.
 
 use std::collections::HashSet;
-use std::sync::Arc;
 use std::time::Duration;
 
-use glossmith::document::effect::{EFFECTS, Effect, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Denoise, Document, GroundKind, MaterialSettings, assign};
-use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
+use glossmith::document::{AreaLight, Document, MaterialSettings};
 use glossmith::job::Job;
-use glossmith::job::effect::{ANY, Decision, EffectId};
+use glossmith::job::effect::EffectId;
 use glossmith::job::film::Film;
-use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
-use crate::fuzz_layer::fuzzy_on_a_box;
-use crate::gltf_builder::Folder;
-use crate::gltf_meaning::shining_by_vertices;
-use crate::own_textures::coated_on_a_box;
-use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
-use crate::random_documents::{apart, of_material, small};
-use crate::terminator::coarse;
-use crate::textures::{all_at_once, coated_all_over};
-use crate::thin_film::filmed_on_a_box;
+use crate::plan_kernels::assert_same_but_for_rounding;
+use crate::random_documents::{of_material, small};
 
 type Edit = fn(&mut Document);
 
@@ -137,127 +127,6 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
         let mut other = plane.clone();
         edit(&mut other);
         assert!(job(&other).plan.has(EffectId::Horizon), "{what}");
-    }
-}
-
-/// A document for each effect that has code of its own, which calls for it.
-fn needing(effect: &str) -> Document {
-    let assignments: &[&str] = match effect {
-        "base" => &["specular.fresnel=schlick", "base.metalness=0"],
-        "coat" => &["coat.weight=1"],
-        "coat-ggx" => &["coat.weight=1", "coat.lobe=ggx", "coat.roughness=0.9"],
-        "coat-darkening" => &["base.metalness=0", "coat.weight=1", "coat.ior=2"],
-        "coat-absorption" => &["base.metalness=0", "coat.weight=1", "coat.color=0.2,0.5,0.9"],
-        "fuzz" => &["fuzz.weight=1", "fuzz.roughness=1"],
-        "thin-film" => &["thin_film.weight=1", "thin_film.ior=2"],
-        "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
-        "diffuse-roughness" => &["base.metalness=0", "base.diffuse_roughness=1"],
-        "multiple-scattering" => &["specular.lobe=ggx", "specular.roughness=0.9"],
-        "alpha" => &["geometry.opacity=0.4"],
-        "lobe" | "curve" | "horizon" => &["specular.roughness=0.8"],
-        "anisotropy" => &["specular.anisotropy=0.8", "specular.roughness=0.5"],
-        "emission" => &["emission.strength=2"],
-        "transmission" => &["base.metalness=0", "transmission.weight=1"],
-        "absorption" => &[
-            "base.metalness=0",
-            "transmission.weight=1",
-            "transmission.color=0.2,0.5,0.9",
-            "transmission.depth=0.5",
-        ],
-        _ => &[],
-    };
-    let mut material = MaterialSettings::default();
-    for assignment in assignments {
-        assign(&mut material, assignment).unwrap();
-    }
-    let mut document = of_material(ModelSource::Shaderball, material);
-    match effect {
-        "depth-of-field" => document.camera.aperture = 0.5,
-        "firefly-clamp" => document.render.firefly_clamp = Some(0.01),
-        "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
-        "spot" => document.lighting.area_lights.push(AreaLight::spot()),
-        "guides" => document.view.denoise = Denoise::Fast,
-        "light-groups" => document.lighting.light_groups = true,
-        "shadow-catcher" => {
-            document.ground = true;
-            document.lighting.ground.kind = GroundKind::ShadowCatcher;
-        }
-        _ => {}
-    }
-    document
-}
-
-/// The wrong decision: what is called for is left out, or another is chosen.
-fn broken(effect: &Effect, plan: &Plan) -> Decision {
-    let is_choice = effect.id.constant().is_some_and(|constant| constant.general == ANY);
-    let (_, right) = plan.table().find(|(of, _)| *of == effect.id).unwrap();
-    match right.value {
-        _ if !is_choice => Decision::off("broken on purpose"),
-        0 => Decision::which(1, "broken on purpose"),
-        _ => Decision::which(0, "broken on purpose"),
-    }
-}
-
-/// A kernel made by a wrong decision draws another picture than the general kernel does: by more than the rounding that
-/// the kernel of the right decision is allowed (`plan_kernels.rs`), which need not be compiled here.
-#[test]
-fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
-    let folder = Folder::new();
-    let switched = |effect: &&Effect| effect.id.constant().is_some();
-    // One engine, which keeps the kernels that it has compiled.
-    let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
-    let mut picture = |job: Job| {
-        engine.submit(Arc::new(job)).unwrap();
-        engine.step(Duration::from_secs(60), 4).unwrap();
-        let film = engine.film().unwrap();
-        let lights: Vec<_> = (0..film.light_groups())
-            .map(|group| film.light_image(group).pixels)
-            .collect();
-        (film.luminance(), (film.guides.clone(), lights))
-    };
-    for effect in EFFECTS.iter().filter(switched) {
-        let is_of_texture =
-            effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
-        let document = if ["coat-texture", "box-projection"].contains(&effect.name()) {
-            coated_on_a_box(&folder)
-        } else if effect.id == EffectId::CoatNormalMap {
-            small(coated_all_over(&folder))
-        } else if effect.id == EffectId::FilmTexture {
-            filmed_on_a_box(&folder)
-        } else if effect.id == EffectId::FuzzTexture {
-            fuzzy_on_a_box(&folder)
-        } else if is_of_texture {
-            small(all_at_once(&folder))
-        } else if effect.id == EffectId::ShadowTerminator {
-            small(coarse(&folder))
-        } else if effect.id == EffectId::VertexColors {
-            small(shining_by_vertices(&folder))
-        } else {
-            needing(effect.name())
-        };
-        let right = job(&document);
-        assert!(right.plan.has(effect.id), "{} is not called for", effect.name());
-        let wrong = Job {
-            plan: right.plan.clone().with(effect.id, broken(effect, &right.plan)),
-            ..right.clone()
-        };
-        let general = Job {
-            plan: Plan::general(),
-            ..right
-        };
-        let ((general, all_layers), (wrong, layers)) = (picture(general), picture(wrong));
-        let [off, whole] = apart(&wrong, &general);
-        println!(
-            "without {}: {:.0} % of pixels off, the whole by {whole:.1e}",
-            effect.name(),
-            100.0 * off
-        );
-        let shows = if [EffectId::Guides, EffectId::LightGroups].contains(&effect.id) {
-            layers != all_layers
-        } else {
-            off >= ROUNDED_PIXELS || whole >= ROUNDED_WHOLE
-        };
-        assert!(shows, "{}: leaving it out shows nowhere", effect.name());
     }
 }
 

@@ -375,6 +375,7 @@ fn the_general_kernel_draws_what_the_plan_says() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn kernels_of_shipped_materials_draw_what_the_general_one_does() {
     let mut engine = gpu();
     let shipped = PRESETS

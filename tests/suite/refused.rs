@@ -5,13 +5,12 @@ use std::time::{Duration, Instant};
 use glossmith::document::Document;
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
 use glossmith::job::film::Image;
-use glossmith::render::worker::{Activity, Pace, Worker};
 use glossmith::render::{Assets, EngineChoice, EngineKind, Session, SessionError};
 use glossmith::scene::environment::{Environment, EnvironmentSource};
 use wgpu::BufferUsages;
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
-use super::worker::{errors, finished, small_document, wait};
+use super::worker::small_document;
 
 const STEP: Duration = Duration::from_millis(20);
 /// On a machine that has other things to do.
@@ -164,52 +163,4 @@ fn the_processor_finishes_what_the_gpu_cannot_take_over() {
         session.step(STEP).expect("the GPU can");
     }
     assert!(session.device().is_some(), "the next edit gives the GPU its chance");
-}
-
-#[test]
-fn the_window_keeps_gpu_and_picture_where_an_edit_is_too_large() {
-    let worker = Worker::spawn(EngineChoice::Gpu, || {}).expect("a thread");
-    let mut document = small_document();
-    document.render.samples = 1_000_000;
-    let revision = worker.submit(&document, Pace::Still);
-    wait(&worker, "the GPU's picture", |snapshot| {
-        snapshot.picture.is_some() && !snapshot.progress.is_fallback
-    });
-    // The model has room, a row of tiles has not.
-    worker.limit_buffers(3 << 20);
-    // So flat that no smaller picture is shown first.
-    let large = Document {
-        render: glossmith::document::RenderSettings {
-            width: 16_000,
-            height: 16,
-            ..document.render
-        },
-        ..document.clone()
-    };
-    worker.submit(&large, Pace::Still);
-    let mut told = Vec::new();
-    let begun = Instant::now();
-    while told.is_empty() && begun.elapsed() < PATIENCE {
-        told.extend(errors(&worker));
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    assert!(told.iter().any(|text| text.contains("MiB at once")), "{told:?}");
-    let before = worker.snapshot();
-    assert_eq!(before.activity, Activity::Rendering, "the old picture goes on");
-    let samples = before.progress.samples_per_pixel;
-    let after = wait(&worker, "more samples", |snapshot| {
-        snapshot.progress.samples_per_pixel > samples
-    });
-    let picture = after.picture.as_ref().expect("it is shown");
-    assert_eq!((&*picture.document, picture.revision), (&document, revision));
-    assert_eq!(after.engine.as_ref().expect("it is open").kind, EngineKind::Gpu);
-    worker.limit_buffers(u64::MAX);
-    document.render.samples = 8;
-    document.materials[0].roughness = 0.9;
-    let picture = finished(&worker, worker.submit(&document, Pace::Still));
-    assert_eq!(*picture.document, document);
-    let snapshot = worker.snapshot();
-    assert_eq!(snapshot.engine.as_ref().expect("it is open").kind, EngineKind::Gpu);
-    assert!(!snapshot.progress.is_fallback);
-    assert_eq!(errors(&worker), Vec::<String>::new());
 }

@@ -102,30 +102,3 @@ fn values_are_those_of_the_model_and_the_same_both_ways() {
         assert!((found[2].density - f64::from(aside.z) / PI).abs() < 1e-6, "{engine:?}");
     }
 }
-
-/// Under a gloss and beside refraction a white base stays white, from both sides.
-#[test]
-fn white_stacks_over_a_rough_base_keep_all_light() {
-    let cases: [(&[&str], f64); 3] = [
-        (&["specular.weight=1", "specular.roughness=0.4"], 1.0),
-        (&["coat.weight=1", "coat.roughness=0.3"], 1.0),
-        (
-            &["specular.weight=1", "transmission.weight=0.5", "specular.roughness=0.3"],
-            -1.0,
-        ),
-    ];
-    for (assignments, side) in cases {
-        let mut material = matt(1.0, 1.0);
-        assignments
-            .iter()
-            .for_each(|assignment| assign(&mut material, assignment).unwrap());
-        for (engine, precision) in ENGINES {
-            let evaluator = Evaluator::open(&material, engine, precision).unwrap();
-            for cosine in COSINES {
-                let found = evaluator.albedo(side * cosine, 1 << 15, 3).unwrap();
-                let sum = found.reflected[0] + found.transmitted[0];
-                assert!((sum - 1.0).abs() < 4e-3, "{engine:?}, {assignments:?}, {cosine}: {sum}");
-            }
-        }
-    }
-}

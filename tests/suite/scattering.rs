@@ -19,9 +19,6 @@ const ENGINES: [(EngineChoice, Precision); 2] = [
     (EngineChoice::Cpu, Precision::Single),
     (EngineChoice::Cpu, Precision::Double),
 ];
-/// The GPU, which compiles a kernel for each material that is asked about: for few of them.
-const GPU: (EngineChoice, Precision) = (EngineChoice::Gpu, Precision::Single);
-
 fn material(assignments: &[&str]) -> MaterialSettings {
     let mut material = MaterialSettings::default();
     for assignment in ["specular.lobe=ggx"].iter().chain(assignments) {
@@ -62,23 +59,6 @@ fn a_white_metal_reflects_all_light_at_every_roughness() {
     }
 }
 
-#[test]
-fn the_gpu_keeps_all_light_too() {
-    let metal = [
-        "base.color=1,1,1",
-        "base.metalness=1",
-        "specular.fresnel=schlick",
-        "specular.roughness=0.8",
-    ];
-    let clear = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0.6"];
-    for assignments in [&metal[..], &clear] {
-        for (albedo, cosine) in albedos(&material(assignments), GPU, 1.0).iter().zip(COSINES) {
-            let sum = albedo.reflected[1] + albedo.transmitted[1];
-            assert_albedo(sum, 1.0, 2e-3, &format!("GPU, {assignments:?}, {cosine}"));
-        }
-    }
-}
-
 /// Light that is lost between white facets comes back with another factor of the colour.
 #[test]
 fn a_coloured_metal_takes_its_colour_twice() {
@@ -94,42 +74,6 @@ fn a_coloured_metal_takes_its_colour_twice() {
     for (albedo, kept) in found.iter().zip(kept) {
         let expected = color * (kept + color * (1.0 - kept));
         assert_albedo(albedo.reflected[0], expected, 2e-3, "coloured metal");
-    }
-}
-
-#[test]
-fn white_stacks_of_rough_ggx_keep_all_light() {
-    let clear = ["base.color=1,1,1", "base.metalness=0", "transmission.weight=1"];
-    let cases: [(&[&str], f64); 8] = [
-        (&["specular.roughness=0.6"], 2e-3),
-        (&["specular.roughness=1"], 2e-3),
-        (&["specular.roughness=0.6", "specular.ior=3"], 2e-3),
-        (&["specular.roughness=0.5", "specular.ior=1"], 2e-3),
-        (&["specular.roughness=0.4", "transmission.roughness=0.5"], 3e-3),
-        // Tables over the roughness are linear between few nodes.
-        (&["specular.roughness=0.62", "base.metalness=0.5"], 6e-3),
-        (&["specular.roughness=0.6", "transmission.weight=0.5"], 4e-3),
-        (
-            &["specular.roughness=0.7", "transmission.weight=0", "base.metalness=0.4"],
-            6e-3,
-        ),
-    ];
-    for engine in ENGINES {
-        for (assignments, tolerance) in cases {
-            let material = material(&[&clear[..], assignments].concat());
-            let sides: &[f64] = if material.transmits() { &[1.0, -1.0] } else { &[1.0] };
-            for side in sides {
-                for (albedo, cosine) in albedos(&material, engine, *side).iter().zip(COSINES) {
-                    let sum = albedo.reflected[1] + albedo.transmitted[1];
-                    assert_albedo(
-                        sum,
-                        1.0,
-                        tolerance,
-                        &format!("{engine:?}, {assignments:?}, {}", side * cosine),
-                    );
-                }
-            }
-        }
     }
 }
 

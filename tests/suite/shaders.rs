@@ -5,7 +5,7 @@ use glossmith::cpu::integrator;
 use glossmith::document::Document;
 use glossmith::gpu::Traversal;
 use glossmith::gpu::shader::{
-    EXTENSIONS, EXTRA, FOLDER_VARIABLE, GENERATED, Linked, link, link_for, link_with, module_names,
+    GENERATED, Linked, link, link_for, module_names,
 };
 use glossmith::job::plan::Plan;
 use glossmith::job::tiles::TILE_SIDE;
@@ -102,78 +102,6 @@ fn every_module_links_and_validates_by_itself() {
         "{:?}",
         module_names()
     );
-}
-
-#[test]
-fn a_mistake_is_located_by_module_and_line() {
-    let parsed = link_with(&["optics/fresnel"], "\nfn broken() -> f32 {\n    return nothing;\n}").unwrap();
-    let message = validate(&parsed).unwrap_err();
-    assert!(message.starts_with(&format!("{EXTRA}, line 3:")), "{message}");
-    let typed = link_with(
-        &["optics/fresnel"],
-        "fn broken() -> f32 {\n    return fresnel_f0(1u);\n}",
-    )
-    .unwrap();
-    let message = validate(&typed).unwrap_err();
-    assert!(message.starts_with(&format!("{EXTRA}, line 2:")), "{message}");
-    let mut linked = link("pass/path_trace").unwrap();
-    // A mistake in the middle of a module in the middle.
-    linked.source = linked
-        .source
-        .replace("let t1 = a2_plus_b2 + cos2;", "let t1 = a2_plus_b2 + cos3;");
-    let file = std::fs::read_to_string(format!("{}/shaders/optics/fresnel.wgsl", crate::ROOT)).unwrap();
-    let line = 1 + file
-        .lines()
-        .position(|line| line.contains("let t1 = a2_plus_b2 + cos2;"))
-        .unwrap();
-    let message = validate(&linked).unwrap_err();
-    assert!(
-        message.starts_with(&format!("optics/fresnel, line {line}:")),
-        "{message}"
-    );
-    assert!(link("optics/frensel").unwrap_err().contains("optics/frensel"));
-}
-
-#[test]
-fn shaders_are_read_from_the_folder_that_is_named() {
-    let folder = tempfile::TempDir::new().unwrap();
-    std::fs::create_dir(folder.path().join("pass")).unwrap();
-    std::fs::write(folder.path().join("pass/path_trace.wgsl"), "fn broken(").unwrap();
-    let run = std::process::Command::new(crate::program())
-        .args(["render", "--engine", "gpu", "--size", "8x8", "--samples", "1"])
-        .current_dir(folder.path())
-        .env(FOLDER_VARIABLE, folder.path())
-        .output()
-        .unwrap();
-    let message = String::from_utf8_lossy(&run.stderr);
-    assert!(!run.status.success() && message.contains("path_trace"), "{message}");
-}
-
-#[test]
-fn locate_knows_every_line() {
-    for &traversal in Traversal::ALL {
-        assert_lines_are_located(&link_for("pass/path_trace", traversal).unwrap());
-    }
-}
-
-fn assert_lines_are_located(linked: &Linked) {
-    let mut compared = 0;
-    for (number, line) in (1..).zip(linked.source.lines()) {
-        let (module, place) = linked.locate(number);
-        let path = format!("{}/shaders/{module}.wgsl", crate::ROOT);
-        let Ok(file) = std::fs::read_to_string(path) else {
-            let is_generated = GENERATED.iter().any(|(name, _)| *name == module);
-            assert!(is_generated || module == EXTENSIONS, "{module} is no file");
-            continue;
-        };
-        let original = file.lines().nth(place - 1).unwrap();
-        assert!(
-            line == original || original.starts_with("#import") || original.starts_with("enable "),
-            "{module}, line {place}: {line:?}"
-        );
-        compared += 1;
-    }
-    assert!(compared > 500);
 }
 
 #[test]

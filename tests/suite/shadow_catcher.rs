@@ -2,24 +2,23 @@
 //! values, on both engines; the cyclorama's wall stands where it should.
 
 use std::f64::consts::PI;
-
 use glam::DVec3;
 use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
-use glossmith::import::load;
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;
 use glossmith::scene::catcher::{CatcherLight, NearLight, catcher_light, catcher_reflectance, catcher_table};
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::ModelSource;
 use glossmith::scene::{AreaShape, Geometry, ModelSource, Outline};
-
-use crate::cli_support::Workplace;
 use crate::renders::{assert_same_picture, document, render};
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
+
 /// How far, along the ground, the place that is looked at is from where the sphere touches it.
 const AWAY: f64 = 1.5;
+
 /// The sphere's luminance where it shines.
 const GLOW: f32 = 3.0;
 
@@ -176,56 +175,6 @@ fn it_is_not_there_from_below() {
         bare.ground = false;
         assert_same_picture(&render(engine, &document), &render(engine, &bare), "from below");
     }
-}
-
-#[test]
-fn cycloramas_bend_up_into_a_wall() {
-    let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &[]);
-    document.ground = true;
-    document.lighting.ground.kind = GroundKind::Cyclorama;
-    let ground = &mut document.lighting.ground;
-    (ground.yaw_deg, ground.wall_distance, ground.bend_radius) = (90.0, 4.0, 1.5);
-    let model = load(&ModelSource::Sphere).expect("loads");
-    let geometry = Geometry::build(&model, document.ground_shape());
-    let floor = geometry.ground_height() as f32;
-    let met = |origin: [f32; 3], direction: [f32; 3]| {
-        let hit = geometry.intersect(origin, direction, f32::MAX).expect("meets");
-        [0, 1, 2].map(|axis| origin[axis] + hit.t * direction[axis])
-    };
-    // A camera at yaw 90 is on the +X side: the wall is at −X.
-    let wall = met([0.0, 5.0, 0.0], [-1.0, 0.0, 0.0]);
-    assert!((wall[0] + 4.0).abs() < 1e-4, "{wall:?}");
-    let flat = met([3.0, 1.0, 2.0], [0.0, -1.0, 0.0]);
-    assert!((flat[1] - floor).abs() < 1e-4, "{flat:?}");
-    // Halfway around the bend.
-    let half = met([-2.5, floor + 1.5, 0.0], [-1.0, -1.0, 0.0]);
-    let away = (half[0] + 2.5).hypot(half[1] - floor - 1.5);
-    assert!((away - 1.5).abs() < 1e-3, "{half:?}");
-    // And it is seen from its front all over.
-    assert!(
-        geometry
-            .intersect([8.0, 3.0, 0.0], [-1.0, 0.0, 0.0], f32::MAX)
-            .is_some()
-    );
-}
-
-#[test]
-fn grounds_are_chosen_on_the_command_line() {
-    let place = Workplace::new();
-    let arguments =
-        "--model sphere --environment furnace --ground --ground-kind shadow-catcher --background transparent";
-    let caught = place.picture(arguments);
-    let alphas: Vec<f32> = caught.pixels.iter().map(|pixel| pixel[3]).collect();
-    assert!(alphas.iter().all(|alpha| (0.0..=1.0).contains(alpha)));
-    assert!(alphas.iter().any(|alpha| *alpha > 0.1 && *alpha < 0.9), "half shadows");
-    let plane = place.picture("--model sphere --environment furnace --ground --background transparent");
-    let covered = |picture: &crate::cli_support::Picture| picture.mean(3);
-    assert!(covered(&plane) > covered(&caught) + 0.2);
-    let wall = place.picture(
-        "--model sphere --environment furnace --ground --ground-kind cyclorama --cyclorama-wall 3 --background transparent",
-    );
-    assert!(covered(&wall) > 0.999, "the wall fills the picture");
-    place.refused(2, "render --ground-kind sea", &["sea", "shadow-catcher"]);
 }
 
 #[test]

@@ -4,7 +4,6 @@
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
 use super::cli_support::{Workplace, read_exr};
 
@@ -100,29 +99,4 @@ fn a_signal_that_is_ignored_stays_ignored() {
     let (code, text) = ended(child, told);
     assert_eq!(code, Some(130), "{text}");
     assert!(place.path("a.exr").exists(), "{text}");
-}
-
-#[test]
-fn a_turntable_that_is_ended_keeps_its_frames_and_its_list() {
-    let place = Workplace::new();
-    let arguments = "turntable --engine cpu --model sphere --size 16x16 --samples 2 --frames 9999 --output frames \
-                     --video turn.gif --report r.json";
-    let (child, told) = begun(&place, "", arguments);
-    let started = Instant::now();
-    while !place.path("frames/frame-0003.png").exists() {
-        assert!(started.elapsed() < Duration::from_secs(120), "no frames");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    send(&child, "-TERM");
-    let (code, text) = ended(child, told);
-    assert_eq!(code, Some(143), "{text}");
-    let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
-    let frames = report["frames"].as_u64().unwrap() as usize;
-    assert!(frames >= 3 && report["stopped_by"] == "signal", "{report}");
-    let files = report["files"].as_array().unwrap();
-    assert_eq!(files.len(), frames + 1, "{report}");
-    for file in files {
-        assert!(place.path(file.as_str().unwrap()).is_file(), "{file}");
-    }
-    assert_eq!(std::fs::read_dir(place.path("frames")).unwrap().count(), frames);
 }

@@ -1,8 +1,7 @@
 //! Files from strangers: what they may name, and what becomes of what they may not.
 
 use glossmith::document::Document;
-use glossmith::import::load_watched;
-use glossmith::scene::{Loading, ModelOptions, ModelSource};
+use glossmith::scene::ModelSource;
 use glossmith::store::save_document;
 use serde_json::{Value as Json, json};
 
@@ -165,58 +164,4 @@ fn a_project_names_what_its_maker_may_read() {
     save_document(&place.path("a/b/inside.json"), &inside).unwrap();
     assert!(!place.read("a/b/inside.json").contains("saved-by"));
     place.done(&render("inside.json"));
-}
-
-#[test]
-fn a_document_of_materialx_includes_from_its_surroundings() {
-    let place = place("../near.mtl");
-    let library = r#"<materialx version="1.39"></materialx>"#;
-    place.write("far.mtlx", library.as_bytes());
-    let including = r#"<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="../../far.mtlx"/><standard_surface name="s" type="surfaceshader"/></materialx>"#;
-    place.write("a/b/m.mtlx", including.as_bytes());
-    place.refused(1, "convert a/b/m.mtlx out.json", &["m.mtlx", "far.mtlx", "outside"]);
-    place.done("convert a/b/m.mtlx out.json --allow-outside");
-}
-
-/// What the command line names must be there; what a file names is told, and the picture made without it.
-#[test]
-fn a_texture_that_the_command_line_names_must_be_read() {
-    let place = place("../near.mtl");
-    place.write("broken.png", b"no picture");
-    place.refused(
-        1,
-        &format!("render --texture base-color=broken.png {QUICK}"),
-        &["broken.png", "can't be had", "give another file"],
-    );
-    assert!(!place.path("a.exr").exists());
-    place.write("broken_roughness.png", b"no picture");
-    place.refused(1, "plan --texture broken_roughness.png", &["broken_roughness.png"]);
-    // The same picture, named by a project.
-    let project = json!({"glossmith-document": 1, "materials": [{"name": "m", "material": {"base.color_map": {"file": "broken.png"}}}]});
-    place.write("p.json", project.to_string().as_bytes());
-    let run = place.done(&format!("render p.json {QUICK}"));
-    assert!(
-        run.stderr.contains("broken.png") && run.stderr.contains("WARN"),
-        "{}",
-        run.stderr
-    );
-}
-
-/// Two loads side by side hear each of what it was refused, and of nothing else.
-#[test]
-fn what_is_refused_belongs_to_the_load_that_asked() {
-    let places = [place("../../far.mtl"), place("../../other.mtl")];
-    let loadings = [Loading::default(), Loading::default()];
-    std::thread::scope(|scope| {
-        for (place, loading) in places.iter().zip(&loadings) {
-            scope.spawn(|| {
-                let source = ModelSource::File(place.path("a/b/m.obj"));
-                load_watched(&source, &ModelOptions::default(), loading).unwrap();
-            });
-        }
-    });
-    for ((place, loading), name) in places.iter().zip(&loadings).zip(["far.mtl", "other.mtl"]) {
-        assert_eq!(loading.take_refused(), [place.path("a/b").join("../..").join(name)]);
-        assert!(loading.take_refused().is_empty());
-    }
 }

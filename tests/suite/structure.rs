@@ -70,9 +70,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// The most lines of a file.
-const LINES_MAX: usize = 600;
-
 fn collect(ending: &str, folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -144,58 +141,6 @@ fn every_folder_has_its_place_in_the_order() {
     }
 }
 
-#[test]
-fn files_stay_short() {
-    let root = Path::new(crate::ROOT);
-    let code = ["src", "tests", "benches", "fuzz/fuzz_targets"].map(|folder| files_with("rs", &root.join(folder)));
-    let files = code
-        .into_iter()
-        .flatten()
-        .chain(files_with("wgsl", &root.join("shaders")));
-    let lines = files.map(|file| (fs::read_to_string(&file).unwrap().lines().count(), file));
-    let long: Vec<_> = lines.filter(|(lines, _)| *lines > LINES_MAX).collect();
-    assert!(long.is_empty(), "files of more than {LINES_MAX} lines: {long:?}");
-}
-
-/// The folders and files of `src/` that are of the engine, which is a package of its own.
-fn of_the_engine(src: &Path) -> Vec<String> {
-    let list = fs::read_to_string(src.join("engine.rs")).unwrap();
-    let modules = list
-        .lines()
-        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
-    modules.map(str::to_owned).collect()
-}
-
-#[test]
-fn every_dependency_is_used() {
-    let root = Path::new(crate::ROOT);
-    let src = root.join("src");
-    let engine = of_the_engine(&src);
-    assert!(engine.iter().any(|module| module == "optics"), "{engine:?}");
-    let package_of = |file: &Path| {
-        let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
-        match Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap() {
-            "import" => "src/import",
-            module if engine.iter().any(|of_engine| of_engine == module) => "src/engine",
-            _ => ".",
-        }
-    };
-    let files = files_with("rs", &src);
-    for package in [".", "src/engine", "src/import"] {
-        let of_package = files.iter().filter(|file| package_of(file) == package);
-        let code: String = of_package.map(|file| fs::read_to_string(file).unwrap()).collect();
-        let manifest = root.join(package).join("Cargo.toml");
-        let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
-        let names = manifest["dependencies"].as_table().unwrap().keys();
-        let is_unused = |name: &&String| {
-            let name = name.replace('-', "_");
-            !["::", " as "].iter().any(|end| code.contains(&format!("{name}{end}")))
-        };
-        let unused: Vec<&String> = names.filter(is_unused).collect();
-        assert!(unused.is_empty(), "nothing in the package's sources uses {unused:?}");
-    }
-}
-
 /// The parts of the window, each after those that it may use.
 const LAYERS_OF_APP: &[&[&str]] = &[
     &["kit", "lights"],
@@ -257,51 +202,4 @@ fn the_window_is_built_in_layers() {
         }
     }
     assert!(wrong.is_empty(), "against the layers of src/app:\n{}", wrong.join("\n"));
-}
-
-/// Panels know the desk, never each other.
-#[test]
-fn panels_keep_to_themselves() {
-    let folder = Path::new(crate::ROOT).join("src/app/panels");
-    let name_of = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
-    let panels: Vec<PathBuf> = fs::read_dir(&folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    let names: BTreeSet<String> = panels.iter().map(|path| name_of(path)).collect();
-    let mut wrong = Vec::new();
-    for panel in panels.iter().filter(|path| !path.ends_with("mod.rs")) {
-        let files = if panel.is_dir() {
-            files_with("rs", panel)
-        } else {
-            vec![panel.clone()]
-        };
-        for file in files {
-            let text = fs::read_to_string(&file).unwrap();
-            // In the root of a panel `super` is all panels; in its parts it is the panel.
-            let is_root = file.parent() == Some(&folder) || file.ends_with("mod.rs");
-            let paths = text.split("super::").skip(1).filter(|_| is_root);
-            let paths = paths.chain(text.split("panels::").skip(1));
-            let other = paths
-                .map(|path| {
-                    path.split(|c: char| !c.is_alphanumeric() && c != '_')
-                        .next()
-                        .unwrap_or("")
-                        .to_owned()
-                })
-                .filter(|name| names.contains(name) && *name != name_of(panel));
-            wrong.extend(other.map(|name| format!("{} uses {name}", file.display())));
-        }
-    }
-    assert!(wrong.is_empty(), "panels that know each other:\n{}", wrong.join("\n"));
-}
-
-#[test]
-fn the_reader_of_paths_sees_a_use_and_no_comment() {
-    let text = "use crate::app::Editor;\n// crate::cli\n    let x = crate::store::file::read(crate::gpu::open());\n";
-    assert_eq!(used(text), BTreeSet::from(["app", "gpu", "store"]));
-    let text = "use crate::app::desk::Desk;\n// super::kit\nuse super::panels::Panels;\n";
-    let names = |is_near| used_of_app(text, is_near).into_iter().collect::<Vec<_>>();
-    assert_eq!(names(true), ["desk", "panels"]);
-    assert_eq!(names(false), ["desk"]);
 }

@@ -1,18 +1,15 @@
 //! Studies: the race and the ledger, in numbers small enough for a test.
 
 use std::time::Duration;
-
-use glossmith::document::{Document, MaterialSettings, Strategy};
+use glossmith::document::{Document, MaterialSettings};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::study::StudyError;
 use glossmith::study::ledger::{LedgerOptions, ledger};
 use glossmith::study::race::{Race, RaceOptions, Runner, race};
-use glossmith::study::technique::{Setting, Technique, techniques};
 use serde_json::Value;
-
 use super::cli_support::Workplace;
 
 fn sphere(side: u32) -> Document {
@@ -131,26 +128,6 @@ fn a_race_is_stopped_when_it_is_no_longer_wanted() {
     assert_eq!(told, 3);
 }
 
-/// Whoever stops a race waits for a slice, not for a lane's whole time.
-#[test]
-fn a_race_asks_after_every_turn_whether_it_is_still_wanted() {
-    let options = RaceOptions {
-        seconds: 0.1,
-        ..quick(&["bounces=1"])
-    };
-    let mut words: Vec<String> = Vec::new();
-    race(&sphere(16), &options, &mut |progress| {
-        words.push(progress.what);
-        true
-    })
-    .unwrap();
-    let count = |wanted: &str| words.iter().filter(|what| *what == wanted).count();
-    assert_eq!(count("Round 1"), 2, "after the turn of either: {words:?}");
-    // The one with the largest error renders all of its samples once more.
-    let again = words.iter().filter(|what| what.starts_with("Equal error"));
-    assert!(again.map(|what| count(what)).max() > Some(1), "{words:?}");
-}
-
 #[test]
 fn a_black_picture_has_no_relative_error() {
     let mut document = sphere(16);
@@ -212,24 +189,6 @@ fn the_ledger_tells_what_is_known_of_a_scene() {
         found.entries.iter().all(|entry| entry.name != "coat"),
         "what is not there has no line"
     );
-}
-
-#[test]
-fn effects_to_take_out_are_those_of_the_scene() {
-    let mut document = sphere(16);
-    document.ground = true;
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    session.submit(&document).unwrap();
-    let plan = session.job().unwrap().plan.clone();
-    let found: Vec<String> = techniques("effect", &plan)
-        .unwrap()
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    assert!(found.contains(&"effect=-ground".to_owned()), "{found:?}");
-    assert!(!found.contains(&"effect=-coat".to_owned()), "{found:?}");
-    let both = Technique::of(Setting::Strategy(Strategy::Light)).apply(&document);
-    assert_eq!(both.render.strategy, Strategy::Light);
 }
 
 fn json(workplace: &Workplace, name: &str) -> Value {
@@ -300,58 +259,4 @@ fn accuracy_writes_the_race() {
     }
     workplace.refused(2, "study accuracy --technique velvet", &["velvet", "strategy"]);
     workplace.refused(2, "study accuracy --technique bounces=99", &["bounces", "64"]);
-}
-
-#[test]
-fn convergence_writes_error_against_time() {
-    let workplace = Workplace::new();
-    workplace.done("study convergence --quick --engine cpu --model sphere --size 24x24 --samples 48 --output found");
-    let report = json(&workplace, "found/convergence.json");
-    let points = report["points"].as_array().unwrap();
-    // How often the error is looked at depends on the time that rendering takes: after the first sample, soon after it
-    // and at the end at the least.
-    assert!(points.len() >= 3, "{}", points.len());
-    for pair in points.windows(2) {
-        assert!(number(&pair[0], "seconds") < number(&pair[1], "seconds"));
-    }
-    let last = points.last().unwrap();
-    assert_eq!(number(last, "samples_per_pixel"), 48.0);
-    assert!(number(last, "noise_low") < number(last, "noise"));
-    let ratio = number(&report["true_error"], "value") / number(last, "noise");
-    assert!((0.5..2.0).contains(&ratio), "{ratio}");
-    assert_eq!(report["stopped_by"], "samples");
-    assert_eq!(
-        workplace.read("found/convergence.csv").lines().count(),
-        points.len() + 1
-    );
-    has_plots(&workplace, "found", &["convergence"]);
-}
-
-#[test]
-fn the_ledger_is_written_in_plain_words() {
-    let workplace = Workplace::new();
-    let run = workplace.done("study ledger --quick --engine cpu --model sphere --size 24x24 --output found");
-    let report = json(&workplace, "found/ledger.json");
-    let entries = report["entries"].as_array().unwrap();
-    for name in [
-        "environment",
-        "specular",
-        "fresnel",
-        "lobe",
-        "strategy",
-        "sequence",
-        "bounces",
-        "filter",
-        "kernel",
-    ] {
-        let entry = entries
-            .iter()
-            .find(|entry| entry["name"] == name)
-            .unwrap_or_else(|| panic!("{name}"));
-        for key in ["ms_with", "ms_without", "ms", "share_of_frame", "noise_share"] {
-            number(entry, key);
-        }
-        assert!(run.stdout.contains(entry["words"].as_str().unwrap()), "{}", run.stdout);
-    }
-    has_plots(&workplace, "found", &["ledger"]);
 }

@@ -2,11 +2,6 @@
 
 use glam::Vec3;
 
-/// Whether `make test-thorough` runs, for tests that then repeat at greater length what they try anyway.
-pub fn is_thorough() -> bool {
-    std::env::var_os("GLOSSMITH_THOROUGH").is_some()
-}
-
 /// Repeatable random numbers (SplitMix64: Steele, Lea and Flood 2014).
 pub struct Random(u64);
 

@@ -1,13 +1,11 @@
 //! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
 
 use glossmith::compile::compile_textured;
-use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, TextureUse};
-use glossmith::job::effect::EffectId;
-use glossmith::optics::lobe::Lobe;
+use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::{Textures, opacity_at, texture_lookup};
@@ -16,7 +14,7 @@ use image::{Rgba, RgbaImage};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::renders::{assert_same_picture, render, with_strategy};
+use super::renders::render;
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 
@@ -195,18 +193,6 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
     assert!(model.report.is_clean(), "{:?}", model.report);
 }
 
-/// The transform's set of coordinates counts, not the reference's.
-#[test]
-fn the_transform_chooses_the_set_of_coordinates() {
-    let of_set = |transform: &Value| {
-        let reference = json!({"index": 0, "texCoord": 0, "extensions": {"KHR_texture_transform": transform}});
-        let material = json!({"pbrMetallicRoughness": {"baseColorTexture": reference}});
-        load(&material, &[four_texels()], &json!({})).mesh.uvs[0].to_array()
-    };
-    assert_eq!(of_set(&json!({})), [0.0, 1.0]);
-    assert_eq!(of_set(&json!({"texCoord": 1})), [0.25, 0.75]);
-}
-
 /// Where a file gives a mask no cutoff it is a half: an alpha of 127 is a hole, 128 is there.
 #[test]
 fn a_mask_without_a_cutoff_cuts_at_a_half() {
@@ -218,35 +204,6 @@ fn a_mask_without_a_cutoff_cuts_at_a_half() {
     let (materials, _) = compile_textured(&[settings], &textures.slots);
     let opacity = |u: f32| opacity_at::<f32>(&textures, &materials[0], [[u, 0.5], [0.0; 2], [0.0; 2]], 1.0);
     assert_eq!([opacity(0.25), opacity(0.75)], [0.0, 1.0]);
-}
-
-/// Pictures that a GPU can't hold are halved, the largest first, by the mean of the light.
-#[test]
-fn pictures_that_are_too_large_are_halved() {
-    let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
-    let stripes = RgbaImage::from_fn(64, 64, |x, _| {
-        Rgba(if x % 2 == 0 && x < 32 {
-            [255, 0, 0, 255]
-        } else {
-            [0, 0, 0, 255]
-        })
-    });
-    let model = load(&material, &[stripes], &json!({}));
-    let whole = Textures::new(&model);
-    assert_eq!((whole.words.len(), whole.warnings.len()), (256 + 64 * 64, 0));
-    let halved = Textures::within(&model, 256 + 2000);
-    assert_eq!(halved.words.len(), 256 + 32 * 32);
-    let warning = halved.warnings.join("");
-    assert!(warning.contains("32 × 32 instead of 64 × 64"), "{warning}");
-    let (color, _) = texture_lookup::<f64>(
-        &halved,
-        halved.slots[0].record(TextureTarget::BaseColor),
-        [[0.3, 0.4], [0.0; 2], [0.0; 2]],
-    );
-    assert!(
-        (color.x - 0.5).abs() < 5e-3,
-        "{color:?}: half the light, not half the code"
-    );
 }
 
 /// The square seen head-on, filling the picture.
@@ -360,49 +317,6 @@ fn rough() -> RgbaImage {
     RgbaImage::from_fn(8, 8, |x, y| Rgba([0, (20 + 30 * x) as u8, (36 * y) as u8, 255]))
 }
 
-/// Roughness alone.
-fn rough_only() -> RgbaImage {
-    RgbaImage::from_fn(8, 8, |x, y| Rgba([0, (10 + 30 * x + y) as u8, 255, 255]))
-}
-
-fn white_bumpy(metallic: f64) -> Value {
-    json!({"normalTexture": {"index": 0},
-        "pbrMetallicRoughness": {"metallicFactor": metallic, "roughnessFactor": 1,
-            "metallicRoughnessTexture": {"index": 1}}})
-}
-
-/// Whatever the textures say, hardly less goes out than comes in, and never more.
-#[test]
-fn textured_white_is_white_in_the_furnace() {
-    for choice in ENGINES {
-        for metallic in [0.0, 1.0] {
-            for yaw_deg in [0.0, 60.0, 85.0] {
-                let (buffer, json) = textured_square(&white_bumpy(metallic), &[bumps(), rough_only()], &json!({}));
-                let folder = Folder::new();
-                let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
-                // So rough a metal is imported as GGX, whose single scattering loses light. The geometric lobe loses none.
-                assert_eq!(
-                    (document.materials[0].lobe, document.materials[0].roughness),
-                    (Lobe::Ggx, 1.0)
-                );
-                document.materials[0].lobe = Lobe::Geometric;
-                document.camera.yaw_deg = yaw_deg;
-                document.lighting.background = Background::Transparent;
-                let film = render(choice, &document);
-                let alpha: f64 = film.colors().map(|color| color[3]).sum();
-                let value = film.colors().map(|color| color[1]).sum::<f64>() / alpha;
-                println!("{choice:?} {metallic} {yaw_deg} {value}");
-                // What folding at the geometric surface takes from the angles that the tables suppose is lost.
-                assert!(
-                    (0.96..1.004).contains(&value),
-                    "{choice:?} {metallic} {yaw_deg}: {value}"
-                );
-                assert_eq!(film.dropped(), 0);
-            }
-        }
-    }
-}
-
 /// Everything at once: both engines and all strategies.
 pub(super) fn all_at_once(folder: &Folder) -> Document {
     let material = json!({
@@ -435,156 +349,4 @@ pub(super) fn coated_all_over(folder: &Folder) -> Document {
     (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
     (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
     document
-}
-
-/// Textures of a coat, one that leaves the base as it is and OpenPBR's, whose index, blur and colour they vary.
-#[test]
-fn strategies_and_engines_agree_on_a_textured_coat() {
-    let folder = Folder::new();
-    let mut document = coated_all_over(&folder);
-    document.render.samples = 512;
-    for on_base in [false, true] {
-        let material = &mut document.materials[0];
-        assert!(material.textures.coat && material.textures.coat_roughness && material.textures.coat_normal);
-        material.coat_on_base = on_base;
-        material.coat_darkening = if on_base { 1.0 } else { 0.0 };
-        material.coat_color = [0.9, 0.6, 0.3];
-        // So much of the light is the coat's that the test sees each of its textures.
-        (material.base_color, material.coat_ior) = ([0.05, 0.03, 0.02], 2.2);
-        let cpu = render(EngineChoice::Cpu, &document);
-        assert_eq!(cpu.dropped(), 0);
-        for strategy in [Strategy::Lobe, Strategy::Light] {
-            let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
-            assert_same_picture(&cpu, &other, &format!("{on_base} {strategy:?}"));
-        }
-        let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 5));
-        assert_same_picture(&cpu, &gpu, &format!("{on_base} on the GPU"));
-        // Sees the test fail where a texture is left out.
-        for leave_out in [
-            (|uses| uses.coat = false) as fn(&mut TextureUse),
-            |uses| uses.coat_roughness = false,
-            |uses| uses.coat_normal = false,
-        ] {
-            let mut without = with_strategy(&document, Strategy::Mis, 9);
-            leave_out(&mut without.materials[0].textures);
-            let plain = render(EngineChoice::Cpu, &without);
-            assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without")).is_err());
-        }
-    }
-}
-
-#[test]
-fn strategies_agree_on_textures() {
-    let folder = Folder::new();
-    let mut document = all_at_once(&folder);
-    document.materials[0].opacity = 0.8;
-    let cpu = render(EngineChoice::Cpu, &document);
-    assert_eq!(cpu.dropped(), 0);
-    for strategy in [Strategy::Lobe, Strategy::Light] {
-        let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
-        assert_same_picture(&cpu, &other, &format!("{strategy:?}"));
-    }
-    // Sees the test fail where a texture is left out.
-    document.materials[0].textures.color = false;
-    let plain = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Mis, 9));
-    assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without colours")).is_err());
-}
-
-/// Half-transparent surfaces in the way of light: the expected share that light sampling takes is what paths find.
-#[test]
-fn shadows_of_half_transparent_surfaces_are_half_dark() {
-    let folder = Folder::new();
-    let mut document = all_at_once(&folder);
-    document.materials[0].textures = Default::default();
-    (document.materials[0].opacity, document.materials[0].emission_strength) = (0.5, 0.0);
-    document.lighting.environment = EnvironmentSource::Sky;
-    let mis = render(EngineChoice::Cpu, &document);
-    for (choice, strategy) in [(EngineChoice::Gpu, Strategy::Mis), (EngineChoice::Cpu, Strategy::Light)] {
-        let other = render(choice, &with_strategy(&document, strategy, 3));
-        assert_same_picture(&mis, &other, &format!("{choice:?} {strategy:?}"));
-        if strategy == Strategy::Mis {
-            let ratio = other.total_rays() as f64 / mis.total_rays() as f64;
-            assert!((ratio - 1.0).abs() < 0.01, "both count their rays alike: {ratio}");
-        }
-    }
-}
-
-/// What no material calls for is compiled out.
-#[test]
-fn the_plan_has_what_the_model_calls_for() {
-    let folder = Folder::new();
-    let all = all_at_once(&folder);
-    let names = [
-        "color-texture",
-        "roughness-texture",
-        "normal-map",
-        "emission-texture",
-        "alpha",
-        "coat",
-        "edge-tint",
-    ];
-    let effects = |document: &Document| {
-        let mut session = Session::open(EngineChoice::Cpu).unwrap();
-        session.submit(document).unwrap();
-        let effects = session.job().unwrap().plan.effects();
-        names.map(|name| effects.contains(&name))
-    };
-    assert_eq!(effects(&all), [true, true, true, true, true, false, false]);
-    let plain = Document {
-        materials: vec![MaterialSettings::default()],
-        ..all.clone()
-    };
-    assert_eq!(
-        effects(&plain),
-        [false; 7],
-        "a material put in the place of the model's is plain"
-    );
-    let mut coated = plain;
-    coated.materials[0].coat_weight = 0.5;
-    coated.materials[0].edge_tint = [1.0, 0.5, 0.5];
-    coated.materials[0].opacity = 0.5;
-    assert_eq!(effects(&coated), [false, false, false, false, true, true, true]);
-}
-
-/// A picture that is the same everywhere is multiplied in once: no kernel looks it up, and the picture is that of one
-/// that is.
-#[test]
-fn a_texture_of_one_value_is_a_number() {
-    let first = json!({"index": 0, "extensions": {"KHR_texture_transform": {"scale": [0.4, 1]}}});
-    let material = |mode: &str| {
-        json!({"emissiveFactor": [0.5, 0.4, 0.3], "emissiveTexture": first, "alphaMode": mode,
-            "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 0.9], "baseColorTexture": first,
-                "metallicRoughnessTexture": first, "metallicFactor": 0.8, "roughnessFactor": 0.9}})
-    };
-    let values = Rgba([200, 150, 90, 160]);
-    let pictures = [values, Rgba([0, 0, 0, 0])].map(|right| {
-        let texels = [values, right];
-        RgbaImage::from_fn(2, 1, |x, _| texels[x as usize])
-    });
-    let kinds = [
-        EffectId::ColorTexture,
-        EffectId::RoughnessTexture,
-        EffectId::EmissionTexture,
-    ];
-    for mode in ["OPAQUE", "MASK", "BLEND"] {
-        let [constant, looked_up] = [false, true].map(|is_looked_up| {
-            let picture = pictures[usize::from(is_looked_up)].clone();
-            let (buffer, json) = textured_square(&material(mode), &[picture], &json!({"magFilter": NEAREST}));
-            let folder = Folder::new();
-            let document = head_on(&folder, &buffer, &json, EnvironmentSource::Studio);
-            let mut session = Session::open(EngineChoice::Cpu).unwrap();
-            session.submit(&document).unwrap();
-            let plan = session.job().unwrap().plan.clone();
-            assert_eq!(kinds.map(|kind| plan.has(kind)), [is_looked_up; 3], "{mode}");
-            assert_eq!(
-                plan.has(EffectId::Alpha),
-                mode == "BLEND" || (is_looked_up && mode == "MASK")
-            );
-            // How often light sampling chooses the square goes by the mean of its picture, so only paths of lobes are the same.
-            render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Lobe, 0)).luminance()
-        });
-        let differences = std::iter::zip(&constant, &looked_up).map(|(a, b)| (a - b).abs());
-        let apart = differences.sum::<f64>() / looked_up.iter().sum::<f64>();
-        assert!(apart < 1e-4, "{mode}: {apart:.1e} apart");
-    }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use eframe::App as _;
 use egui::Key;
-use egui::accesskit::{self, Role};
+use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
@@ -33,38 +33,6 @@ fn search(harness: &mut Editor, text: &str) {
 /// Where a thing is shown.
 fn place(harness: &Editor, label: &str) -> egui::Rect {
     harness.get_by_role_and_label(Role::Button, label).rect()
-}
-
-#[test]
-fn pictures_have_any_size_and_the_smallest_make_a_list() {
-    let mut harness = editor_of(options());
-    harness.run_steps(3);
-    let [a, b] = ["Plastic blue", "Plastic red"].map(|name| place(&harness, name));
-    assert!((a.width() - 80.0).abs() < 1.0 && a.height() > a.width(), "{a:?}");
-    assert!((a.top() - b.top()).abs() < 1.0, "side by side");
-    let panel = harness.get_by_role_and_label(Role::TextInput, "Search presets").rect();
-    for name in ["Amber", "Pearl", "Brushed steel", "Environment Furnace"] {
-        assert!(
-            place(&harness, name).right() <= panel.right() + 1.0,
-            "{name} is cut off"
-        );
-    }
-    let slider = |harness: &mut Editor, value: f64| {
-        let slider = harness.get_by_role_and_label(Role::Slider, "Size of the thumbnails");
-        harness.event(egui::Event::AccessKitActionRequest(accesskit::ActionRequest {
-            target_node: slider.accesskit_node().locate().0,
-            target_tree: accesskit::TreeId::ROOT,
-            action: accesskit::Action::SetValue,
-            data: Some(accesskit::ActionData::NumericValue(value)),
-        }));
-        harness.run_steps(3);
-    };
-    slider(&mut harness, 256.0);
-    assert!((place(&harness, "Gold").width() - 256.0).abs() < 1.0);
-    slider(&mut harness, 36.0);
-    let [a, b] = ["Gold", "Copper"].map(|name| place(&harness, name));
-    assert!(b.top() >= a.bottom() && a.width() > 150.0, "a list: {a:?}, {b:?}");
-    harness.check_accessibility();
 }
 
 #[test]
@@ -124,31 +92,6 @@ fn presets_are_found_by_their_look() {
         search(&mut harness, words);
         assert!(has(&harness, found) && !has(&harness, other), "{words}");
     }
-}
-
-/// What is tagged in the browser is found by its tag in the palette, favourites first.
-#[test]
-fn the_palette_finds_by_the_browsers_tags() {
-    let mut harness = editor_of(options());
-    harness.run_steps(3);
-    click(&mut harness, "More of Gold");
-    click(&mut harness, "Add to favourites");
-    for name in ["Amber", "Gold"] {
-        click(&mut harness, &format!("More of {name}"));
-        click(&mut harness, "Tags…");
-        let label = format!("Tags of {name}");
-        let field = harness.get_by_role_and_label(Role::TextInput, &label);
-        field.set_text_value_accesskit("jewel");
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
-    }
-    request(&mut harness, Action::Do(Command::Palette));
-    harness.event(egui::Event::Text("jewel".to_owned()));
-    harness.run_steps(3);
-    harness.key_press(Key::Enter);
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().materials[0].name, "Gold");
 }
 
 /// A preset chooses the slots that have it, and takes the place of the edited material wherever that is used.

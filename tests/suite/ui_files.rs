@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::Action;
-use glossmith::render::worker::Activity;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::TextureTarget;
@@ -126,159 +124,6 @@ fn every_kind_of_file_can_be_dropped() {
     std::fs::write(&part, "bytes").unwrap();
     drop_on(&mut harness, &[part]);
     wait_for_words(&mut harness, "square.bin: part of a model");
-}
-
-#[test]
-fn a_model_its_parts_and_its_light_are_dropped_together() {
-    let folder = Folder::new();
-    let (buffer, mut document) = square();
-    document["buffers"][0]["uri"] = json!("square.bin");
-    document["images"] = json!([{"uri": "wood.png"}]);
-    document["textures"] = json!([{"source": 0}]);
-    document["materials"] =
-        json!([{"name": "Wood", "doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
-    document["meshes"][0]["primitives"][0]["material"] = json!(0);
-    let path = |name: &str| folder.path(name);
-    for place in ["model", "data"] {
-        std::fs::create_dir(path(place)).unwrap();
-    }
-    std::fs::write(path("model/square.gltf"), document.to_string()).unwrap();
-    std::fs::write(path("data/square.bin"), &buffer.bytes).unwrap();
-    write_png(&path("data/wood.png"));
-    write_png(&path("data/left.png"));
-    write_hdr(&path("light.hdr"), 8, 4, |_, _| [1.0, 2.0, 3.0]);
-    let names = [
-        "data/wood.png",
-        "light.hdr",
-        "data/left.png",
-        "model/square.gltf",
-        "data/square.bin",
-    ];
-    let mut harness = editor();
-    drop_on(&mut harness, &names.map(path));
-    let source = ModelSource::File(path("model/square.gltf"));
-    wait(&mut harness, "the model", |app| app.document().model == source);
-    let light = EnvironmentSource::File(path("light.hdr"));
-    wait(&mut harness, "the light", |app| {
-        app.document().lighting.environment == light
-    });
-    settle(&mut harness);
-    let snapshot = harness.state().snapshot();
-    let model = &snapshot.scene.as_ref().expect("a scene").model;
-    assert_eq!((model.mesh.triangles.len(), model.textures.len()), (2, 1));
-    assert!(model.report.is_clean(), "{:?}", model.report);
-    assert!(says(&harness, "left.png: not used"), "{:?}", harness.state().messages());
-    assert!(!says(&harness, "wood.png: not used"));
-    let materials = &harness.state().document().materials;
-    assert!(
-        materials
-            .iter()
-            .all(|material| material.user_textures.iter().next().is_none())
-    );
-}
-
-#[test]
-fn a_base_color_dropped_with_a_plain_model_is_put_on_it() {
-    let folder = Folder::new();
-    let (model, color, normal) = (
-        folder.path("square.glb"),
-        folder.path("oak_BaseColor.png"),
-        folder.path("oak_n.png"),
-    );
-    write_square(&model, &json!({"name": "Wood"}));
-    write_png(&color);
-    write_png(&normal);
-    let mut harness = editor();
-    drop_on(&mut harness, &[color.clone(), model, normal]);
-    wait(&mut harness, "the picture", |app| {
-        let own = app.document().materials[0].user_textures.get(TextureTarget::BaseColor);
-        own.is_some_and(|own| own.file == color)
-    });
-    assert!(says(&harness, "oak_n.png: not used"));
-}
-
-#[test]
-fn six_faces_dropped_together_are_one_environment() {
-    let folder = Folder::new();
-    let faces = ["px", "nx", "py", "ny", "pz", "nz"].map(|face| folder.path(&format!("sky_{face}.png")));
-    faces.iter().for_each(|face| {
-        image::RgbImage::from_pixel(4, 4, image::Rgb([9, 90, 200]))
-            .save(face)
-            .unwrap();
-    });
-    let mut harness = editor();
-    drop_on(&mut harness, &faces);
-    let expected = EnvironmentSource::File(folder.path(""));
-    wait(&mut harness, "the environment", |app| {
-        let EnvironmentSource::File(found) = &app.document().lighting.environment else {
-            return false;
-        };
-        EnvironmentSource::File(found.join("")) == expected
-    });
-}
-
-#[test]
-fn addresses_get_a_message_and_pasted_names_are_opened() {
-    let folder = Folder::new();
-    let model = folder.path("my square.glb");
-    write_square(&model, &json!({"name": "Wood"}));
-    let mut harness = editor();
-    let before = harness.state().document().clone();
-    request(&mut harness, Action::Paste("https://example.org/duck.glb".to_owned()));
-    assert!(says(
-        &harness,
-        "https://example.org/duck.glb: web addresses are not opened"
-    ));
-    drop_on(&mut harness, &[PathBuf::from("https://example.org/goose.glb")]);
-    assert!(says(&harness, "goose.glb: web addresses are not opened"));
-    request(&mut harness, Action::Paste("Dear reader".to_owned()));
-    assert!(says(&harness, "the pasted text is not a file name: Dear reader"));
-    assert_eq!(*harness.state().document(), before);
-    // As file managers write names; the keys bring it in, as nothing else has them.
-    let text = format!("file://{}", model.display().to_string().replace(' ', "%20"));
-    harness.event(egui::Event::Paste(text));
-    harness.step();
-    wait(&mut harness, "the model", |app| {
-        app.document().model == ModelSource::File(model.clone())
-    });
-}
-
-#[test]
-fn opening_can_be_called_off() {
-    let folder = Folder::new();
-    let model = folder.path("many.obj");
-    // Enough that it is still being read when the button is pressed.
-    let mut text = String::new();
-    for i in 0..60_000 {
-        text.push_str(&format!("o part{i}\nv {i} 0 0\nv {i} 1 0\nv {i} 0 1\nf -3 -2 -1\n"));
-    }
-    std::fs::write(&model, text).unwrap();
-    let mut harness = editor();
-    let before = harness.state().document().clone();
-    let shown = picture(&harness);
-    harness.state_mut().request(Action::Open(model));
-    harness.step();
-    let begun = Instant::now();
-    while harness.query_by_role_and_label(Role::Button, "Stop loading").is_none() {
-        assert!(
-            begun.elapsed() < Duration::from_secs(120),
-            "no button: {:?}",
-            harness.state().messages()
-        );
-        harness.step();
-    }
-    let snapshot = harness.state().snapshot();
-    assert!(matches!(&snapshot.activity, Activity::Loading(what) if what.contains("many.obj")));
-    harness
-        .get_by_role_and_label(Role::Button, "Stop loading")
-        .click_accesskit();
-    see(&mut harness, "the word", |harness| {
-        says(harness, "opening was cancelled")
-    });
-    settle(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-    assert_eq!(picture(&harness), shown);
-    assert!(harness.query_by_role_and_label(Role::Button, "Stop loading").is_none());
 }
 
 #[test]

@@ -5,7 +5,6 @@ use egui::{Event, Key, Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::layout::Pane;
 use glossmith::document::{AreaLight, AreaLightShape, Document};
-use glossmith::scene::environment::EnvironmentSource;
 
 use super::ui::{Editor, drag, editor_with, settle, undo};
 use super::worker::small_document;
@@ -138,67 +137,6 @@ fn each_handle_changes_its_number_in_one_step() {
 }
 
 #[test]
-fn escape_takes_a_drag_back_and_keys_move_what_has_them() {
-    let mut harness = editor_lit_by(&[in_view()]);
-    let before = document(&harness).clone();
-    let at = place(&harness, "Move area light 1");
-    harness.hover_at(at);
-    harness.step();
-    harness.drag_at(at);
-    harness.step();
-    for step in 1..4 {
-        harness.hover_at(at + step as f32 * Vec2::new(8.0, 5.0));
-        harness.step();
-    }
-    assert_ne!(*document(&harness), before);
-    harness.key_press(Key::Escape);
-    harness.run_steps(2);
-    assert_eq!(*document(&harness), before);
-    harness.hover_at(at + Vec2::new(40.0, 0.0));
-    harness.step();
-    harness.drop_at(at + Vec2::new(40.0, 0.0));
-    harness.run_steps(3);
-    assert_eq!(*document(&harness), before, "the rest of the drag is none");
-    harness.get_by_label("Move area light 1").focus();
-    harness.run_steps(2);
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
-    harness.key_press(Key::ArrowUp);
-    harness.run_steps(2);
-    assert_eq!((light(&harness).yaw_deg, light(&harness).pitch_deg), (21.0, 16.0));
-    undo(&mut harness);
-    assert_eq!(*document(&harness), before);
-}
-
-#[test]
-fn a_light_beside_the_picture_is_moved_by_its_mark_at_the_edge() {
-    let mut harness = editor_lit_by(&[AreaLight {
-        yaw_deg: 80.0,
-        pitch_deg: 0.0,
-        ..AreaLight::default()
-    }]);
-    let at = place(&harness, "Move area light 1");
-    let viewport = harness.get_by_label("Viewport").rect();
-    assert!(
-        at.x > viewport.center().x + 0.3 * viewport.width(),
-        "{at} in {viewport}"
-    );
-    let by = Vec2::new(-60.0, 0.0);
-    drag(&mut harness, at, by);
-    settle(&mut harness);
-    let now = place(&harness, "Move area light 1");
-    assert!(now.distance(at + by) < 1.0, "from {at} to {now}");
-    // Before its target still, and as far from it.
-    let moved = light(&harness);
-    assert!(moved.yaw_deg > 0.0 && moved.yaw_deg < 80.0, "{moved:?}");
-    assert_eq!(moved.distance, AreaLight::default().distance, "{moved:?}");
-    // Lights are marked where their list is, and nowhere else.
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(4);
-    assert!(harness.query_by_label("Move area light 1").is_none());
-}
-
-#[test]
 fn the_environment_is_turned_in_its_preview() {
     let mut harness = editor_lit_by(&[]);
     let before = document(&harness).clone();
@@ -219,30 +157,6 @@ fn the_environment_is_turned_in_its_preview() {
     assert_eq!(document(&harness).lighting.rotation_deg, -14.0);
     undo(&mut harness);
     assert_eq!(*document(&harness), before);
-}
-
-/// The sun of the sky is dragged behind the camera: what faces it is bright then.
-#[test]
-fn light_comes_from_where_the_brightest_place_is_dragged() {
-    let mut start = small_document();
-    (start.camera.yaw_deg, start.camera.pitch_deg) = (0.0, 0.0);
-    start.lighting.environment = EnvironmentSource::Sky;
-    let mut harness = editor_with(start, Vec::new());
-    settle(&mut harness);
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(4);
-    let scene = harness.state().snapshot().scene.clone().expect("it was waited for");
-    let [u, v] = scene.job.environment.brightest.expect("the sky has a sun");
-    let preview = harness.get_by_label("Environment preview").rect();
-    let sun = preview.min + Vec2::new(u, v) * preview.size();
-    drag(&mut harness, sun, Vec2::new((0.5 - u) * preview.width(), 0.0));
-    settle(&mut harness);
-    // +Z, where the camera is.
-    let rotation_rad = f64::from(document(&harness).lighting.rotation_deg).to_radians();
-    let local = glossmith::scene::environment::environment_direction([f64::from(u), f64::from(v)]);
-    let world =
-        glossmith::scene::environment::environment_world_from_local(local, [rotation_rad.cos(), rotation_rad.sin()]);
-    assert!(world.x.abs() < 0.02 && world.z > 0.1, "{world:?}");
 }
 
 #[test]
@@ -272,89 +186,4 @@ fn power_is_the_strength_in_lumens_and_stays_as_it_was_set() {
     let shown = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");
     let shown = shown.accesskit_node().numeric_value().expect("a number");
     assert!((shown - 0.05).abs() < 1e-3, "{shown}");
-}
-
-#[test]
-fn what_has_no_effect_on_a_light_is_not_shown_nor_the_rows_of_others() {
-    let mut harness = editor_lit_by(&[]);
-    for label in ["Add spot", "Add sun"] {
-        press(&mut harness, label);
-    }
-    settle(&mut harness);
-    let lights = &document(&harness).lighting.area_lights;
-    assert!(lights.len() == 2 && lights[0].is_spot());
-    assert_eq!(lights[1], AreaLight::sun());
-    let is_shown = |harness: &Editor, label: &str| harness.query_by_label(label).is_some();
-    // The one that was added last is chosen.
-    for (label, shown) in [
-        ("Area light 1 cone", false),
-        ("Area light 2 cone", false),
-        ("Area light 2 distance", false),
-        ("Area light 2 angle", true),
-        ("Area light 2 strength", true),
-    ] {
-        assert_eq!(is_shown(&harness, label), shown, "{label}");
-    }
-    press(&mut harness, "Choose area light 1");
-    for (label, shown) in [
-        ("Area light 1 cone", true),
-        ("Area light 1 distance", true),
-        ("Area light 1 angle", false),
-        ("Area light 2 strength", false),
-    ] {
-        assert_eq!(is_shown(&harness, label), shown, "{label}");
-    }
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Area light 1 target, y")
-        .set_value_accesskit(0.5);
-    harness.run_steps(2);
-    assert_eq!(light(&harness).target, [0.0, 0.5, 0.0]);
-}
-
-/// The arrows of lights outside the image: their tips, and where they point.
-fn arrows(harness: &Editor) -> Vec<(Pos2, Vec2)> {
-    fn collect(shape: &egui::Shape, found: &mut Vec<(Pos2, Vec2)>) {
-        match shape {
-            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, found)),
-            egui::Shape::Path(path) if path.closed && path.points.len() == 3 && path.fill == egui::Color32::WHITE => {
-                let [tip, a, b] = [path.points[0], path.points[1], path.points[2]];
-                found.push((tip, (tip - a.lerp(b, 0.5)).normalized()));
-            }
-            _ => {}
-        }
-    }
-    let mut found = Vec::new();
-    let shapes = &harness.output().shapes;
-    shapes.iter().for_each(|clipped| collect(&clipped.shape, &mut found));
-    found
-}
-
-/// A light outside the image has its mark at the edge, with an arrow that points outwards; one inside has none.
-#[test]
-fn an_arrow_at_the_edge_points_to_a_light_outside() {
-    let beside = |yaw_deg: f64, pitch_deg: f64| AreaLight {
-        yaw_deg,
-        pitch_deg,
-        distance: 3.0,
-        ..in_view()
-    };
-    assert_eq!(arrows(&editor_lit_by(&[in_view()])), []);
-    for (light, outwards) in [
-        (beside(90.0, 0.0), Vec2::RIGHT),
-        (beside(-90.0, 0.0), Vec2::LEFT),
-        (beside(0.0, 90.0), Vec2::UP),
-        (beside(0.0, -90.0), Vec2::DOWN),
-    ] {
-        let harness = editor_lit_by(&[light, in_view()]);
-        let found = arrows(&harness);
-        let [(tip, direction)] = found[..] else {
-            panic!("{outwards:?}: {found:?}");
-        };
-        assert!(direction.dot(outwards) > 0.9, "{outwards:?}: {direction:?}");
-        let mark = place(&harness, "Move area light 1");
-        assert!(
-            (tip - mark).normalized().dot(outwards) > 0.9 && tip.distance(mark) < 20.0,
-            "{tip} at {mark}"
-        );
-    }
 }

@@ -1,8 +1,8 @@
 //! Looking closer: the inspector, maps over the picture, and the picture's own pixels.
 
-use egui::accesskit::{Role, Toggled};
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Pos2, Vec2};
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::render::shown::Shown;
@@ -83,40 +83,6 @@ fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     let name = harness.state().document().materials[0].name.clone();
     assert!(says(&harness, &name) && !says(&harness, "none: the background"));
     assert!(says(&harness, "Histogram of the image") && says(&harness, "Too bright for the screen"));
-}
-
-#[test]
-fn the_noisiest_pixel_is_found_and_stays_until_it_is_let_go() {
-    let mut harness = inspecting();
-    harness.get_by_label("Noisiest pixel").click_accesskit();
-    harness.run_steps(3);
-    let facts = shown(&harness).facts.clone().expect("it was waited for");
-    let noisiest = (0..facts.errors.len()).max_by(|a, b| facts.errors[*a].total_cmp(&facts.errors[*b]));
-    let noisiest = noisiest.expect("pixels") as u32;
-    let told = format!("{}, {} of 40 × 24", noisiest % 40, noisiest / 40);
-    assert!(says(&harness, &told));
-    let pinned = |harness: &Editor| {
-        let pinned = harness.get_by_role_and_label(Role::CheckBox, "Pinned");
-        pinned.accesskit_node().toggled() == Some(Toggled::True)
-    };
-    assert!(pinned(&harness));
-    let other = [(noisiest % 40 + 7) % 40, 20];
-    hover_pixel(&mut harness, other);
-    assert!(says(&harness, &told), "the pointer moved it");
-    harness.key_press(Key::I);
-    harness.run_steps(3);
-    assert!(!pinned(&harness));
-    assert!(says(&harness, &format!("{}, {} of 40 × 24", other[0], other[1])));
-    harness.get_by_label("Brightest pixel").click_accesskit();
-    harness.run_steps(3);
-    let luminance = |[r, g, b, _]: &[f32; 4]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    let pixels = picture(&harness);
-    let brightest = (0..pixels.len()).max_by(|a, b| luminance(&pixels[*a]).total_cmp(&luminance(&pixels[*b])));
-    let brightest = brightest.expect("pixels");
-    assert!(says(
-        &harness,
-        &format!("{}, {} of 40 × 24", brightest % 40, brightest / 40)
-    ));
 }
 
 #[test]

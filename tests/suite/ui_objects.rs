@@ -1,17 +1,17 @@
 //! The tree of the scene: objects and materials chosen, hidden, renamed, edited together, and materials dropped on them.
 
 use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect, Vec2};
-use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2};
+use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::document::{Bookmark, CameraSettings, Document};
+use glossmith::document::{CameraSettings, Document};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::gltf_builder::Folder;
-use super::ui::{Editor, editor_with, picture, request, settle, undo, wait};
+use super::ui::{Editor, editor_with, picture, request, settle, undo};
 use super::worker::small_document;
 
 /// Two squares side by side, facing the camera, each an object with a material of its own.
@@ -59,14 +59,6 @@ fn opened(document: Document) -> Editor {
     harness.state_mut().reveal(Pane::Scene);
     harness.run_steps(3);
     harness
-}
-
-/// Places on the left and on the right square.
-fn places(harness: &Editor) -> [Pos2; 2] {
-    let viewport = harness.get_by_label("Viewport").rect();
-    let scale = (viewport.width() / 40.0).min(viewport.height() / 24.0);
-    let place = Rect::from_center_size(viewport.center(), Vec2::new(40.0, 24.0) * scale);
-    [0.4, 0.6].map(|x| place.min + Vec2::new(x, 0.5) * place.size())
 }
 
 fn button(harness: &Editor, label: &str) -> bool {
@@ -167,38 +159,6 @@ fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
 }
 
 #[test]
-fn the_pointer_lights_up_the_same_thing_in_tree_and_viewport() {
-    let folder = Folder::new();
-    let mut harness = opened(two_squares(&folder));
-    let [left, right] = places(&harness);
-    // A click in the viewport chooses the object and its material; with shift another one beside it.
-    click_with(&mut harness, right, Modifiers::NONE);
-    let is_chosen = |harness: &Editor, line: &str| {
-        let line = harness.get_by_role_and_label(Role::Button, line);
-        line.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
-    };
-    assert!(is_chosen(&harness, "Object right") && !is_chosen(&harness, "Object left"));
-    click_with(&mut harness, left, Modifiers::SHIFT);
-    assert!(is_chosen(&harness, "Object right") && is_chosen(&harness, "Object left"));
-    click_with(&mut harness, left, Modifiers::NONE);
-    assert!(!is_chosen(&harness, "Object right") && is_chosen(&harness, "Object left"));
-    // The outline is there once the map is: painted beside the picture's own texture.
-    let textures = |harness: &Editor| {
-        let shapes = &harness.output().shapes;
-        let viewport = harness.get_by_label("Viewport").rect();
-        let is_picture = |shape: &egui::Shape| {
-            let bounds = shape.visual_bounding_rect();
-            shape.texture_id() != egui::TextureId::default() && viewport.intersects(bounds)
-        };
-        shapes.iter().filter(|clipped| is_picture(&clipped.shape)).count()
-    };
-    super::ui::see(&mut harness, "the outline", |harness| textures(harness) >= 2);
-    harness.state_mut().reveal(Pane::Presets);
-    harness.run_steps(4);
-    assert_eq!(textures(&harness), 1, "without the tree nothing is outlined");
-}
-
-#[test]
 fn materials_chosen_together_are_edited_together() {
     let folder = Folder::new();
     let mut harness = opened(two_squares(&folder));
@@ -234,99 +194,4 @@ fn materials_chosen_together_are_edited_together() {
     harness.get_by_role_and_label(Role::Button, "Material green").click();
     harness.run_steps(2);
     assert!(harness.query_by_label("2 materials are edited together.").is_none());
-}
-
-#[test]
-fn materials_are_found_copied_and_pasted() {
-    let folder = Folder::new();
-    let mut document = two_squares(&folder);
-    document.materials[0] = PRESETS[2].clone();
-    document.materials[0].name = "red".to_owned();
-    document.bookmarks = vec![Bookmark {
-        name: "From above".to_owned(),
-        camera: CameraSettings {
-            pitch_deg: 60.0,
-            ..CameraSettings::default()
-        },
-    }];
-    let mut harness = opened(document);
-    harness
-        .get_by_role_and_label(Role::TextInput, "Search the scene")
-        .set_text_value_accesskit("gree");
-    harness.run_steps(3);
-    assert!(
-        button(&harness, "Material green") && !button(&harness, "Material red") && !button(&harness, "Object left")
-    );
-    harness
-        .get_by_role_and_label(Role::TextInput, "Search the scene")
-        .set_text_value_accesskit("");
-    harness.run_steps(3);
-    press_in_menu(&mut harness, "Material red", "Copy material");
-    press_in_menu(&mut harness, "Material green", "Paste material");
-    let materials = &harness.state().document().materials;
-    assert_eq!(materials[1], materials[0]);
-    undo(&mut harness);
-    assert_eq!(harness.state().document().materials[1].name, "green");
-    press(&mut harness, "Camera From above");
-    assert_eq!(harness.state().document().camera.pitch_deg, 60.0);
-}
-
-fn drop_on(harness: &mut Editor, from: Pos2, to: Pos2) {
-    harness.hover_at(from);
-    harness.step();
-    harness.drag_at(from);
-    for step in 1..=6 {
-        harness.step();
-        harness.hover_at(from + (to - from) * (step as f32 / 6.0));
-    }
-    harness.run_steps(3);
-    harness.drop_at(to);
-    harness.run_steps(3);
-}
-
-#[test]
-fn a_preset_is_dropped_on_an_object() {
-    let folder = Folder::new();
-    let mut harness = opened(two_squares(&folder));
-    let before = harness.state().document().clone();
-    let [_, right] = places(&harness);
-    // A material of the tree, and one of the presets.
-    let red = harness
-        .get_by_role_and_label(Role::Button, "Material red")
-        .rect()
-        .center();
-    drop_on(&mut harness, red, right);
-    assert_eq!(harness.state().document().materials[1], before.materials[0]);
-    undo(&mut harness);
-    harness.state_mut().reveal(Pane::Presets);
-    harness.run_steps(3);
-    let preset = harness
-        .get_by_role_and_label(Role::Button, &PRESETS[1].name)
-        .rect()
-        .center();
-    drop_on(&mut harness, preset, right);
-    assert_eq!(harness.state().document().materials[1], PRESETS[1]);
-    assert_eq!(harness.state().document().materials[0], before.materials[0]);
-    undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-    // Beside the objects nothing takes it.
-    let corner = harness.get_by_label("Viewport").rect().left_top() + Vec2::splat(6.0);
-    drop_on(&mut harness, preset, corner);
-    assert_eq!(*harness.state().document(), before);
-}
-
-#[test]
-fn another_model_forgets_what_was_hidden() {
-    let folder = Folder::new();
-    let mut harness = opened(two_squares(&folder));
-    press(&mut harness, "Hide left");
-    request(&mut harness, Action::UseModel(ModelSource::Sphere));
-    wait(&mut harness, "the sphere", |app| {
-        app.document().model == ModelSource::Sphere
-    });
-    settle(&mut harness);
-    assert!(harness.state().document().hidden_objects.is_empty());
-    assert!(button(&harness, "Hide sphere"));
-    undo(&mut harness);
-    assert_eq!(harness.state().document().hidden_objects, [0]);
 }

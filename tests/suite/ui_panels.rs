@@ -2,12 +2,12 @@
 //! editor with the real renderer.
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers, Rect, Vec2};
+use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::document::{AreaLight, Document, MaterialSettings, range};
+use glossmith::document::{AreaLight, Document, range};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
@@ -18,7 +18,7 @@ use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
 use super::ui::{
-    Editor, assert_same_controls, controls, drag, editor, editor_of, editor_with, options, picture, request, see,
+    Editor, editor, editor_of, editor_with, options, picture, request, see,
     see_label, settle, undo, wait,
 };
 use super::worker::small_document;
@@ -92,94 +92,6 @@ fn undo_stops_at_the_files_given_at_the_start() {
 }
 
 #[test]
-fn redo_comes_back_to_the_slot_that_was_selected_of_the_model() {
-    let mut harness = editor();
-    request(&mut harness, Action::UseModel(ModelSource::Shaderball));
-    wait(&mut harness, "the model", |app| {
-        app.document().model == ModelSource::Shaderball
-    });
-    settle(&mut harness);
-    request(&mut harness, Action::SelectSlot(1));
-    undo(&mut harness);
-    assert_eq!(harness.state().document().model, ModelSource::Sphere);
-    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    settle(&mut harness);
-    let before = harness.state().document().materials.clone();
-    request(
-        &mut harness,
-        Action::UseMaterial(Box::new(glossmith::store::PRESETS[5].clone())),
-    );
-    let after = harness.state().document().materials.clone();
-    assert_eq!(after[0], before[0]);
-    assert_eq!(after[1], glossmith::store::PRESETS[5]);
-}
-
-/// Enter chooses from a menu and closes it, as a click does.
-#[test]
-fn enter_closes_the_menu_it_chooses_from() {
-    let mut harness = editor();
-    let press = |harness: &mut Editor, role: Role, label: &str| {
-        harness.get_by_role_and_label(role, label).focus();
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
-    };
-    let is_there = |harness: &Editor, label: &str| harness.query_by_role_and_label(Role::Button, label).is_some();
-    press(&mut harness, Role::ComboBox, "Specular lobe");
-    press(&mut harness, Role::Button, Lobe::Ggx.label());
-    assert_eq!(harness.state().document().materials[0].lobe, Lobe::Ggx);
-    assert!(!is_there(&harness, Lobe::Ggx.label()), "the menu stays open");
-    let light = Command::ToggleTheme.label();
-    press(&mut harness, Role::Button, "View");
-    assert!(is_there(&harness, light));
-    press(&mut harness, Role::Button, light);
-    assert_eq!(harness.ctx.theme(), egui::Theme::Light);
-    assert!(!is_there(&harness, light), "the menu stays open");
-}
-
-/// Tab goes from control to control, not to the labels before them.
-#[test]
-fn tab_stops_on_controls_only() {
-    let mut harness = editor();
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .focus();
-    harness.run_steps(2);
-    let mut seen = Vec::new();
-    for _ in 0..6 {
-        harness.key_press(Key::Tab);
-        harness.run_steps(2);
-        let nodes = harness.root().children_recursive();
-        let focused = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused());
-        seen.extend(focused.map(|node| (node.role(), node.label())));
-    }
-    assert!(
-        seen.len() > 3 && seen.iter().all(|(role, _)| *role != Role::Label),
-        "{seen:?}"
-    );
-}
-
-/// A model's pictures are there some frames after its materials: their group moves no control below it.
-#[test]
-fn a_group_of_textures_comes_without_making_the_next_ones_others() {
-    let folder = Folder::new();
-    let material = json!({"normalTexture": {"index": 0}});
-    let (buffer, document) = textured_square(&material, &[four_texels()], &json!({}));
-    let path = folder.path("bumpy.glb");
-    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
-    let mut document = small_document();
-    document.materials.push(MaterialSettings::default());
-    document.model = ModelSource::File(path);
-    // The document names the model: its materials are there from the first frame on.
-    let mut harness = editor_with(document, Vec::new());
-    let before = controls(&harness);
-    see(&mut harness, "the texture", |harness| {
-        harness.query_by_label("Geometry normal texture").is_some()
-    });
-    assert_same_controls(&before, &controls(&harness), "the coming of the texture");
-}
-
-#[test]
 fn opened_models_get_the_lobe_that_the_menu_says() {
     let folder = Folder::new();
     // Smooth enough for either: what is rougher than 0.7 is GGX whatever the menu says.
@@ -207,67 +119,6 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
         });
         assert_eq!(harness.state().document().materials[0].lobe, lobe);
     }
-}
-
-#[test]
-fn a_region_is_drawn_in_one_step_and_cleared() {
-    let mut harness = editor();
-    let (before, whole) = (harness.state().document().clone(), picture(&harness));
-    harness.key_press(Key::B);
-    harness.run_steps(2);
-    let viewport = harness.get_by_label("Viewport").rect();
-    let place = fitted(viewport, &before);
-    let from = place.min + place.size() * Vec2::new(0.25, 0.5);
-    drag(
-        &mut harness,
-        from,
-        place.size() * Vec2::new(0.5, 0.5) - Vec2::splat(1.0),
-    );
-    settle(&mut harness);
-    let after = harness.state().document().clone();
-    let region = after.render.region.expect("it was drawn");
-    for (side, expected) in region.into_iter().zip([0.25, 0.5, 0.75, 1.0]) {
-        assert!((side - expected).abs() < 0.01, "{region:?}");
-    }
-    assert_eq!(after.camera, before.camera, "the drag was the region's");
-    let part = picture(&harness);
-    // Tiles of 8 × 8 pixels are rendered or not: the last of the 40 columns lies in one without a part of the region.
-    assert_eq!(
-        (part[39], whole[39][3]),
-        ([0.0; 4], 1.0),
-        "nothing is rendered beside it"
-    );
-    assert!(part.iter().any(|pixel| pixel[3] > 0.0));
-    undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-    assert!(picture(&harness) == whole, "all is rendered again");
-    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
-    harness.run_steps(2);
-    assert_eq!(harness.state().document().render.region, Some(region));
-    harness.key_press(Key::Escape);
-    harness.run_steps(2);
-    assert_eq!(harness.state().document().render.region, None);
-    undo(&mut harness);
-    harness
-        .get_by_role_and_label(Role::Button, Command::ClearRegion.label())
-        .click();
-    settle(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-    assert!(picture(&harness) == whole, "all is rendered again");
-    // Escape while nothing has been drawn leaves the drag to the camera.
-    harness.key_press(Key::B);
-    harness.run_steps(2);
-    harness.key_press(Key::Escape);
-    harness.run_steps(2);
-    drag(&mut harness, viewport.center(), Vec2::new(40.0, 0.0));
-    assert_ne!(harness.state().document().camera, before.camera);
-}
-
-/// Where a picture of the document's shape lies in the viewport, under its header.
-fn fitted(viewport: Rect, document: &Document) -> Rect {
-    let size = Vec2::new(document.render.width as f32, document.render.height as f32);
-    let scale = (viewport.width() / size.x).min(viewport.height() / size.y);
-    Rect::from_center_size(viewport.center(), size * scale)
 }
 
 #[test]
@@ -381,21 +232,6 @@ fn make_custom(harness: &mut Editor, is_by_button: bool) {
     harness.run_steps(4);
 }
 
-/// A curve of another kind may come by itself, with a model: what stands below the points of one's own stays what it is.
-#[test]
-fn what_stands_below_the_points_of_a_curve_stays() {
-    let mut harness = editor();
-    make_custom(&mut harness, true);
-    let before = controls(&harness);
-    assert!(
-        before.contains_key(&(Role::CheckBox, "density".to_owned())),
-        "{before:?}"
-    );
-    undo(&mut harness);
-    assert!(harness.query_by_label("Edit as custom").is_some());
-    assert_same_controls(&before, &controls(&harness), "undo");
-}
-
 #[test]
 fn a_named_curve_becomes_a_custom_one_in_its_panel() {
     for is_by_button in [true, false] {
@@ -408,46 +244,6 @@ fn a_named_curve_becomes_a_custom_one_in_its_panel() {
         undo(&mut harness);
         assert_eq!(*harness.state().document(), before);
     }
-}
-
-#[test]
-fn a_point_that_undo_takes_away_while_it_is_dragged_is_let_go() {
-    let mut harness = editor();
-    let before = harness.state().document().clone();
-    make_custom(&mut harness, false);
-    // Eleven points instead of the default five, the last of which is taken hold of.
-    harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
-    harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::Button, Curve::Smooth.label())
-        .click();
-    harness.run_steps(3);
-    harness.get_by_label("Edit as custom").click();
-    harness.run_steps(4);
-    let plot = harness.get_by_label("The curve D over ξ").rect();
-    let last = plot.right_top() + plot.size() * Vec2::new(-0.03 / 1.06, 0.06 / 1.12);
-    harness.hover_at(last);
-    harness.step();
-    harness.drag_at(last);
-    harness.step();
-    harness.hover_at(last - Vec2::new(0.0, 20.0));
-    harness.step();
-    let dragged = harness.state().document().materials[0].custom_curve.clone();
-    assert!(
-        dragged.points()[dragged.points().len() - 1][1] > 1.0,
-        "the point follows"
-    );
-    // The drag, the eleven points, and the two choices from the menu, which are one step; the pointer is still down.
-    for _ in 0..3 {
-        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-        harness.run_steps(2);
-    }
-    assert_eq!(*harness.state().document(), before);
-    harness.hover_at(last - Vec2::new(0.0, 40.0));
-    harness.step();
-    harness.drop_at(last);
-    harness.run_steps(2);
-    assert_eq!(*harness.state().document(), before);
 }
 
 /// A document whose numbers all lie at the lower or at the upper end of what is taken.
@@ -499,20 +295,6 @@ fn looking_at_a_panel_changes_nothing() {
             assert_eq!(*harness.state().document(), document, "{pane:?}, high: {is_high}");
         }
     }
-}
-
-/// A lens as small as this has an f-number beyond any that is typed. Shown, it was once brought into a range, which was an edit
-/// that undo could not pass.
-#[test]
-fn showing_an_f_number_is_no_edit() {
-    let mut document = small_document();
-    document.camera.aperture = 5e-9;
-    let mut harness = editor_with(document.clone(), Vec::new());
-    settle(&mut harness);
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(10);
-    harness.get_by_role_and_label(Role::SpinButton, "f-number");
-    assert_eq!(*harness.state().document(), document);
 }
 
 #[test]

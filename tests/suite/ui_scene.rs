@@ -3,16 +3,13 @@
 use egui::accesskit::Role;
 use egui::{Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
-use glossmith::document::{AreaLight, Denoise};
+use glossmith::document::AreaLight;
 use glossmith::job::effect::EffectId;
-use glossmith::optics::tone::ToneCurve;
-use glossmith::render::shown::Shown;
 use glossmith::scene::ModelSource;
 
-use super::ui::{Editor, editor, editor_of, options, picture, request, see_label, settle, undo};
+use super::ui::{Editor, editor, editor_of, options, picture, settle, undo};
 use super::worker::small_document;
 
 pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
@@ -57,29 +54,6 @@ fn an_effect_is_switched_off_and_back() {
     assert_ne!(picture(&harness), before);
     undo(&mut harness);
     assert_eq!(picture(&harness), before);
-}
-
-#[test]
-fn a_bookmark_brings_the_camera_back() {
-    let mut harness = editor();
-    let first = harness.state().document().camera;
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(2);
-    harness.get_by_label("Add bookmark").click_accesskit();
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Yaw")
-        .set_value_accesskit(-60.0);
-    harness.run_steps(3);
-    assert_ne!(harness.state().document().camera, first);
-    harness.get_by_label("Apply").click_accesskit();
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().camera, first);
-    undo(&mut harness);
-    assert_eq!(harness.state().document().camera.yaw_deg, -60.0);
-    harness.get_by_label("Remove camera bookmark 1").click_accesskit();
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().bookmarks, []);
 }
 
 #[test]
@@ -231,25 +205,6 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
 }
 
 #[test]
-fn the_precision_view_tells_that_nothing_is_wrong() {
-    let mut harness = editor();
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Viewport shows")
-        .click_accesskit();
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::Button, "Precision")
-        .click_accesskit();
-    harness.run_steps(2);
-    see_label(&mut harness, "0 dropped");
-    for told in ["0 f32 off f64", "0 start inside", "of 960 pixels"] {
-        assert!(harness.query_by_label(told).is_some(), "{told}");
-    }
-    request(&mut harness, Action::Show(Shown::Picture));
-    assert!(harness.query_by_label("0 dropped").is_none());
-}
-
-#[test]
 fn ctrl_shift_and_a_click_explain_the_pixel() {
     let mut harness = editor();
     let before = harness.state().document().clone();
@@ -265,57 +220,6 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     harness.get_by_label("Close").click_accesskit();
     harness.run_steps(2);
     assert!(harness.query_by_label("Path trace of this pixel").is_none());
-}
-
-/// *Denoise* beside the exposure: the picture changes without being rendered again, and the status bar tells what error is
-/// left; undo brings the noise back.
-#[test]
-fn noise_is_taken_out_and_the_error_that_is_left_is_told() {
-    let mut harness = editor();
-    settle(&mut harness);
-    let noisy = picture(&harness);
-    let seconds = harness.state().snapshot().progress.render_seconds;
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(2);
-    choose(&mut harness, "Denoise", "High quality");
-    assert_eq!(harness.state().document().view.denoise, Denoise::High);
-    assert_ne!(picture(&harness), noisy);
-    let snapshot = harness.state().snapshot();
-    assert_eq!(snapshot.progress.render_seconds, seconds, "nothing is rendered again");
-    let told = snapshot.denoised.expect("there are two halves").value;
-    assert!(told > 0.0);
-    assert!(harness.query_by_label_contains("denoised ").is_some(), "the status bar");
-    undo(&mut harness);
-    assert_eq!(picture(&harness), noisy);
-    assert!(harness.query_by_label_contains("denoised ").is_none());
-}
-
-/// A narrow bar over the viewport: what it has no room for is in a menu, and works from there.
-#[test]
-fn a_narrow_bar_puts_what_it_has_no_room_for_into_a_menu() {
-    let mut harness = editor();
-    harness.set_size(Vec2::new(1024.0, 720.0));
-    harness.run_steps(2);
-    for gone in ["Viewport tone map", "Resolution"] {
-        assert!(harness.query_by_label(gone).is_none(), "{gone} is in the bar");
-    }
-    harness.get_by_label("Viewport denoise").click_accesskit();
-    harness.run_steps(2);
-    assert_eq!(harness.state().document().view.denoise, Denoise::Auto);
-    let open = |harness: &mut Editor, menu: &str| {
-        harness.get_by_label("More of the viewport's controls").click();
-        harness.run_steps(2);
-        harness.get_by_role_and_label(Role::Button, menu).click();
-        harness.run_steps(2);
-    };
-    open(&mut harness, "Tone map");
-    harness.get_by_role_and_label(Role::RadioButton, "PBR Neutral").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().document().view.tone_map, ToneCurve::PbrNeutral);
-    undo(&mut harness);
-    harness.set_size(Vec2::new(1400.0, 1000.0));
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Resolution").is_some(), "there is room again");
 }
 
 /// A panel is closed and opened by its tick in the menu *View*.

@@ -5,7 +5,6 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
-use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 
 use super::ui::{Editor, editor_of, options, request, see, see_label, settle, undo, wait};
@@ -68,21 +67,6 @@ fn a_race_is_run_and_its_winner_taken() {
     assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
 }
 
-#[test]
-fn multiple_scattering_is_raced_in_the_window() {
-    let mut harness = sphere_editor();
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(2);
-    let scattering = harness.get_by_role_and_label(Role::CheckBox, "Scattering between facets");
-    scattering.click_accesskit();
-    race_kinds(&mut harness, &["Light sampling", "Bounces", "Fresnel term"], 0.05);
-    see_label(&mut harness, "Use GGX, single scattering");
-    harness.get_by_label("Use GGX, single scattering").click_accesskit();
-    settle(&mut harness);
-    let material = &harness.state().document().materials[0];
-    assert!(material.lobe == Lobe::Ggx && !material.multiple_scattering);
-}
-
 /// A window in which a race runs, so many seconds for each technique.
 fn racing(seconds: f64) -> Editor {
     let mut harness = sphere_editor();
@@ -104,22 +88,6 @@ fn a_race_can_be_stopped() {
     see_label(&mut harness, "Run the race");
     // The viewport renders again.
     wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
-}
-
-/// The viewport renders again after a study whose panel is not seen any more.
-#[test]
-fn a_study_that_ends_behind_another_panel_lets_the_viewport_go_on() {
-    for is_maximised in [false, true] {
-        let mut harness = racing(0.02);
-        if is_maximised {
-            request(&mut harness, Action::Do(Command::Maximise));
-        } else {
-            harness.state_mut().reveal(Pane::Lighting);
-        }
-        // Something to go on with: at rest only the first sample of it is rendered.
-        request(&mut harness, Action::Do(Command::Restart));
-        wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
-    }
 }
 
 #[test]

@@ -140,29 +140,6 @@ fn a_set_is_dropped_at_once() {
     }
 }
 
-/// A picture that is dropped onto the square beside a parameter goes there, whatever its name says.
-#[test]
-fn a_picture_is_dropped_onto_the_place_of_a_texture() {
-    let folder = Folder::new();
-    let file = write(&folder, "any.png");
-    let mut harness = on_a_sphere(&folder);
-    let before = harness.state().document().clone();
-    let square = harness.get_by_role_and_label(Role::Button, "Texture of the roughness");
-    let at = square.rect().center();
-    harness.hover_at(at);
-    harness.run_steps(2);
-    drop_on(&mut harness, std::slice::from_ref(&file));
-    settle(&mut harness);
-    assert_eq!(own(&harness, TextureTarget::Roughness), Some(UserTexture::of(file)));
-    assert_eq!(own(&harness, TextureTarget::BaseColor), None);
-    assert!(
-        harness.query_by_label("Menu of the roughness texture").is_some(),
-        "its row stands below the parameter"
-    );
-    undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-}
-
 /// What is missing is told at its row, and all else goes on.
 #[test]
 fn a_missing_texture_is_told() {

@@ -2,16 +2,14 @@
 //! whole, and the radius of the lobe's slice.
 
 use egui::accesskit::Role;
-use egui::{Key, Rect, Vec2};
+use egui::Key;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
-use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::{AreaLight, CameraSettings};
-use glossmith::scene::ModelSource;
 use glossmith::scene::camera::Projection;
 
-use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, see, settle, undo};
+use super::ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo};
 use super::worker::small_document;
 
 fn camera(harness: &Editor) -> CameraSettings {
@@ -54,33 +52,6 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     assert_eq!(picture(&harness), shown);
 }
 
-/// A drag of the camera in parallel rays keeps what is looked at, and zooming enlarges.
-#[test]
-fn a_parallel_view_is_turned_and_zoomed() {
-    let mut harness = editor();
-    harness.key_press(Key::Num1);
-    settle(&mut harness);
-    let middle = harness.get_by_label("Viewport").rect().center();
-    drag(&mut harness, middle, Vec2::new(40.0, 0.0));
-    settle(&mut harness);
-    let turned = camera(&harness);
-    assert!(turned.yaw_deg != 0.0 && turned.projection == Projection::Orthographic);
-    assert_eq!(
-        (turned.target, turned.distance),
-        (None, None),
-        "it goes on framing the model"
-    );
-    let of_model = |harness: &Editor| picture(harness).iter().filter(|pixel| pixel[3] > 0.0).count();
-    let before = picture(&harness);
-    assert!(of_model(&harness) > 0);
-    harness.get_by_label("Viewport").focus();
-    harness.run_steps(2);
-    harness.key_press(Key::PageUp);
-    settle(&mut harness);
-    assert!(camera(&harness).distance.is_some());
-    assert_ne!(picture(&harness), before, "nearer is larger");
-}
-
 /// A light in view, and the window with its rows.
 fn lit() -> Editor {
     let mut document = small_document();
@@ -114,66 +85,6 @@ fn a_light_is_hidden_from_the_camera_by_its_row() {
     undo(&mut harness);
     assert_eq!(*harness.state().document(), before);
     assert_eq!(picture(&harness), shown);
-}
-
-/// New lights come into the image, none over another.
-#[test]
-fn new_lights_are_where_they_are_seen() {
-    let mut harness = editor();
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(4);
-    for label in ["Add area light", "Add spot"] {
-        harness.get_by_label(label).click_accesskit();
-        settle(&mut harness);
-    }
-    let viewport = harness.get_by_label("Viewport").rect();
-    let [first, second] = [1, 2].map(|number| {
-        let mark = harness
-            .get_by_label(&format!("Move area light {number}"))
-            .rect()
-            .center();
-        assert!(viewport.shrink(20.0).contains(mark), "{mark} in {viewport:?}");
-        mark
-    });
-    assert!(first.distance(second) > 60.0, "{first} and {second}");
-}
-
-#[test]
-fn a_light_is_moved_along_an_axis_and_in_the_plane_of_the_image() {
-    let mut harness = lit();
-    harness.get_by_label("Choose area light 1").click_accesskit();
-    harness.run_steps(3);
-    let before = harness.state().document().clone();
-    let middle = |harness: &Editor| {
-        harness.state().document().lighting.area_lights[0]
-            .shape()
-            .frame()
-            .middle
-    };
-    let from = middle(&harness);
-    let mark = harness.get_by_label("Move area light 1").rect().center();
-    for (name, axis) in [("x", glam::DVec3::X), ("y", glam::DVec3::Y)] {
-        let handle = harness
-            .get_by_label(&format!("Move area light 1 along {name}"))
-            .rect()
-            .center();
-        drag(&mut harness, handle, 0.4 * (handle - mark));
-        settle(&mut harness);
-        let by = middle(&harness) - from;
-        assert!(
-            by.dot(axis) > 0.02 && by.cross(axis).length() < 1e-6,
-            "along {name}: {by}"
-        );
-        undo(&mut harness);
-        assert_eq!(*harness.state().document(), before);
-    }
-    let handle = harness.get_by_label("Move area light 1 in the plane").rect().center();
-    drag(&mut harness, handle, Vec2::new(-20.0, 15.0));
-    settle(&mut harness);
-    let now = harness.get_by_label("Move area light 1").rect().center();
-    assert!(now.distance(mark + Vec2::new(-20.0, 15.0)) < 1.0, "{now}");
-    undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
 }
 
 /// A photograph is chosen, shown under, over and beside the render, and taken away; the render is no other one.
@@ -244,118 +155,4 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     assert_eq!(harness.get_by_label("Viewport").rect(), viewport);
     undo(&mut harness);
     assert!(harness.state().document().view.reference.is_some());
-}
-
-/// From the moment on that the panels show another model the image says that it is not that one.
-#[test]
-fn an_image_of_another_model_says_what_will_come() {
-    let mut harness = editor();
-    let says = |harness: &Editor| {
-        let told = ["Preparing Plane …", "The image still shows", "Loading "];
-        told.iter()
-            .any(|text| harness.query_all_by_label_contains(text).next().is_some())
-    };
-    assert!(!says(&harness));
-    harness.state_mut().request(Action::UseModel(ModelSource::Plane));
-    let is_plane = |harness: &Editor| harness.state().document().model == ModelSource::Plane;
-    let mut was_said = false;
-    see(&mut harness, "the plane", |harness| is_plane(harness) || says(harness));
-    while !(is_plane(&harness) && harness.state().is_settled()) {
-        was_said |= is_plane(&harness) && says(&harness);
-        std::thread::sleep(std::time::Duration::from_millis(3));
-        harness.step();
-    }
-    assert!(was_said, "the image was that of the other model");
-    settle(&mut harness);
-    assert!(!says(&harness));
-}
-
-/// The tabs that are shown, each with the place where the tabs of its bar end.
-fn tabs(harness: &Editor) -> Vec<(&'static str, Rect, f32)> {
-    let ends: Vec<Rect> = ["Manual: ", "More panels beside "]
-        .into_iter()
-        .flat_map(|name| harness.query_all_by_label_contains(name))
-        .map(|button| button.rect())
-        .collect();
-    let of_pane = |pane: &Pane| {
-        let tab = harness.query_all_by_role_and_label(Role::Button, pane.title()).next()?;
-        let tab = tab.rect();
-        let same_bar = ends
-            .iter()
-            .filter(|end| end.y_range().contains(tab.center().y) && end.right() > tab.left());
-        let end = same_bar.map(|end| end.left()).fold(f32::INFINITY, f32::min);
-        Some((pane.title(), tab, end))
-    };
-    Pane::ALL
-        .iter()
-        .filter(|pane| **pane != Pane::Viewport)
-        .filter_map(of_pane)
-        .collect()
-}
-
-/// Those for which there is no room are chosen from a menu.
-#[test]
-fn no_tab_is_cut_off_in_a_small_window() {
-    let mut harness = editor();
-    for size in [[800.0, 600.0], [1100.0, 700.0], [1366.0, 768.0]] {
-        harness.set_size(Vec2::from(size));
-        harness.run_steps(6);
-        let tabs = tabs(&harness);
-        assert!(tabs.len() >= 4, "one a bar at least: {tabs:?}");
-        for (title, tab, end) in tabs {
-            assert!(
-                tab.right() <= end + 1.0,
-                "{title} at {size:?}: {tab:?} is cut off at {end}"
-            );
-        }
-    }
-    harness.set_size(Vec2::new(800.0, 600.0));
-    harness.state_mut().reveal(Pane::Curve);
-    harness.run_steps(6);
-    assert!(harness.query_by_role_and_label(Role::Button, "Convergence").is_none());
-    harness.get_by_label("More panels beside Curve").click_accesskit();
-    harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::Button, "Convergence")
-        .click_accesskit();
-    harness.run_steps(6);
-    assert!(
-        harness.query_by_label("Manual: Convergence").is_some(),
-        "it is in front"
-    );
-}
-
-/// The slice of a narrow lobe in powers of ten, and cut off.
-#[test]
-fn the_polar_slice_has_a_logarithmic_radius_and_a_limit() {
-    let mut harness = editor();
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.05);
-    harness.state_mut().reveal(Pane::Lobe);
-    harness.run_steps(3);
-    let says = |harness: &Editor, text: &str| harness.query_all_by_label_contains(text).next().is_some();
-    let (radius, from_zero) = ("cos θ (1/sr): ", "cos θ (1/sr): 0 to ");
-    see(&mut harness, "the slice", |harness| says(harness, from_zero));
-    let logarithmic = |harness: &mut Editor| {
-        harness
-            .get_by_role_and_label(Role::CheckBox, "Logarithmic radius")
-            .click_accesskit();
-        harness.run_steps(3);
-    };
-    logarithmic(&mut harness);
-    assert!(says(&harness, radius) && !says(&harness, from_zero), "powers of ten");
-    logarithmic(&mut harness);
-    assert!(says(&harness, from_zero) && !says(&harness, "the rest is cut off"));
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Radius up to")
-        .set_value_accesskit(2.0);
-    harness.run_steps(3);
-    assert!(says(&harness, "cos θ (1/sr): 0 to 2"));
-    assert!(
-        harness
-            .query_all_by_label_contains("the rest is cut off")
-            .next()
-            .is_some()
-    );
 }

@@ -1,23 +1,17 @@
 //! The two workspaces and the user's own, the calm status bar, the first minute, and what the palette finds.
 
-use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::App;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::workspaces::{Change, LOOK, MEASURE};
 use glossmith::app::{Options, Resolution};
-use glossmith::document::Document;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::examples::still_life;
 use glossmith::store::{PRESETS, load_document, save_document};
 
-use super::gltf_builder::{glb, square};
-use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, see_label, settle, undo, wait};
-use super::worker::small_document;
+use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, settle, undo, wait};
 
 /// An editor as a user starts it.
 fn at_first() -> Editor {
@@ -95,38 +89,6 @@ fn a_workspace_of_ones_own_is_saved_and_removed() {
     assert!(harness.query_by_label("Workspace Look").is_some());
 }
 
-/// A study says what it will take and what is left; it is over for the window as soon as it is stopped, and edits made
-/// meanwhile stay.
-#[test]
-fn a_study_tells_its_time_goes_on_beside_edits_and_stops_at_once() {
-    let mut harness = editor_of(Options {
-        document: Some(Document {
-            model: ModelSource::Sphere,
-            ..small_document()
-        }),
-        ..options()
-    });
-    settle(&mut harness);
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(3);
-    assert!(has(&harness, "takes at most "), "before it begins");
-    harness.get_by_label("Run the race").click_accesskit();
-    see(&mut harness, "what is left of it", |harness| has(harness, " left"));
-    assert!(has(&harness, "You can go on editing"));
-    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[3].clone())));
-    assert!(harness.query_by_label("Stop").is_some(), "an edit does not end it");
-    harness.get_by_label("Stop").click_accesskit();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Stopped.").is_some(), "at once");
-    wait(&mut harness, "a finished picture", App::is_settled);
-    assert_eq!(harness.state().document().materials[0], PRESETS[3]);
-    // The button is free again when the last step is over.
-    see(&mut harness, "another race", |harness| {
-        use egui_kittest::kittest::NodeT as _;
-        !harness.get_by_label("Run the race").accesskit_node().is_disabled()
-    });
-}
-
 /// The start and *New* show the still life; it is a project like any other, and its parts are objects.
 #[test]
 fn the_start_and_new_show_the_still_life() {
@@ -173,56 +135,6 @@ fn comparing_begins_with_what_one_had() {
     });
     let rival = harness.state().rival_snapshot().and_then(|rival| rival.picture.clone());
     assert_eq!(rival.map(|picture| picture.document.materials.clone()), Some(before));
-}
-
-/// Surfaces that have no material in their file are clay; what became of the file stays in sight until it is closed.
-#[test]
-fn a_model_without_materials_is_clay_and_what_is_amiss_stays_in_sight() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("bare.glb");
-    let (buffer, mut document) = square();
-    document["extensionsUsed"] = serde_json::json!(["XYZ_unknown"]);
-    if let Some(primitive) = document["meshes"][0]["primitives"][0].as_object_mut() {
-        primitive.remove("material");
-    }
-    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
-    let mut harness = at_first();
-    request(&mut harness, Action::Open(path.clone()));
-    wait(&mut harness, "the model", |app| {
-        app.document().model == ModelSource::File(path.clone())
-    });
-    let clay = harness.state().document().materials[0].clone();
-    assert_eq!((clay.name.as_str(), clay.metalness), ("Clay", 0.0));
-    assert!(harness.query_by_label("Open your model…").is_none());
-    undo(&mut harness);
-    assert_ne!(harness.state().document().materials[0], clay);
-    see(&mut harness, "the note about the file", |harness| {
-        has(harness, "XYZ_unknown")
-    });
-    harness.get_by_label_contains("Show all of message").click_accesskit();
-    see_label(&mut harness, "Model file");
-}
-
-/// Materials, environments, workspaces and views are found by the palette's search.
-#[test]
-fn the_palette_finds_what_can_be_used() {
-    let mut harness = at_first();
-    let choose = |harness: &mut Editor, search: &str| {
-        request(harness, Action::Do(Command::Palette));
-        harness.event(egui::Event::Text(search.to_owned()));
-        harness.run_steps(3);
-        harness.key_press(Key::Enter);
-        harness.run_steps(3);
-    };
-    choose(&mut harness, "material gold");
-    settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0].name, "Gold");
-    choose(&mut harness, "environment warehouse");
-    wait(&mut harness, "the environment", |app| {
-        app.document().lighting.environment == EnvironmentSource::Warehouse
-    });
-    choose(&mut harness, "workspace measure");
-    assert!(has(&harness, "samples/s"));
 }
 
 /// A measured metal becomes one of two colours and back, each in one edit.

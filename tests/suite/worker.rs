@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
 use glossmith::render::EngineChoice;
-use glossmith::render::shown::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use glossmith::scene::{ModelOptions, ModelSource};
 
@@ -84,52 +83,6 @@ fn the_error_is_known_from_the_second_sample_on() {
         session.step(Duration::from_millis(1)).expect("no GPU to fail");
     }
     assert_eq!(session.history()[0].samples_per_pixel, 2.0);
-}
-
-/// Maps of the error and of the samples show what has been rendered; it is not rendered again.
-#[test]
-fn maps_are_shown_without_rendering_again() {
-    let worker = worker();
-    let mut document = small_document();
-    document.render.samples = 8;
-    let picture = finished(&worker, worker.submit(&document, Pace::Still));
-    assert!(picture.map.is_none());
-    let seconds = worker.snapshot().progress.render_seconds;
-    assert!(
-        worker
-            .snapshot()
-            .history
-            .last()
-            .is_some_and(|last| last.noise.relative > 0.0)
-    );
-    let mut seen = vec![picture.rgba.clone()];
-    for shown in [Shown::Error, Shown::Samples, Shown::Picture] {
-        let last = worker.snapshot().picture.clone().expect("there is one");
-        worker.show(shown);
-        let begun = Instant::now();
-        let picture = loop {
-            let picture = worker.snapshot().picture.clone().expect("there is one");
-            if picture.serial > last.serial {
-                break picture;
-            }
-            assert!(begun.elapsed() < Duration::from_secs(120), "{shown:?} is not shown");
-            std::thread::sleep(Duration::from_millis(2));
-        };
-        assert_eq!((picture.width, picture.height, picture.samples_per_pixel), (40, 24, 8));
-        assert_eq!(
-            picture.map.map(|(of, _)| of),
-            (shown != Shown::Picture).then_some(shown)
-        );
-        if shown == Shown::Samples {
-            assert_eq!(
-                picture.map.and_then(|(_, scale)| scale).map(|scale| scale.high),
-                Some(8.0)
-            );
-        }
-        seen.push(picture.rgba.clone());
-    }
-    assert!(seen[0] == seen[3] && seen[0] != seen[1] && seen[1] != seen[2]);
-    assert_eq!(worker.snapshot().progress.render_seconds, seconds);
 }
 
 #[test]

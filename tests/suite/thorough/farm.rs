@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::cli_support::Workplace;
-use crate::exchange_tools::tools;
+use super::exchange_tools::tools;
 
 /// Longest time for the tasks of a test.
 const PATIENCE: Duration = Duration::from_secs(240);

@@ -1,7 +1,7 @@
-//! Pictures of every panel with something in it, at two sizes and in both themes, for docs/PANELS.md;
-//! `UPDATE_DOCS=1 cargo test ui_pages` makes them again.
+//! Makes the screenshots of the book: of the whole window, each with its document inside, and of every panel with
+//! something in it for docs/PANELS.md. No tests: `scripts/pictures window panels` runs them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use egui::Vec2;
@@ -12,8 +12,11 @@ use glossmith::app::layout::Pane;
 use glossmith::document::{Denoise, Document};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::store::examples::EXAMPLES;
+use glossmith::store::picture::png_bytes;
+use glossmith::store::{material_by_name, save_document};
 
-use super::ui::{Editor, request, see, see_label, settle, window_of};
+use super::docs::root;
+use super::ui::{Editor, request, see, see_label, settle, wait, window_of};
 use super::ui_hands::{press, type_path};
 use super::ui_study::race_strategies;
 
@@ -31,19 +34,11 @@ const THEMES: [&str; 2] = ["dark", "light"];
 /// Of 100.
 const JPEG_QUALITY: u8 = 88;
 
-fn root() -> PathBuf {
-    PathBuf::from(crate::ROOT)
-}
+/// Width and height of a screenshot of the whole window, pixels.
+const WINDOW: [u32; 2] = [1440, 900];
 
 fn path(page: &str, [width, height]: [u32; 2], theme: &str) -> String {
     format!("pictures/panels/{page}-{width}x{height}-{theme}.jpg")
-}
-
-fn document() -> Document {
-    let mut document = (EXAMPLES[0].document)();
-    document.render.samples = 12;
-    document.view.denoise = Denoise::High;
-    document
 }
 
 /// Shows small pictures for as long as they take.
@@ -57,7 +52,10 @@ fn rest(harness: &mut Editor, seconds: f64) {
 
 /// A window in which something has been done in every panel.
 fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
-    let mut harness = window_of(document(), folder, size);
+    let mut document = (EXAMPLES[0].document)();
+    document.render.samples = 12;
+    document.view.denoise = Denoise::High;
+    let mut harness = window_of(document, folder, size);
     request(&mut harness, Action::Do(Command::Pin));
     rest(&mut harness, 1.0);
     request(&mut harness, Action::LookFrom(60.0, 15.0));
@@ -112,7 +110,9 @@ fn write(harness: &mut Editor, to: &Path) {
     window.write_with_encoder(encoder).expect("written");
 }
 
-fn make_all() {
+#[test]
+#[ignore = "makes screenshots"]
+fn panels() {
     // Its name is seen in the pictures.
     let folder = Path::new("target/panels");
     let _ = std::fs::remove_dir_all(folder);
@@ -136,33 +136,79 @@ fn make_all() {
     }
 }
 
-#[test]
-fn every_panel_has_a_picture_at_each_size_and_in_each_theme() {
-    if std::env::var_os("UPDATE_DOCS").is_some() {
-        make_all();
-    }
-    let told = std::fs::read_to_string(root().join("docs/PANELS.md")).expect("the page");
-    for pane in Pane::ALL {
-        let is_shown = pane == Pane::Viewport || PAGES.iter().any(|(_, panes)| panes.contains(&pane));
-        assert!(is_shown, "{} is on no page", pane.title());
-        assert!(
-            told.contains(&format!("*{}*", pane.title())),
-            "docs/PANELS.md is silent about {}",
-            pane.title()
-        );
-    }
-    for (page, _) in PAGES {
-        for size in SIZES {
-            for theme in THEMES {
-                let path = path(page, size, theme);
-                assert!(told.contains(&path), "docs/PANELS.md does not show {path}");
-                let found = image::image_dimensions(root().join("docs").join(&path));
-                assert_eq!(
-                    found.ok(),
-                    Some(size.into()),
-                    "{path}: run UPDATE_DOCS=1 cargo test ui_pages"
-                );
-            }
-        }
-    }
+fn car_paint() -> Document {
+    let mut document = Document {
+        ground: true,
+        materials: vec![material_by_name("car-paint-red").expect("a preset").clone()],
+        ..Document::default()
+    };
+    document.camera.yaw_deg = 20.0;
+    document.camera.pitch_deg = 12.0;
+    document.camera.fov_deg = 24.0;
+    document.camera.target = Some([0.2, 1.3, 0.0]);
+    document.view.denoise = Denoise::High;
+    document.render.samples = 12;
+    document
 }
+
+fn reveal(harness: &mut Editor, panes: &[Pane]) {
+    for pane in panes {
+        request(harness, Action::Reveal(*pane));
+    }
+    settle(harness);
+    // Thumbnails and plots come after the render.
+    rest(harness, 3.0);
+}
+
+/// Writes the window as it is, with its document inside.
+fn take(harness: &mut Editor, name: &str) {
+    harness.hover_at(egui::pos2(-10.0, -10.0));
+    harness.run_steps(4);
+    let window = harness
+        .render()
+        .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let size = [window.width(), window.height()];
+    let text = tempfile::NamedTempFile::new().expect("a temporary file");
+    save_document(text.path(), harness.state().document()).expect("saved");
+    let text = std::fs::read_to_string(text.path()).expect("the text");
+    let bytes = png_bytes(size, &window.into_raw(), Some(&text)).expect("an image");
+    std::fs::write(root().join(format!("docs/pictures/{name}.png")), bytes).expect("written");
+}
+
+#[test]
+#[ignore = "makes screenshots"]
+fn windows() {
+    // Its name is seen in a screenshot.
+    let folder = Path::new("target/windows");
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).expect("a folder");
+    let mut harness = window_of(car_paint(), folder, WINDOW);
+    reveal(
+        &mut harness,
+        &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve],
+    );
+    take(&mut harness, "window");
+    request(&mut harness, Action::Do(Command::ToggleTheme));
+    reveal(&mut harness, &[Pane::Samples, Pane::Camera]);
+    take(&mut harness, "window-light");
+    request(&mut harness, Action::Do(Command::ToggleTheme));
+    request(&mut harness, Action::Do(Command::Measure));
+    see(&mut harness, "the ledger", |harness| {
+        harness
+            .query_by_label_contains("ms for one sample of every pixel")
+            .is_some()
+    });
+    reveal(&mut harness, &[Pane::Effects, Pane::Curve]);
+    take(&mut harness, "window-effects");
+    request(&mut harness, Action::Do(Command::Compare));
+    wait(&mut harness, "B", |app| app.rms_difference().is_some());
+    reveal(&mut harness, &[Pane::Lobe, Pane::Lighting]);
+    take(&mut harness, "window-compare");
+    request(&mut harness, Action::Do(Command::Compare));
+    settle(&mut harness);
+    request(&mut harness, Action::Do(Command::Export));
+    type_path(&mut harness, &folder.join("car-paint.mtlx"), "Save");
+    see_label(&mut harness, "Write the file");
+    take(&mut harness, "window-export");
+}
+

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::support::Random;
 
-#[path = "../../fuzz/formats.rs"]
+#[path = "../../../fuzz/formats.rs"]
 mod formats;
 
 /// Damaged files made of each file of the corpus.

@@ -2,20 +2,18 @@
 //! command by the program. A page that names what is not there any more fails.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command};
+use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::app::workspaces::LOOK;
 use glossmith::app::{App, Options};
-use glossmith::document::{Document, GroundKind};
-use glossmith::optics::curve::Curve;
+use glossmith::document::Document;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::shown::Shown;
-use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::examples::still_life;
 use serde_json::Value;
@@ -24,19 +22,13 @@ use super::cli_support::{Workplace, write_hdr};
 use super::docs::{pages, text_of};
 use super::docs_commands::{arguments, commands};
 use super::gltf_builder::{glb, square};
-use super::ui::{Editor, drag, editor, editor_of, options, request, see, see_label, settle, wait};
+use super::ui::{Editor, drag, editor, editor_of, options, request, see, settle, wait};
 use super::ui_files::{drop_on, wait_for_words};
 use super::ui_hands::{press, type_path};
-use super::ui_scene::choose;
 use super::worker::small_document;
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))
-}
-
-/// A window whose files are chosen by typing, with a folder for them.
-fn window() -> (Editor, tempfile::TempDir) {
-    window_with(options())
 }
 
 fn window_with(options: Options) -> (Editor, tempfile::TempDir) {
@@ -61,19 +53,6 @@ fn tab(harness: &mut Editor, pane: Pane) {
 fn tap(harness: &mut Editor, label: &str) {
     harness.get_by_role_and_label(Role::Button, label).click_accesskit();
     harness.run_steps(3);
-}
-
-/// Chooses an entry of the menu bar.
-fn menu(harness: &mut Editor, menu: &str, entry: &str) {
-    press(harness, menu);
-    press(harness, entry);
-}
-
-fn set(harness: &mut Editor, label: &str, value: f64) {
-    harness
-        .get_by_role_and_label(Role::SpinButton, label)
-        .set_value_accesskit(value);
-    settle(harness);
 }
 
 /// The names of the window that a page gives in italics, such as *File › Export…*, in their parts.
@@ -233,64 +212,6 @@ fn your_first_material() {
     wait_for_words(&mut harness, "gold.json");
 }
 
-const TRIANGLE: &str = "v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-
-#[test]
-fn your_model_under_your_light() {
-    let (mut harness, folder) = window();
-    let path = |name: &str| -> PathBuf { folder.path().join(name) };
-    // 1. Drop the model with an environment map.
-    std::fs::write(path("chair.obj"), TRIANGLE).unwrap();
-    write_hdr(&path("loft.hdr"), 8, 4, |x, _| [if x == 2 { 20.0 } else { 0.5 }; 3]);
-    drop_on(&mut harness, &[path("chair.obj"), path("loft.hdr")]);
-    let (model, light) = (
-        ModelSource::File(path("chair.obj")),
-        EnvironmentSource::File(path("loft.hdr")),
-    );
-    wait(&mut harness, "model and light", |app| {
-        app.document().model == model && app.document().lighting.environment == light
-    });
-    settle(&mut harness);
-    // 2. The import report.
-    menu(&mut harness, "File", "Model file…");
-    assert!(harness.query_by_label_contains("chair.obj").is_some());
-    press(&mut harness, "Close");
-    // 3. Rotation and strength.
-    tab(&mut harness, Pane::Lighting);
-    set(&mut harness, "Environment rotation", 2.0);
-    set(&mut harness, "Environment strength", 2.0);
-    let lighting = harness.state().document().lighting.clone();
-    assert_eq!((lighting.rotation_deg, lighting.strength), (2.0, 2.0));
-    // 4. The ground, of each kind.
-    harness
-        .get_by_role_and_label(Role::CheckBox, "Ground")
-        .click_accesskit();
-    settle(&mut harness);
-    assert!(harness.state().document().ground);
-    for (kind, label) in [
-        (GroundKind::ShadowCatcher, "Shadow catcher"),
-        (GroundKind::Cyclorama, "Cyclorama"),
-        (GroundKind::Plane, "Plane"),
-    ] {
-        choose(&mut harness, "Kind of ground", label);
-        assert_eq!(harness.state().document().lighting.ground.kind, kind);
-    }
-    // 5. The camera.
-    harness.key_press(Key::F);
-    tab(&mut harness, Pane::Camera);
-    for label in ["Aperture", "Field of view"] {
-        assert!(
-            harness.query_by_role_and_label(Role::SpinButton, label).is_some(),
-            "{label}"
-        );
-    }
-    // 6. Render to a file, while the queue shows it.
-    menu(&mut harness, "Render", "Render to a file…");
-    type_path(&mut harness, &path("chair.exr"), "Save");
-    tab(&mut harness, Pane::Queue);
-    wait(&mut harness, "the file", |_| path("chair.exr").exists());
-}
-
 #[test]
 fn the_commands_of_your_model_under_your_light() {
     let place = Workplace::new();
@@ -305,32 +226,6 @@ fn the_commands_of_your_model_under_your_light() {
     for file in ["chair.png", "chair.exr"] {
         assert!(place.path(file).exists(), "{file}");
     }
-}
-
-#[test]
-fn the_geometric_lobe_in_five_minutes() {
-    let mut harness = editor();
-    let material = |harness: &Editor| harness.state().document().materials[0].clone();
-    tab(&mut harness, Pane::Material);
-    choose(&mut harness, "Specular lobe", Lobe::Geometric.label());
-    for roughness in [0.0, 0.5, 1.0, 0.3] {
-        set(&mut harness, "Specular roughness", roughness);
-    }
-    assert_eq!(
-        (material(&harness).lobe, material(&harness).roughness),
-        (Lobe::Geometric, 0.3)
-    );
-    tab(&mut harness, Pane::Samples);
-    tab(&mut harness, Pane::Curve);
-    harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
-    harness.run_steps(3);
-    press(&mut harness, Curve::Custom.label());
-    settle(&mut harness);
-    assert_eq!(material(&harness).curve, Curve::Custom);
-    tab(&mut harness, Pane::Lobe);
-    choose(&mut harness, "Compare the lobe", Lobe::Ggx.label());
-    harness.get_by_label("Match look").click_accesskit();
-    see_label(&mut harness, "Use it");
 }
 
 /// Runs the commands of a tutorial with values of options in place of its own, or added: small images, little time. The
@@ -359,55 +254,6 @@ fn the_commands_of_the_geometric_lobe() {
     for file in ["samples.png", "polar.png"] {
         assert!(place.path(file).exists(), "{file}");
     }
-}
-
-#[test]
-fn how_accurate_is_my_render() {
-    let page = tutorial("accuracy.md");
-    let place = Workplace::new();
-    // The time is that of the race; renders end before it.
-    let small = [
-        ("--size", "16x16"),
-        ("--noise", "0.2"),
-        ("--time", "0.2"),
-        ("--engine", "cpu"),
-    ];
-    let answers = follow(&place, &page, &small);
-    for key in ["noise", "noise_low", "noise_high"] {
-        assert!(
-            page.contains(&format!("`{key}`")) && answers[0][key].is_number(),
-            "{key}"
-        );
-    }
-    assert!(answers[1]["denoised_error"].is_number(), "{}", answers[1]);
-    for file in ["gold.png", "clean.png", "study/accuracy.svg"] {
-        assert!(place.path(file).exists(), "{file}");
-    }
-    // In the window.
-    let mut harness = editor();
-    tab(&mut harness, Pane::Convergence);
-    harness.key_press(Key::D);
-    settle(&mut harness);
-    for shown in ["Error", "Samples", "Variance", "Precision"] {
-        harness
-            .get_by_role_and_label(Role::ComboBox, "Viewport shows")
-            .click_accesskit();
-        harness.run_steps(3);
-        // Panels may have tabs of the same name, but not over the viewport.
-        let over = harness.get_by_label("Viewport").rect().x_range();
-        harness
-            .query_all_by_role_and_label(Role::Button, shown)
-            .find(|choice| over.contains(choice.rect().center().x))
-            .unwrap_or_else(|| panic!("no entry {shown} in the menu"))
-            .click_accesskit();
-        harness.run_steps(3);
-    }
-    press(&mut harness, "Render");
-    assert!(
-        harness
-            .query_by_role_and_label(Role::Button, Command::Race.label())
-            .is_some()
-    );
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! Denoised pictures where it is hard: mirrors, glass, blur, turntables, a library that goes, work that is called off.
 
-use std::path::PathBuf;
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glossmith::analysis::halves::Halves;
@@ -9,12 +7,11 @@ use glossmith::document::turntable::{Turn, turned};
 use glossmith::document::{Background, Denoise, Document, assign};
 use glossmith::job::film::Image;
 use glossmith::render::StepDenoiser;
-use glossmith::render::denoise::{Denoiser, Library, Noisy, data_folder};
+use glossmith::render::denoise::{Denoiser, Library, Noisy};
 use glossmith::render::worker::{Pace, Worker};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 
-use super::cli_support::Workplace;
 use super::renders::render;
 
 fn sphere_on_ground(assignments: &[&str]) -> Document {
@@ -95,44 +92,6 @@ fn what_stands_still_in_a_turntable_does_not_boil() {
     // Frames with numbers of their own would be 1 ± 0.1 times as far apart as pictures with other numbers are: what is left
     // in a denoised picture is smooth over some ten pixels.
     assert!(still < 0.7 * boiling, "{still} {boiling}");
-}
-
-/// The folder of the library that these tests use.
-fn library_folder() -> PathBuf {
-    std::env::var_os("GLOSSMITH_OIDN")
-        .map(PathBuf::from)
-        .or_else(data_folder)
-        .filter(|folder| folder.join("libOpenImageDenoise.so.2").exists())
-        .expect("scripts/setup denoiser puts the library there")
-}
-
-/// The library goes between two runs: the second says so in a line and renders on.
-#[cfg(target_os = "linux")]
-#[test]
-fn a_library_that_goes_is_missed_in_a_line() {
-    let place = Workplace::new();
-    let folder = place.path("library");
-    std::os::unix::fs::symlink(library_folder(), &folder).unwrap();
-    let run = |report: &str| {
-        let arguments =
-            format!("render --engine cpu --size 8x8 --samples 2 --denoise fast --report {report} --output a.png");
-        let output = Command::new(crate::program())
-            .args(arguments.split(' '))
-            .current_dir(place.path("."))
-            .env("GLOSSMITH_OIDN", &folder)
-            .env_remove("RUST_LOG")
-            .output()
-            .unwrap();
-        assert!(output.status.success());
-        (place.read(report), String::from_utf8(output.stderr).unwrap())
-    };
-    let (report, _) = run("with.json");
-    assert!(report.contains("\"denoised\": \"fast\""), "{report}");
-    std::fs::remove_file(&folder).unwrap();
-    let (report, text) = run("without.json");
-    assert!(report.contains("\"denoised\": null"), "{report}");
-    let told = text.lines().filter(|line| line.contains("not denoised")).count();
-    assert_eq!(told, 1, "{text}");
 }
 
 /// A window that closes does not wait for a picture of a million pixels that is being denoised.
