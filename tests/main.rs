@@ -78,6 +78,8 @@ mod denoise_told;
 mod density;
 #[path = "suite/device_loss.rs"]
 mod device_loss;
+#[path = "suite/displays.rs"]
+mod displays;
 #[path = "suite/docs.rs"]
 mod docs;
 #[path = "suite/docs_commands.rs"]
@@ -266,6 +268,8 @@ mod ui_hands;
 mod ui_lights;
 #[path = "suite/ui_look.rs"]
 mod ui_look;
+#[path = "suite/ui_notes.rs"]
+mod ui_notes;
 #[path = "suite/ui_objects.rs"]
 mod ui_objects;
 #[path = "suite/ui_panels.rs"]

@@ -308,6 +308,13 @@ impl App {
         messages::add(&mut self.shared.messages, level, text.into());
     }
 
+    /// Reports what was done, in a note over the viewport.
+    fn report_success(&mut self, done: Option<messages::Success>) {
+        if let Some(done) = done {
+            messages::add_success(&mut self.shared.messages, done);
+        }
+    }
+
     fn take_events(&mut self, ctx: &egui::Context) {
         self.take_files(ctx);
         self.take_autosave_reports();
@@ -343,8 +350,8 @@ impl App {
                     self.edits.note(ENVIRONMENT_CHANGED, "");
                     self.count_as_start(is_start);
                 }
-                Event::LayersMade(path, layers) => {
-                    self.write_layers(path, layers);
+                Event::LayersMade(path, layers, progress) => {
+                    self.write_layers(path, layers, &progress);
                     continue;
                 }
                 Event::Reloaded(before, model) => {

@@ -10,6 +10,7 @@ pub mod display;
 mod engine;
 pub mod environment_thumbnails;
 mod error;
+pub mod frame;
 mod lens;
 pub mod light_layers;
 pub mod looks;

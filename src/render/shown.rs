@@ -95,6 +95,14 @@ impl Shown {
             "The variance of each pixel's mean luminance, by the spread of its samples.",
         ),
     ];
+
+    /// Whether its map is made of the film, not of the image alone.
+    pub fn is_of_film(self) -> bool {
+        !matches!(
+            self,
+            Self::Picture | Self::Precision | Self::FalseColor | Self::Clipping
+        )
+    }
 }
 
 /// Value range of a map's colours.
@@ -120,15 +128,22 @@ impl Scale {
     }
 }
 
-/// Inputs of maps.
+/// Inputs of a film's maps.
 #[derive(Clone, Copy, Debug)]
 pub struct Source<'a> {
     pub film: &'a Film,
-    /// The linear image shown.
-    pub image: &'a Image,
-    pub view: &'a ViewSettings,
+    /// Estimated error per pixel, if the image shown is denoised and has one.
+    pub denoised_errors: Option<&'a [f32]>,
     /// Length of a unit of the geometry, scene units.
     pub world_units_per_unit: f64,
+}
+
+impl Source<'_> {
+    /// Estimated error per pixel of the image shown.
+    fn errors(&self) -> Vec<f32> {
+        self.denoised_errors
+            .map_or_else(|| relative_errors(self.film), <[f32]>::to_vec)
+    }
 }
 
 /// A map as opaque RGBA, with the range of its colours if they represent numbers.
@@ -140,12 +155,24 @@ pub struct Map {
     pub scale: Option<Scale>,
 }
 
-/// The map of a view; `None` for the image itself, and for maps made elsewhere.
-pub fn map(source: &Source<'_>, shown: Shown) -> Option<Map> {
+/// The map of a view of the image alone; `None` for the image itself and other views.
+pub fn map_of_image(image: &Image, view: &ViewSettings, shown: Shown) -> Option<Map> {
+    match shown {
+        Shown::FalseColor => Some(linear_map(&stops(image, view), [-STOPS, STOPS])),
+        Shown::Clipping => Some(Map {
+            rgba: with_clipping(display(image, view)),
+            scale: None,
+        }),
+        _ => None,
+    }
+}
+
+/// The map of a view of the film; `None` for other views.
+pub fn map_of_film(source: &Source<'_>, shown: Shown) -> Option<Map> {
     let film = source.film;
     Some(match shown {
-        Shown::Picture | Shown::Precision => return None,
-        Shown::Error => map_of_errors(&relative_errors(film)),
+        Shown::Picture | Shown::Precision | Shown::FalseColor | Shown::Clipping => return None,
+        Shown::Error => map_of_errors(&source.errors()),
         Shown::Samples => {
             let counts: Vec<f32> = (0..film.pixel_count())
                 .map(|pixel| film.samples_of(pixel) as f32)
@@ -153,11 +180,6 @@ pub fn map(source: &Source<'_>, shown: Shown) -> Option<Map> {
             let high = f64::from(counts.iter().copied().fold(0.0, f32::max)).max(1.0);
             linear_map(&counts, [0.0, high])
         }
-        Shown::FalseColor => linear_map(&stops(source.image, source.view), [-STOPS, STOPS]),
-        Shown::Clipping => Map {
-            rgba: with_clipping(display(source.image, source.view)),
-            scale: None,
-        },
         Shown::Albedo => Map {
             rgba: colors(&Features::of(film, source.world_units_per_unit).albedo, |[r, g, b]| {
                 srgb_from_linear(vec3(r, g, b)).to_f32()
@@ -190,8 +212,8 @@ pub fn map(source: &Source<'_>, shown: Shown) -> Option<Map> {
     })
 }
 
-/// Errors of pixels in colours, see [`map`].
-pub fn map_of_errors(errors: &[f32]) -> Map {
+/// Errors of pixels in colours.
+fn map_of_errors(errors: &[f32]) -> Map {
     let mut sorted: Vec<f32> = errors.iter().copied().filter(|error| error.is_finite()).collect();
     sorted.sort_by(f32::total_cmp);
     let rank = ((1.0 - ERRORS_ABOVE) * sorted.len() as f64) as usize;
@@ -291,11 +313,11 @@ pub struct PixelFacts {
 }
 
 impl PixelFacts {
-    /// The quantities of a film; with the denoised image's errors, if given, instead of its own.
-    pub fn of(source: &Source<'_>, denoised_errors: Option<&[f32]>) -> Self {
+    /// The quantities of a film.
+    pub fn of(source: &Source<'_>) -> Self {
         let film = source.film;
         Self {
-            errors: denoised_errors.map_or_else(|| relative_errors(film), <[f32]>::to_vec),
+            errors: source.errors(),
             samples: (0..film.pixel_count())
                 .map(|pixel| film.samples_of(pixel) as u32)
                 .collect(),

@@ -232,7 +232,7 @@ fn choose(harness: &mut Editor, command: Command, path: &Path) {
     wait(harness, "the file", |app| {
         app.messages()
             .iter()
-            .any(|text| text.contains("saved") && text.contains(&name))
+            .any(|text| text.contains("Saved") && text.contains(&name))
     });
 }
 

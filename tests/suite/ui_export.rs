@@ -5,7 +5,6 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::store::PRESETS;
 use glossmith::store::preset::{load_material, material_text};
-
 use crate::ui::{Editor, editor, request, see, see_label, wait};
 
 /// Chooses *Export…* and types a path.
@@ -48,7 +47,7 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
     see_label(&mut harness, "Write the file");
     harness.get_by_role_and_label(Role::Button, "Write the file").click();
     wait(&mut harness, "the file", |app| {
-        app.messages().iter().any(|text| text.contains("exported"))
+        app.messages().iter().any(|text| text.contains("Exported"))
     });
     // It comes back as it was.
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[5].clone())));

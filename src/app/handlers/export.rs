@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::app::App;
 use crate::app::services::disk::Done;
 use crate::app::services::export::{Ready, ready};
+use crate::app::services::messages::Success;
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::export::Answer;
 use crate::document::MaterialSettings;
@@ -60,11 +61,11 @@ impl App {
     }
 
     /// Puts a text that is ready on the clipboard.
-    pub(in crate::app) fn take_copied(&mut self, ctx: &egui::Context, copied: Result<(String, String), String>) {
+    pub(in crate::app) fn take_copied(&mut self, ctx: &egui::Context, copied: Result<(String, Success), String>) {
         match copied {
-            Ok((text, words)) => {
+            Ok((text, done)) => {
                 ctx.copy_text(text);
-                self.report(Level::Info, words);
+                self.report_success(Some(done));
             }
             Err(error) => self.report(Level::Error, error),
         }
@@ -79,7 +80,7 @@ impl App {
         };
         self.files.disk.write(move || {
             let saved = prepared.save().map_err(|error| error.to_string());
-            Done::Wrote(saved.map(|()| format!("exported {}", prepared.report.output.display())))
+            Done::Wrote(saved.map(|()| Success::with_file("Exported", &prepared.report.output, "")))
         });
     }
 
@@ -93,16 +94,16 @@ impl App {
 }
 
 /// A material as a format's text, and what to say about it.
-fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, String), String> {
+fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, Success), String> {
     let name = material.name.clone();
     let path = PathBuf::from(&name).with_extension(format.extensions[0]);
     let prepared =
         exchange::prepare(&Subject::of(material), &name, &path, format).map_err(|error| error.to_string())?;
     let count = |outcome: Outcome| prepared.report.count(outcome);
     let words = match [count(Outcome::Approximated), count(Outcome::Dropped)] {
-        [0, 0] => format!("copied {name}: {}, nothing is lost", format.label),
-        [near, gone] => format!("copied {name}: {}, {near} approximated, {gone} dropped", format.label),
+        [0, 0] => format!("Copied {name}: {}, nothing is lost", format.label),
+        [near, gone] => format!("Copied {name}: {}, {near} approximated, {gone} dropped", format.label),
     };
     let text = prepared.text().ok_or("this format is no text; export it to a file")?;
-    Ok((text.to_owned(), words))
+    Ok((text.to_owned(), Success::new(words)))
 }

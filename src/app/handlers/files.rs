@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::app::actions::Command;
 use crate::app::handlers::dropped::textures_in;
 use crate::app::handlers::take_picture::Destination;
-use crate::app::services::disk::{Disk, Done, Task, words};
+use crate::app::services::disk::{Disk, Done, Task};
 use crate::app::services::edits::Edits;
+use crate::app::services::messages::Success;
 use crate::app::services::watched::{self, Watched};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
@@ -156,7 +157,8 @@ impl App {
                         self.shared.recent.add(&path);
                         self.files.project = Some(path.clone());
                     }
-                    self.report_saved(&path, saved.map_err(|error| error.to_string()));
+                    let saved = saved.map_err(|error| error.to_string());
+                    self.report_outcome(saved.map(|()| Success::with_file("Saved", &path, "")));
                 }
                 Done::Listed(listed) => self.take_library(listed),
                 Done::ChangedLibrary(changed) => {
@@ -170,8 +172,7 @@ impl App {
                 }
                 Done::Wrote(result) => {
                     has_failed |= result.is_err();
-                    let (level, text) = words(result);
-                    self.report(level, text);
+                    self.report_outcome(result);
                 }
                 Done::Broke(task, why) => {
                     has_failed |= task == Task::Write;
@@ -417,13 +418,14 @@ impl App {
         let material = self.desk_material();
         self.files.disk.write(move || {
             let saved = save_material(&path, &material).map_err(|error| error.to_string());
-            Done::Wrote(saved.map(|()| format!("saved {}", path.display())))
+            Done::Wrote(saved.map(|()| Success::with_file("Saved", &path, "")))
         });
     }
 
-    fn report_saved(&mut self, path: &Path, saved: Result<(), String>) {
-        match saved {
-            Ok(()) => self.report(Level::Info, format!("saved {}", path.display())),
+    /// Reports what was to be done, in a note.
+    pub(in crate::app) fn report_outcome(&mut self, outcome: Result<Success, String>) {
+        match outcome {
+            Ok(success) => self.report_success(Some(success)),
             Err(error) => self.report(Level::Error, error),
         }
     }

@@ -1,9 +1,12 @@
 //! What the window does about the user's materials.
 
+use std::path::Path;
+
 use crate::app::App;
 use crate::app::layout::Pane;
 use crate::app::services::disk::Done;
 use crate::app::services::library::{Change, Listed};
+use crate::app::services::messages::Success;
 use crate::render::worker::Level;
 use crate::store::{FileError, library};
 
@@ -13,7 +16,7 @@ impl App {
         if let Some(folder) = self.shared.library.folder.clone() {
             self.files.disk.list(move || {
                 Done::Listed(library::list(&folder).map(|entries| Listed {
-                    words: String::new(),
+                    done: None,
                     entries,
                     added: None,
                     removed: None,
@@ -36,28 +39,27 @@ impl App {
         self.files.disk.write(move || {
             let changed = || -> Result<Listed, FileError> {
                 let (mut added, mut removed) = (None, None);
-                let words = match &change {
+                let saved = |path: &Path| Success::with_file("Saved", path, "one of your presets");
+                let done = match &change {
                     Change::Add => {
                         let path = library::add(&folder, &material)?;
-                        let words = format!("saved {}", path.display());
-                        added = Some(path);
-                        words
+                        Some(saved(added.insert(path)))
                     }
                     Change::Rename(path, name) => {
-                        format!("renamed to {name}: {}", library::rename(path, name)?.display())
+                        Some(Success::with_file("Renamed to", &library::rename(path, name)?, ""))
                     }
                     Change::Remove(path) => {
                         removed = Some(library::remove(path)?);
-                        format!("removed {}", path.display())
+                        Some(Success::with_file("Removed", path, ""))
                     }
-                    Change::Duplicate(path) => format!("saved {}", library::duplicate(path)?.display()),
+                    Change::Duplicate(path) => Some(saved(&library::duplicate(path)?)),
                     Change::Restore => match &kept {
-                        Some(kept) => format!("restored {}", library::restore(kept)?.display()),
-                        None => String::new(),
+                        Some(kept) => Some(Success::with_file("Restored", &library::restore(kept)?, "")),
+                        None => None,
                     },
                 };
                 Ok(Listed {
-                    words,
+                    done,
                     entries: library::list(&folder)?,
                     added,
                     removed,
@@ -71,9 +73,7 @@ impl App {
     pub(in crate::app) fn take_library(&mut self, listed: Result<Listed, FileError>) {
         match listed {
             Ok(listed) => {
-                if !listed.words.is_empty() {
-                    self.report(Level::Info, listed.words);
-                }
+                self.report_success(listed.done);
                 self.shared.library.removed = listed.removed;
                 self.shared.library.take_list(listed.entries);
                 if let Some(path) = listed.added {

@@ -7,7 +7,7 @@ use egui::ViewportCommand;
 use crate::app::App;
 use crate::app::kit::{theme, widgets};
 use crate::app::layout::Pane;
-use crate::app::services::disk::words;
+use crate::app::services::messages::Success;
 use crate::render::EngineChoice;
 use crate::render::queue::Task;
 
@@ -29,8 +29,7 @@ impl App {
     /// Says how tasks ended.
     pub(in crate::app) fn take_queue_news(&mut self) {
         for ended in self.shared.queue.take_news() {
-            let (level, text) = words(ended);
-            self.report(level, text);
+            self.report_outcome(ended.map(Success::new));
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::app::App;
 use crate::app::services::disk::Done;
+use crate::app::services::messages::Success;
 use crate::app::services::snapshots::{PinChange, PinsListed};
 use crate::render::worker::Level;
 use crate::store::{FileError, library, snapshots};
@@ -14,7 +15,7 @@ impl App {
         if let Some(folder) = self.shared.snapshots.folder.clone() {
             self.files.disk.list(move || {
                 Done::ListedPins(snapshots::list(&folder).map(|(pinned, errors)| PinsListed {
-                    words: String::new(),
+                    done: None,
                     pinned,
                     errors,
                     removed: None,
@@ -42,28 +43,28 @@ impl App {
         self.files.disk.write(move || {
             let changed = || -> Result<PinsListed, FileError> {
                 let mut removed = None;
-                let words = match (&change, &picture) {
+                let done = match (&change, &picture) {
                     (PinChange::Add, Some(picture)) => {
                         let rgba = crate::render::display::display(&picture.image, &picture.document.view);
                         let path = snapshots::add(&folder, &document, [picture.width, picture.height], &rgba)?;
-                        format!("pinned {}", path.display())
+                        Some(Success::with_file("Pinned", &path, ""))
                     }
                     (PinChange::Rename(path, name), _) => {
-                        format!("renamed to {name}: {}", snapshots::rename(path, name)?.display())
+                        Some(Success::with_file("Renamed to", &snapshots::rename(path, name)?, ""))
                     }
                     (PinChange::Remove(path), _) => {
                         removed = Some(library::remove(path)?);
-                        format!("removed {}", path.display())
+                        Some(Success::with_file("Removed", path, ""))
                     }
                     (PinChange::Restore, _) => match &kept {
-                        Some(kept) => format!("restored {}", library::restore(kept)?.display()),
-                        None => String::new(),
+                        Some(kept) => Some(Success::with_file("Restored", &library::restore(kept)?, "")),
+                        None => None,
                     },
-                    (PinChange::Add, None) => String::new(),
+                    (PinChange::Add, None) => None,
                 };
                 let (pinned, errors) = snapshots::list(&folder)?;
                 Ok(PinsListed {
-                    words,
+                    done,
                     pinned,
                     errors,
                     removed,
@@ -77,9 +78,7 @@ impl App {
     pub(in crate::app) fn take_snapshots(&mut self, listed: Result<PinsListed, FileError>) {
         match listed {
             Ok(listed) => {
-                if !listed.words.is_empty() {
-                    self.report(Level::Info, listed.words);
-                }
+                self.report_success(listed.done);
                 for error in listed.errors {
                     self.report(Level::Warning, error);
                 }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use egui::ColorImage;
 
 use crate::app::App;
+use crate::app::services::messages::Success;
 use crate::store::picture::png_bytes;
 use crate::store::replace::save_atomically;
 
@@ -32,7 +33,11 @@ impl App {
                 .map_err(|_| format!("{}: the screenshot can't be read back from the GPU", path.display()))?;
             let [width, height] = image.size;
             save(&path, &image)?;
-            Ok(format!("saved {} ({width} × {height})", path.display()))
+            Ok(Success::with_file(
+                "Saved",
+                &path,
+                &format!("{width} × {height} pixels"),
+            ))
         });
     }
 }

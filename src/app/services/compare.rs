@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::analysis::difference::difference;
 use crate::app::services::beside::started;
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Change, Document, MaterialSettings};
 use crate::matching::{lobe_of_material, matched_lobe};
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
@@ -230,16 +230,22 @@ impl Compare {
         self.asked_match = Some(query);
     }
 
-    /// Requests the difference of the images if they are new and of the same size.
+    /// Requests the difference of the images if they are new and of the same size and view.
     pub(in crate::app) fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
         let (Some(a), Some(b)) = (a, self.picture()) else {
             return;
         };
-        if (a.width, a.height, a.reduction) != (b.width, b.height, b.reduction) {
-            return;
-        }
         let asked = ([a.serial, b.serial, self.generation], self.scale);
         if self.asked_difference == Some(asked) {
+            return;
+        }
+        let beside_materials = Change {
+            materials: false,
+            display: false,
+            target: false,
+            ..Change::between(&a.document, &b.document)
+        };
+        if a.reduction != b.reduction || !beside_materials.is_none() {
             return;
         }
         let differing = started(&mut self.differing, ctx, |repaint| {

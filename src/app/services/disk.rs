@@ -5,10 +5,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::app::services::export::Ready;
 use crate::app::services::library::Listed;
+use crate::app::services::messages::Success;
 use crate::app::services::snapshots::PinsListed;
 use crate::document::Document;
 use crate::panics::caught;
-use crate::render::worker::Level;
 use crate::store::FileError;
 use crate::store::exchange::ExchangeError;
 use crate::store::opened::Opened;
@@ -20,7 +20,7 @@ pub(in crate::app) enum Done {
     /// A file for another program is ready to be written.
     Prepared(Box<Result<Ready, String>>),
     /// A material as text for another program, and what to say about it.
-    Copied(Result<(String, String), String>),
+    Copied(Result<(String, Success), String>),
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
     /// The user's materials were listed.
@@ -32,7 +32,7 @@ pub(in crate::app) enum Done {
     /// The pinned states were changed.
     ChangedPins(Result<PinsListed, FileError>),
     /// Something else was written; what to say about it.
-    Wrote(Result<String, String>),
+    Wrote(Result<Success, String>),
     /// What was to be done panicked, and what the panic said.
     Broke(Task, String),
 }
@@ -96,7 +96,7 @@ impl Disk {
     }
 
     /// Writes something that takes long, on a thread of its own.
-    pub(in crate::app) fn write_beside(&mut self, work: impl FnOnce() -> Result<String, String> + Send + 'static) {
+    pub(in crate::app) fn write_beside(&mut self, work: impl FnOnce() -> Result<Success, String> + Send + 'static) {
         self.writes += 1;
         self.beside(Task::Write, || Done::Wrote(work()));
     }
@@ -161,12 +161,4 @@ impl Disk {
 /// The outcome of a job, panics included: the thread goes on, so that no caller waits for ever.
 fn outcome(task: Task, job: impl FnOnce() -> Done) -> Done {
     caught(job).unwrap_or_else(|why| Done::Broke(task, why))
-}
-
-/// A result as a message.
-pub(in crate::app) fn words(result: Result<String, String>) -> (Level, String) {
-    match result {
-        Ok(text) => (Level::Info, text),
-        Err(text) => (Level::Error, text),
-    }
 }

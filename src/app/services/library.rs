@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
 use crate::app::services::beside::started;
+use crate::app::services::messages::Success;
 use crate::document::MaterialSettings;
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
 use crate::store::PRESETS;
@@ -30,7 +31,7 @@ pub enum Change {
 
 /// What came of a change: what to say, which materials there are, what was added and is to be named, and what was removed.
 pub(in crate::app) struct Listed {
-    pub(in crate::app) words: String,
+    pub(in crate::app) done: Option<Success>,
     pub(in crate::app) entries: Vec<Entry>,
     pub(in crate::app) added: Option<PathBuf>,
     pub(in crate::app) removed: Option<Removed>,

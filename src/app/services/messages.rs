@@ -1,5 +1,6 @@
 //! What was said to the user: for the log, and over the viewport until it is old or closed.
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::render::worker::Level;
@@ -7,6 +8,46 @@ use crate::scene::{Fate, ImportReport};
 
 /// Most entries that are kept.
 const LIMIT: usize = 500;
+
+/// What a note has a button for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Offer {
+    /// All that became of the model's file. The note stays until it is closed.
+    ImportReport,
+    /// Rendering to the end what was saved unfinished.
+    Render,
+}
+
+/// Something that was done as asked, for a note.
+#[derive(Debug)]
+pub(in crate::app) struct Success {
+    text: String,
+    file: Option<PathBuf>,
+    offer: Option<Offer>,
+}
+
+impl Success {
+    pub(in crate::app) fn new(text: String) -> Self {
+        let (file, offer) = (None, None);
+        Self { text, file, offer }
+    }
+
+    /// About a file: what was done, the file's name, and details if there are any.
+    pub(in crate::app) fn with_file(done: &str, path: &Path, details: &str) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let separator = if details.is_empty() { "" } else { ": " };
+        Self {
+            file: Some(path.to_owned()),
+            ..Self::new(format!("{done} {name}{separator}{details}"))
+        }
+    }
+
+    /// Offers to render to the end what is not finished.
+    pub(in crate::app) fn finished(self, is_finished: bool) -> Self {
+        let offer = (!is_finished).then_some(Offer::Render);
+        Self { offer, ..self }
+    }
+}
 
 /// Something said.
 #[derive(Clone, Debug)]
@@ -18,8 +59,9 @@ pub(in crate::app) struct Entry {
     pub(in crate::app) at: Instant,
     /// Shown over the viewport until it is old or closed.
     pub(in crate::app) is_open: bool,
-    /// It is about the model's file: shown until it is closed, with a way to all that became of the file.
-    pub(in crate::app) is_of_import: bool,
+    /// The file that it is about.
+    pub(in crate::app) file: Option<PathBuf>,
+    pub(in crate::app) offer: Option<Offer>,
 }
 
 /// Adds an entry; one that says the same as the last stays that one, and is new again.
@@ -29,6 +71,20 @@ pub(in crate::app) fn add(log: &mut Vec<Entry>, level: Level, text: String) {
         Level::Warning => log::warn!("{text}"),
         Level::Info => log::info!("{text}"),
     }
+    push(log, level, Success::new(text), level != Level::Info);
+}
+
+/// Adds what was done as asked.
+pub(in crate::app) fn add_success(log: &mut Vec<Entry>, success: Success) {
+    match &success.file {
+        Some(file) => log::info!("{} ({})", success.text, file.display()),
+        None => log::info!("{}", success.text),
+    }
+    push(log, Level::Info, success, true);
+}
+
+fn push(log: &mut Vec<Entry>, level: Level, said: Success, is_open: bool) {
+    let Success { text, file, offer } = said;
     let number = match log.last() {
         Some(last) if last.text == text => {
             let number = last.number;
@@ -45,8 +101,9 @@ pub(in crate::app) fn add(log: &mut Vec<Entry>, level: Level, text: String) {
         level,
         text,
         at: Instant::now(),
-        is_open: level != Level::Info,
-        is_of_import: false,
+        is_open,
+        file,
+        offer,
     });
 }
 
@@ -77,6 +134,6 @@ pub(in crate::app) fn add_import(log: &mut Vec<Entry>, name: &str, report: &Impo
         format!("{name}: {}{parts} – {meaning}.{more}", worst.what),
     );
     if let Some(entry) = log.last_mut() {
-        entry.is_of_import = true;
+        entry.offer = Some(Offer::ImportReport);
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
+use crate::app::services::messages::Success;
 use crate::store::library::Removed;
 use crate::store::snapshots::Pinned;
 
@@ -23,7 +24,7 @@ pub enum PinChange {
 
 /// What came of a change: what to say, which states there are, what is wrong with files, and what was removed.
 pub(in crate::app) struct PinsListed {
-    pub(in crate::app) words: String,
+    pub(in crate::app) done: Option<Success>,
     pub(in crate::app) pinned: Vec<Pinned>,
     pub(in crate::app) errors: Vec<String>,
     pub(in crate::app) removed: Option<Removed>,

@@ -7,6 +7,7 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::theme;
+use crate::app::services::messages::Offer;
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 
@@ -16,10 +17,10 @@ const MESSAGE_SECONDS: f32 = 12.0;
 const OPEN_MODEL: Vec2 = vec2(132.0, theme::ROW_HEIGHT);
 const OPEN_MODEL_FROM: f32 = 320.0;
 
-/// The latest warnings and errors, until they are old or closed.
+/// The latest warnings, errors and what was done, until they are old or closed.
 pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     for entry in &mut desk.shared.messages {
-        entry.is_open &= entry.is_of_import || entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
+        entry.is_open &= entry.offer == Some(Offer::ImportReport) || entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
     }
     let open: Vec<usize> = (0..desk.shared.messages.len())
         .filter(|i| desk.shared.messages[*i].is_open)
@@ -46,21 +47,34 @@ pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         let actions = &mut desk.actions;
         let color = match entry.level {
             Level::Error => inside.visuals().error_fg_color,
-            _ => inside.visuals().warn_fg_color,
+            Level::Warning => inside.visuals().warn_fg_color,
+            Level::Info => inside.visuals().text_color(),
         };
         let frame = egui::Frame::popup(inside.style()).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6)));
         let message = |ui: &mut Ui| {
             let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
-            let buttons = if entry.is_of_import { 130.0 } else { 60.0 };
-            ui.allocate_ui(vec2(width - buttons, 0.0), |ui| ui.add(text));
-            if entry.is_of_import {
-                let all = ui
-                    .button("Show all")
-                    .on_hover_text("What became of each part of the file");
-                all.clone()
-                    .accessible_name(format!("Show all of message {}", entry.number));
-                if all.clicked() {
-                    actions.push(Action::Do(Command::ModelFile));
+            let render = Command::QueuePicture;
+            let offered = entry.offer.map(|offer| match offer {
+                Offer::ImportReport => (
+                    130.0,
+                    "Show all",
+                    "What became of each part of the file",
+                    Command::ModelFile,
+                ),
+                Offer::Render => (190.0, render.label(), render.help(), render),
+            });
+            let buttons = offered.map_or(60.0, |(width, ..)| width);
+            let text = ui.allocate_ui(vec2(width - buttons, 0.0), |ui| ui.add(text)).inner;
+            if let Some(file) = &entry.file {
+                text.on_hover_text(file.display().to_string());
+            }
+            if let Some((_, label, help, command)) = offered {
+                let button = ui.button(label).on_hover_text(help);
+                button
+                    .clone()
+                    .accessible_name(format!("{label} of message {}", entry.number));
+                if button.clicked() {
+                    actions.push(Action::Do(command));
                     entry.is_open = false;
                 }
             }

@@ -1,12 +1,13 @@
 //! Access to the rendered film.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::{Session, SessionError};
-use crate::document::ViewSettings;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::render::denoise::Noisy;
+use crate::render::frame::Frame;
 use crate::render::light_layers::{LightLayer, light_layers, mixed};
 use crate::render::output::Layers;
 use crate::render::shown::Source;
@@ -60,15 +61,35 @@ impl Session {
         Ok(KeptFilm::of(self.engine.film()?.clone(), document, samples, units))
     }
 
-    /// Inputs of maps for an image with display settings.
-    pub fn source<'a>(&'a mut self, image: &'a Image, view: &'a ViewSettings) -> Result<Source<'a>, SessionError> {
-        let world_units_per_unit = self.world_units_per_unit();
-        Ok(Source {
-            film: self.engine.film()?,
-            image,
-            view,
-            world_units_per_unit,
-        })
+    /// The mean image as a frame, of a document whose size was divided by `reduction`.
+    pub fn frame(&mut self, reduction: u32) -> Result<Frame, SessionError> {
+        let image = Arc::new(self.image()?);
+        Ok(self.frame_of(image, reduction))
+    }
+
+    /// The same with the input of its denoiser.
+    pub fn noisy_frame(&mut self, reduction: u32) -> Result<(Noisy, Frame), SessionError> {
+        let noisy = self.noisy()?;
+        let frame = self.frame_of(noisy.image.clone(), reduction);
+        Ok((noisy, frame))
+    }
+
+    fn frame_of(&self, image: Arc<Image>, reduction: u32) -> Frame {
+        Frame::new(self.film, image, self.engine.schedule().samples_per_pixel(), reduction)
+    }
+
+    /// Whether a frame is one of the film that is being rendered.
+    pub fn has_film_of(&self, frame: &Frame) -> bool {
+        frame.is_of(self.film)
+    }
+
+    /// Inputs of a frame's maps; `None` if another film is being rendered.
+    pub fn source<'a>(&'a mut self, frame: &'a Frame) -> Result<Option<Source<'a>>, SessionError> {
+        let (id, units) = (self.film, self.world_units_per_unit());
+        if !frame.is_of(id) {
+            return Ok(None);
+        }
+        Ok(frame.source(id, self.engine.film()?, units))
     }
 
     /// Input of the denoiser.

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, choice};
 use super::error::SessionError;
+use super::frame::FilmId;
 use super::memory;
 use super::progress::{Progress, StopReason};
 use super::workshop::Workshop;
@@ -29,6 +30,7 @@ pub struct Session {
     compiler: Compiler,
     document: Option<Arc<Document>>,
     job: Option<Arc<Job>>,
+    film: FilmId,
     convergence: Convergence,
     render_time: Duration,
     /// Part of it in the engine's steps.
@@ -83,6 +85,7 @@ impl Session {
             compiler: Compiler::default(),
             document: None,
             job: None,
+            film: FilmId::new(),
             convergence: Convergence::default(),
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
@@ -259,11 +262,12 @@ impl Session {
             None => self.engine.submit(job)?,
         }
         self.keeps_fallback = false;
-        self.start_clocks();
+        self.begin_film();
         Ok(())
     }
 
-    fn start_clocks(&mut self) {
+    fn begin_film(&mut self) {
+        self.film = FilmId::new();
         (self.denoised, self.is_stuck) = (None, false);
         self.convergence = Convergence::default();
         (self.render_time, self.step_time, self.fallback_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);

@@ -7,6 +7,7 @@ use crate::document::{Denoise, DenoiseWhen, Document};
 use crate::panics::caught;
 use crate::render::background::{Background, Responder};
 use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
+use crate::render::frame::Frame;
 use crate::render::progress::Progress;
 
 /// Factor by which samples grow from one denoised image to the next.
@@ -18,9 +19,10 @@ const TIME_SHARE: f64 = 0.2;
 /// A render to denoise.
 struct Request {
     noisy: Noisy,
+    /// The frame that `noisy` was copied with.
+    frame: Frame,
     mode: Denoise,
     stage: u64,
-    samples_per_pixel: u32,
     /// Its time does not count against [`TIME_SHARE`].
     is_early: bool,
     /// Set once the result is no longer needed.
@@ -31,10 +33,8 @@ struct Request {
 pub(super) struct Outcome {
     /// The denoised image, or the error message.
     pub(super) denoised: Result<Denoised, String>,
-    /// The render that was denoised.
-    pub(super) noisy: Noisy,
-    /// Samples per pixel of `noisy`.
-    pub(super) samples_per_pixel: u32,
+    /// The frame that was denoised, as it was.
+    pub(super) frame: Frame,
     stage: u64,
     is_early: bool,
 }
@@ -132,16 +132,15 @@ impl Denoising {
     }
 
     /// Requests a denoised image. Replaces a request that has not been started.
-    pub(super) fn request(&mut self, noisy: Noisy, mode: Denoise, progress: &Progress) {
-        let samples_per_pixel = progress.samples_per_pixel;
+    pub(super) fn request(&mut self, noisy: Noisy, frame: Frame, mode: Denoise, progress: &Progress) {
         let is_early = self.is_early(progress);
-        self.pending_samples = Some(samples_per_pixel);
-        self.requested_samples = samples_per_pixel;
+        self.pending_samples = Some(frame.samples_per_pixel);
+        self.requested_samples = frame.samples_per_pixel;
         let request = Request {
             noisy,
+            frame,
             mode,
             stage: self.stage,
-            samples_per_pixel,
             is_early,
             cancel: self.cancel.clone(),
         };
@@ -159,7 +158,7 @@ impl Denoising {
         if outcome.stage != self.stage {
             return None;
         }
-        if self.pending_samples == Some(outcome.samples_per_pixel) {
+        if self.pending_samples == Some(outcome.frame.samples_per_pixel) {
             self.pending_samples = None;
         }
         if let Ok(denoised) = &outcome.denoised {
@@ -187,8 +186,7 @@ fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Respond
     };
     responder.publish(Outcome {
         denoised,
-        noisy: request.noisy,
-        samples_per_pixel: request.samples_per_pixel,
+        frame: request.frame,
         stage: request.stage,
         is_early: request.is_early,
     });

@@ -4,6 +4,7 @@
 //! short locks. Work is cut into steps of [`STEP`], and commands are read after each.
 
 mod denoising;
+mod picture;
 mod stage;
 mod thread;
 
@@ -14,20 +15,21 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+pub use picture::Picture;
+
 use super::convergence::Measurement;
 use super::engine::{EngineChoice, EngineInfo};
 use super::mailbox::Mailbox;
-use super::output::{Layers, Rendered};
+use super::output::Layers;
 use super::priority::lower_thread_priority;
 use super::progress::Progress;
 use super::session::Session;
-use super::shown::{PixelFacts, Scale, Shown};
+use super::shown::Shown;
 use crate::analysis::halves::Distance;
 use crate::compile::Assets;
 use crate::document::Document;
 use crate::gpu::Moment;
 use crate::job::Job;
-use crate::job::film::Image;
 use crate::panics::lock;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Loading, Model, ModelOptions, ModelSource};
@@ -88,50 +90,6 @@ impl std::fmt::Display for Activity {
             Self::Done => f.write_str("done"),
             Self::Paused => f.write_str("paused"),
             Self::Idle => f.write_str("nothing to render"),
-        }
-    }
-}
-
-/// An image to show.
-#[derive(Clone, Debug)]
-pub struct Picture {
-    /// In pixels.
-    pub width: u32,
-    /// In pixels.
-    pub height: u32,
-    /// Display-referred RGBA, 8 bits each, premultiplied in gamma space; rows from the top.
-    pub rgba: Vec<u8>,
-    /// The linear image that `rgba` shows.
-    pub image: Arc<Image>,
-    /// The mean of the samples; differs from `image` if that is denoised.
-    pub samples: Arc<Image>,
-    /// Unique number of the image.
-    pub serial: u64,
-    /// Revision of its submission, see [`Worker::submit`].
-    pub revision: u64,
-    /// Divisor of width and height; 1 is the full resolution.
-    pub reduction: u32,
-    /// Samples per pixel.
-    pub samples_per_pixel: u32,
-    /// The map that `rgba` shows, with its colour scale if it has one; `None` for the image itself.
-    pub map: Option<(Shown, Option<Scale>)>,
-    /// Per-pixel quantities while the inspector is open.
-    pub facts: Option<Arc<PixelFacts>>,
-    /// The document, with the size at full resolution.
-    pub document: Arc<Document>,
-}
-
-impl Picture {
-    /// Whether it is denoised.
-    pub fn is_denoised(&self) -> bool {
-        !Arc::ptr_eq(&self.image, &self.samples)
-    }
-
-    /// The image as it is written to files.
-    pub fn rendered(&self) -> Rendered<'_> {
-        Rendered {
-            denoised: self.is_denoised().then_some(&*self.image),
-            ..Rendered::from(&*self.samples)
         }
     }
 }
@@ -200,8 +158,8 @@ pub enum Event {
     OpenFailed(PathBuf, Level, String),
     /// A request was cancelled.
     Cancelled,
-    /// The result of [`Worker::make_layers`] for a file.
-    LayersMade(PathBuf, Box<Layers>),
+    /// The result of [`Worker::make_layers`] for a file, with the progress of the render at that moment.
+    LayersMade(PathBuf, Box<Layers>, Progress),
 }
 
 /// A fault of the GPU's device, injected by tests.

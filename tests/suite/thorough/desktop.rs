@@ -190,7 +190,7 @@ impl Window<'_> {
     pub fn name_file(&mut self, path: &Path) {
         self.keys("ctrl+a");
         self.write(path.to_str().expect("a name of letters"));
-        self.until_said(&format!("saved {}", path.display()), |window| window.keys("Return"));
+        self.until_said(&format!("({})", path.display()), |window| window.keys("Return"));
     }
 
     /// Drags with the left button from the middle of the picture until the title shows that something was changed.

@@ -44,12 +44,12 @@ const ON_PURPOSE: &str = "on purpose";
 /// Panics of the program's own threads, which no test sees otherwise.
 static BROKEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-fn broken() -> std::sync::MutexGuard<'static, Vec<String>> {
+pub(super) fn broken() -> std::sync::MutexGuard<'static, Vec<String>> {
     BROKEN.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
 /// Takes note of panics in threads that have a name of the program's: tests are named after their path.
-fn listen() {
+pub(super) fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let usual = std::panic::take_hook();

@@ -16,9 +16,9 @@ use crate::document::{Change, Document, ViewSettings};
 use crate::gpu::GpuError;
 use crate::job::plan::Specialisation;
 use crate::panics::{caught, lock};
-use crate::render::denoise::Denoised;
 use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::error::SessionError;
+use crate::render::frame::Frame;
 use crate::render::output::Layers;
 use crate::render::session::Session;
 use crate::render::shown::Shown;
@@ -64,8 +64,10 @@ struct State<'a> {
     /// True while the inspector needs per-pixel quantities.
     is_inspected: bool,
     denoising: Denoising,
-    /// The latest denoised image of the current render.
-    denoised: Option<Denoised>,
+    /// The latest frame shown of the submission.
+    frame: Option<Frame>,
+    /// Held while the thread has work.
+    at_work: Option<AtWork<'static>>,
 }
 
 /// A session for the window, which keeps guides: denoising and layers may be requested for samples already rendered.
@@ -100,7 +102,8 @@ impl<'a> State<'a> {
                 let shared = shared.clone();
                 move || shared.commands.change(|_| ())
             }),
-            denoised: None,
+            frame: None,
+            at_work: None,
         }
     }
 }
@@ -181,12 +184,17 @@ impl State<'_> {
         }
         for path in std::mem::take(&mut self.requested_layers) {
             self.guarded(|state| {
-                let denoised = state.denoised.as_ref().map(|denoised| denoised.image.clone());
+                let frame = state.frame.clone().filter(Frame::is_denoised);
+                let session = state.session()?;
+                let denoised = frame
+                    .filter(|frame| session.has_film_of(frame))
+                    .map(|frame| frame.image);
                 let layers = Layers {
                     denoised,
-                    ..state.session()?.layers()?
+                    ..session.layers()?
                 };
-                lock(&state.shared.events).push(Event::LayersMade(path, Box::new(layers)));
+                let made = Event::LayersMade(path, Box::new(layers), session.progress());
+                lock(&state.shared.events).push(made);
                 (state.repaint)();
                 Ok(())
             });
@@ -275,6 +283,7 @@ impl State<'_> {
             Ok(session) => self.session = Some(session),
             Err(error) => self.message(Level::Error, error.to_string()),
         }
+        self.begin_film();
         self.samples_per_second = 0.0;
         self.report_engine();
         false
@@ -296,6 +305,7 @@ impl State<'_> {
                 _ => break,
             }
         }
+        self.begin_film();
         self.samples_per_second = 0.0;
         self.report_engine();
     }
@@ -347,28 +357,18 @@ impl State<'_> {
             let modes = |view: &ViewSettings| (view.denoise, view.denoise_when);
             modes(&old.view) == modes(view) && old.lighting.light_mix == *mix
         });
-        if let Some(scene) = &self.snapshot.scene {
-            let document = stage.submission.document.clone();
-            self.snapshot.scene = Some(Arc::new(Scene {
-                document,
-                ..Scene::clone(scene)
-            }));
-        }
+        self.update_scene()?;
         if !has_same_pixels && stage.is_shown {
             self.reset_denoised();
+            self.frame = None;
             return self.publish_picture();
         }
         // If nothing is left to render, the image also belongs to the new submission.
         let is_done = self.session()?.progress().is_done;
-        if let Some(last) = self
-            .snapshot
-            .picture
-            .clone()
-            .filter(|_| stage.is_shown && (change.display || is_done))
-        {
-            self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel)?;
+        match self.frame.clone() {
+            Some(frame) if stage.is_shown && (change.display || is_done) => self.publish(frame),
+            _ => Ok(()),
         }
-        Ok(())
     }
 
     /// Proceeds from a reduced resolution to the next.
@@ -394,15 +394,20 @@ impl State<'_> {
         if !is_taken {
             return false;
         }
-        let is_first_image = !stage.is_shown;
+        if !stage.is_shown {
+            self.frame = None;
+        }
         self.stage = Some(stage);
+        self.begin_film();
+        self.guarded(Self::update_scene);
+        true
+    }
+
+    /// Starts over what is counted and made of a film.
+    fn begin_film(&mut self) {
         self.reset_denoised();
         self.published_samples = 0;
         self.published_at = Instant::now();
-        if is_first_image {
-            self.guarded(Self::update_scene);
-        }
-        true
     }
 
     fn submit_stage(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {

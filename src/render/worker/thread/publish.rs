@@ -4,27 +4,32 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::State;
-use crate::document::{Denoise, ViewSettings};
-use crate::job::film::Image;
-use crate::render::display::display;
+use crate::document::Denoise;
 use crate::render::error::SessionError;
-use crate::render::shown::{PixelFacts, Shown, map, map_of_errors};
-use crate::render::worker::{Activity, Level, Picture};
+use crate::render::frame::Frame;
+use crate::render::shown::{PixelFacts, map_of_film, map_of_image};
+use crate::render::worker::picture::Picture;
+use crate::render::worker::{Activity, Level};
 
 impl State<'_> {
     /// Publishes the current image again, after a change of display.
     pub(super) fn republish(&mut self) -> Result<(), SessionError> {
-        match self.snapshot.picture.clone().filter(|picture| picture.is_denoised()) {
-            Some(last) => self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel),
+        match self.frame.clone().filter(Frame::is_denoised) {
+            Some(frame) => self.publish(frame),
             None => self.publish_picture(),
         }
     }
 
-    /// Publishes the current render, or requests its denoising if it is shown denoised.
+    /// Publishes the current render, or requests its denoising if it is shown denoised. Before the first sample the image of
+    /// the step before stays, if there is one.
     pub(super) fn publish_picture(&mut self) -> Result<(), SessionError> {
         let start = Instant::now();
         let progress = self.session()?.progress();
         let Some(stage) = &self.stage else { return Ok(()) };
+        if progress.samples_per_pixel == 0 && stage.is_shown {
+            return Ok(());
+        }
+        let reduction = stage.reduction;
         if self.denoising.shows(&stage.submission.document, &progress) {
             // The first image after an edit uses the fast filter; later ones use the requested quality.
             let is_first_image = progress.samples_per_pixel < 2 && !progress.is_done;
@@ -32,22 +37,22 @@ impl State<'_> {
                 _ if is_first_image => Denoise::Fast,
                 chosen => chosen,
             };
-            let noisy = self.session()?.noisy()?;
-            self.denoising.request(noisy, how, &progress);
+            let (noisy, frame) = self.session()?.noisy_frame(reduction)?;
+            self.denoising.request(noisy, frame, how, &progress);
             return Ok(());
         }
-        let image = Arc::new(self.session()?.image()?);
-        self.publish(image.clone(), image, progress.samples_per_pixel)?;
+        let frame = self.session()?.frame(reduction)?;
+        self.publish(frame)?;
         self.published_samples = progress.samples_per_pixel;
         self.published_at = Instant::now();
         self.publish_cost = start.elapsed();
         Ok(())
     }
 
-    /// Drops the denoised image, for another render or another display.
+    /// Drops the denoiser's work and what is known of it, for another film or another way to denoise.
     pub(super) fn reset_denoised(&mut self) {
         self.denoising.reset();
-        (self.denoised, self.snapshot.denoised) = (None, None);
+        self.snapshot.denoised = None;
     }
 
     /// Publishes the denoiser's result, if there is one.
@@ -57,13 +62,11 @@ impl State<'_> {
         };
         match outcome.denoised {
             Ok(denoised) => {
-                let image = denoised.image.clone();
                 if let (Some(error), Some(session)) = (denoised.error, &mut self.session) {
                     session.set_denoised_error(error);
                 }
                 self.snapshot.denoised = denoised.error;
-                self.denoised = Some(denoised);
-                self.guarded(|state| state.publish(image, outcome.noisy.image, outcome.samples_per_pixel));
+                self.guarded(|state| state.publish(outcome.frame.denoised(denoised)));
             }
             Err(why) => {
                 self.message(Level::Warning, format!("{why}; images are shown as they are"));
@@ -72,63 +75,38 @@ impl State<'_> {
         }
     }
 
-    pub(super) fn publish(
-        &mut self,
-        image: Arc<Image>,
-        samples: Arc<Image>,
-        samples_per_pixel: u32,
-    ) -> Result<(), SessionError> {
-        let wanted = self.shown;
-        let is_inspected = self.is_inspected;
-        let Some(view) = self.stage.as_ref().map(|stage| stage.submission.document.view.clone()) else {
-            return Ok(());
-        };
-        let denoised_errors = self.denoised.as_ref().map(|denoised| denoised.error_map.clone());
-        let denoised_errors = denoised_errors.filter(|errors| !errors.is_empty());
-        let (mut made, mut facts) = (None, None);
-        if wanted != Shown::Picture || is_inspected {
-            let source = self.session()?.source(&image, &view)?;
-            made = match (wanted, &denoised_errors) {
-                (Shown::Error, Some(errors)) => Some(map_of_errors(errors)),
-                _ => map(&source, wanted),
-            };
-            facts = is_inspected.then(|| Arc::new(PixelFacts::of(&source, denoised_errors.as_deref())));
+    /// Shows a frame as the image or the map that is wanted. A map of a film that has gone on to another step waits for that
+    /// step's frame: what is shown stays.
+    pub(super) fn publish(&mut self, mut frame: Frame) -> Result<(), SessionError> {
+        let (wanted, is_inspected) = (self.shown, self.is_inspected);
+        let Some(stage) = &self.stage else { return Ok(()) };
+        let mut map = map_of_image(&frame.image, &stage.submission.document.view, wanted);
+        let session = self.session()?;
+        let is_current = session.has_film_of(&frame);
+        let mut facts = frame.facts.take().filter(|_| is_inspected);
+        if wanted.is_of_film() || (is_inspected && facts.is_none()) {
+            match session.source(&frame)? {
+                Some(source) => {
+                    map = map.or_else(|| map_of_film(&source, wanted));
+                    facts = facts.or_else(|| is_inspected.then(|| Arc::new(PixelFacts::of(&source))));
+                }
+                None if wanted.is_of_film() => return Ok(()),
+                None => {}
+            }
         }
+        frame.facts = facts;
         let Some(stage) = &mut self.stage else { return Ok(()) };
         self.serial += 1;
-        let map = made.as_ref().map(|map| (wanted, map.scale));
-        let rgba = made.map_or_else(|| shown(&image, &view), |map| map.rgba);
-        (stage.is_shown, stage.is_seen) = (true, true);
+        stage.is_shown = true;
+        stage.is_seen |= is_current;
         if self.snapshot.first_picture.is_none() {
             self.snapshot.first_picture = Some(stage.submission.at.elapsed());
         }
-        self.snapshot.picture = Some(Arc::new(Picture {
-            width: image.width,
-            height: image.height,
-            rgba,
-            image,
-            samples,
-            serial: self.serial,
-            revision: stage.submission.revision,
-            reduction: stage.reduction,
-            samples_per_pixel,
-            map,
-            facts,
-            document: stage.submission.document.clone(),
-        }));
+        let map = map.map(|map| (wanted, map));
+        let (document, revision) = (stage.submission.document.clone(), stage.submission.revision);
+        let picture = Picture::of(frame.clone(), map, document, [self.serial, revision]);
+        (self.frame, self.snapshot.picture) = (Some(frame), Some(Arc::new(picture)));
         self.report(Activity::Rendering);
         Ok(())
     }
-}
-
-/// Display-referred RGBA, premultiplied in gamma space as windows blend it.
-fn shown(image: &Image, view: &ViewSettings) -> Vec<u8> {
-    let mut rgba = display(image, view);
-    for pixel in rgba.chunks_exact_mut(4).filter(|pixel| pixel[3] < 255) {
-        let alpha = u16::from(pixel[3]);
-        for channel in &mut pixel[..3] {
-            *channel = ((u16::from(*channel) * alpha + 127) / 255) as u8;
-        }
-    }
-    rgba
 }

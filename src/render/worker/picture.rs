@@ -1,0 +1,75 @@
+//! What the window shows.
+
+use std::ops::Deref;
+use std::sync::Arc;
+
+use crate::document::{Document, ViewSettings};
+use crate::job::film::Image;
+use crate::render::display::display;
+use crate::render::frame::Frame;
+use crate::render::shown::{Map, Scale, Shown};
+
+/// A frame as it is shown: the image itself or a map of it.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// In pixels.
+    pub width: u32,
+    /// In pixels.
+    pub height: u32,
+    /// Display-referred RGBA, 8 bits each, premultiplied in gamma space; rows from the top.
+    pub rgba: Vec<u8>,
+    /// Unique number of the image.
+    pub serial: u64,
+    /// Revision of its submission, see [`Worker::submit`](super::Worker::submit).
+    pub revision: u64,
+    /// The map that `rgba` shows, with its colour scale if it has one; `None` for the image itself.
+    pub map: Option<(Shown, Option<Scale>)>,
+    /// The document, with the size at full resolution.
+    pub document: Arc<Document>,
+    frame: Frame,
+}
+
+impl Deref for Picture {
+    type Target = Frame;
+
+    fn deref(&self) -> &Frame {
+        &self.frame
+    }
+}
+
+impl Picture {
+    /// Shows a frame for a document, as a map of it if there is one.
+    pub(super) fn of(
+        frame: Frame,
+        map: Option<(Shown, Map)>,
+        document: Arc<Document>,
+        [serial, revision]: [u64; 2],
+    ) -> Self {
+        let (rgba, map) = match map {
+            Some((shown, map)) => (map.rgba, Some((shown, map.scale))),
+            None => (displayed(&frame.image, &document.view), None),
+        };
+        Self {
+            width: frame.image.width,
+            height: frame.image.height,
+            rgba,
+            serial,
+            revision,
+            map,
+            document,
+            frame,
+        }
+    }
+}
+
+/// Display-referred RGBA, premultiplied in gamma space as windows blend it.
+fn displayed(image: &Image, view: &ViewSettings) -> Vec<u8> {
+    let mut rgba = display(image, view);
+    for pixel in rgba.chunks_exact_mut(4).filter(|pixel| pixel[3] < 255) {
+        let alpha = u16::from(pixel[3]);
+        for channel in &mut pixel[..3] {
+            *channel = ((u16::from(*channel) * alpha + 127) / 255) as u8;
+        }
+    }
+    rgba
+}

@@ -1,0 +1,147 @@
+//! Notes over the viewport about what was saved, in the workspace *Look*, which has no log.
+
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::library::Change;
+use glossmith::app::workspaces::LOOK;
+use glossmith::app::{Options, snapshots::PinChange};
+
+use super::ui::{Editor, editor_of, options, request, see, see_label, settle};
+use super::ui_hands::{press, type_path};
+use super::worker::small_document;
+
+/// A window of so many samples whose own files are in `folder`.
+fn editor(folder: &Path, samples: u32) -> Editor {
+    let mut document = small_document();
+    document.render.samples = samples;
+    editor_of(Options {
+        document: Some(document),
+        workspace: Some(LOOK.to_owned()),
+        data: Some(folder.join("data")),
+        typed_paths: Some(folder.to_owned()),
+        ..options()
+    })
+}
+
+/// The name of the button of a note about an image that is not finished.
+const RENDER: &str = "Render to a file… of message";
+
+fn has(harness: &Editor, part: &str) -> bool {
+    harness.query_all_by_label_contains(part).next().is_some()
+}
+
+fn save(harness: &mut Editor, command: Command, path: &Path, note: &str) {
+    request(harness, Action::Do(command));
+    type_path(harness, path, "Save");
+    see_label(harness, note);
+}
+
+/// Closes the note that is shown last.
+fn close(harness: &mut Editor) {
+    let is_close = |label: &str| label.starts_with("Close message");
+    let mut labels = harness
+        .query_all_by_role(Role::Button)
+        .filter_map(|node| node.accesskit_node().label());
+    let label = labels.find(|label| is_close(label)).expect("a note");
+    drop(labels);
+    press(harness, &label);
+}
+
+#[test]
+fn each_save_is_reported_over_the_viewport() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let mut harness = editor(folder.path(), 3);
+    settle(&mut harness);
+    for (command, name, note) in [
+        (Command::SavePicture, "shown.png", "Saved shown.png: 3 samples"),
+        (Command::SaveLayers, "deep.exr", "Saved deep.exr: layers, 3 samples"),
+        (Command::SaveMaterial, "mine.json", "Saved mine.json"),
+        (Command::SaveAs, "scene.json", "Saved scene.json"),
+        (Command::SaveAs, "scene.png", "Saved scene.png: 3 samples"),
+    ] {
+        save(&mut harness, command, &path(name), note);
+        assert!(path(name).is_file() && !has(&harness, "Render to a file"));
+        close(&mut harness);
+        assert!(!has(&harness, note));
+    }
+    // Saved again without being asked for a name.
+    request(&mut harness, Action::Do(Command::Save));
+    see_label(&mut harness, "Saved scene.json");
+    close(&mut harness);
+    request(&mut harness, Action::Do(Command::CopyPicture));
+    see_label(&mut harness, "Copied the image: 3 samples");
+    close(&mut harness);
+    request(&mut harness, Action::ChangeSnapshots(PinChange::Add));
+    see(&mut harness, "the snapshot", |harness| has(harness, "Pinned "));
+    close(&mut harness);
+    request(&mut harness, Action::ChangeLibrary(Change::Add));
+    see(&mut harness, "the preset", |harness| {
+        has(harness, ".json: one of your presets")
+    });
+    close(&mut harness);
+    request(&mut harness, Action::Do(Command::Export));
+    type_path(&mut harness, &path("out.mtlx"), "Save");
+    see_label(&mut harness, "Write the file");
+    harness.run_steps(3);
+    press(&mut harness, "Write the file");
+    see_label(&mut harness, "Exported out.mtlx");
+    close(&mut harness);
+    request(&mut harness, Action::Do(Command::QueuePicture));
+    type_path(&mut harness, &path("queued.png"), "Save");
+    see(&mut harness, "the render", |harness| {
+        has(harness, "queued.png: 3 samples")
+    });
+    harness.check_accessibility();
+}
+
+/// The screenshot comes from the GPU that paints the window.
+#[test]
+fn a_screenshot_is_reported() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor(folder.path(), 3);
+    settle(&mut harness);
+    save(
+        &mut harness,
+        Command::SaveWindow,
+        &folder.path().join("window.png"),
+        "Saved window.png: 1400 × 1000 pixels",
+    );
+}
+
+/// An image that is not finished is reported as such, with a way to finish it.
+#[test]
+fn a_save_of_an_unfinished_image_offers_to_render_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor(folder.path(), 60_000);
+    request(&mut harness, Action::Do(Command::Pause));
+    see(&mut harness, "the first image", |harness| {
+        let snapshot = harness.state().snapshot();
+        snapshot.activity == glossmith::render::worker::Activity::Paused && snapshot.picture.is_some()
+    });
+    for (command, name, saved) in [
+        (Command::SavePicture, "tut1.png", "Saved tut1.png: "),
+        (Command::SaveLayers, "tut1.exr", "Saved tut1.exr: layers, "),
+    ] {
+        let snapshot = harness.state().snapshot();
+        // Layers are made of the newest samples.
+        let count = match command {
+            Command::SaveLayers => snapshot.progress.samples_per_pixel,
+            _ => snapshot.picture.as_ref().expect("it was waited for").samples_per_pixel,
+        };
+        let note = format!("{saved}{count} of 60000 samples");
+        save(&mut harness, command, &folder.path().join(name), &note);
+        assert!(has(&harness, RENDER));
+        close(&mut harness);
+        assert!(!has(&harness, RENDER));
+    }
+    request(&mut harness, Action::Do(Command::CopyPicture));
+    see(&mut harness, "the copy", |harness| has(harness, RENDER));
+    harness.get_by_label_contains(RENDER).click();
+    harness.run_steps(3);
+    type_path(&mut harness, &folder.path().join("whole.png"), "Save");
+    see(&mut harness, "the queue", |harness| has(harness, "whole.png"));
+}
