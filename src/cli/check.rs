@@ -10,6 +10,7 @@ use clap::Args;
 use super::answer::{Destination, write_json};
 use super::parse::check_writable;
 use crate::console::{message, output};
+use crate::document::parameter::nearest;
 use crate::render::{EngineChoice, EngineInfo, EngineKind};
 use crate::store::replace::save_atomically;
 use crate::study::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
@@ -34,7 +35,7 @@ pub struct CheckArguments {
     #[arg(long)]
     hard: bool,
     /// Only hard cases whose names contain this.
-    #[arg(long, value_name = "NAME", default_value = "", requires = "hard")]
+    #[arg(long, value_name = "NAME", default_value = "", requires = "hard", value_parser = part_of_name)]
     only: String,
     /// Write the hard cases as a table in Markdown, on this engine and on the CPU.
     #[arg(long, value_name = "FILE.md", requires = "hard")]
@@ -46,6 +47,19 @@ impl CheckArguments {
     fn has_words(&self) -> bool {
         self.output != Some(Destination::Output)
     }
+}
+
+/// Text that is in the name of a hard case.
+fn part_of_name(text: &str) -> Result<String, String> {
+    let names = || hard::catalogue().map(|case| case.name);
+    if names().any(|name| name.contains(text)) {
+        return Ok(text.to_owned());
+    }
+    let parts = names().flat_map(|name| name.split('-').chain([name]).map(move |part| (part, name)));
+    Err(match nearest(text, parts) {
+        Some(near) => format!("in no name of a hard case; did you mean {near}?"),
+        None => format!("in no name of a hard case; there are {}", names().collect::<Vec<_>>().join(", ")),
+    })
 }
 
 /// Runs the checks and prints a table.
@@ -129,13 +143,12 @@ fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
             case, check, seconds, ..
         } = row;
         let verdict = if check.passed { "ok" } else { "FAILED" };
-        let Check {
-            measure, value, limit, ..
-        } = check;
+        let [value, limit] = check.texts();
         output!(
-            "{:8} {:34} {seconds:>7.2}  {verdict}: {measure} {value:.2e}, limit {limit:.0e}; naive: {}",
+            "{:8} {:34} {seconds:>7.2}  {verdict}: {} {value}, limit {limit}; naive: {}",
             case.group,
             case.name,
+            check.measure,
             (case.naive)()
         );
         if verbose || !check.passed {

@@ -30,10 +30,12 @@ mod textures;
 mod turntable;
 mod waiting;
 
+use std::iter;
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
+use crate::document::parameter::nearest;
 use crate::instructions::Instructions;
 use crate::render::denoise::DenoiseDevice;
 use crate::render::{EngineChoice, RayQueries};
@@ -55,6 +57,7 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Option<Command>,
     /// Files to open in the editor.
+    #[arg(value_parser = parse::opened())]
     pub files: Vec<PathBuf>,
     /// The engine that renders: a hardware GPU if there is one, else the CPU; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
@@ -133,6 +136,40 @@ subcommands! {
     Completions(shell::CompletionsArguments) => shell::completions;
     /// Print a manual page.
     Manual(shell::ManualArguments) => shell::manual;
+}
+
+/// Commands by names that they do not have.
+const OTHER_NAMES: [(&str, &str); 14] = [
+    ("animate", "turntable"),
+    ("bench", "benchmark"),
+    ("effects", "plan"),
+    ("export", "convert"),
+    ("import", "convert"),
+    ("join", "merge"),
+    ("match", "fit"),
+    ("plot", "lobe"),
+    ("race", "study accuracy"),
+    ("sample", "scatter"),
+    ("test", "check"),
+    ("trace", "explain"),
+    ("verify", "check"),
+    ("video", "turntable"),
+];
+
+/// Says that a word is no command, and which one was probably meant.
+fn no_command(word: &str) -> String {
+    let program = Arguments::command();
+    let commands = program.get_subcommands().flat_map(|command| {
+        let name = command.get_name();
+        let of_it = command.get_subcommands().map(clap::Command::get_name);
+        let of_it = of_it.map(move |study| (study, format!("{name} {study}")));
+        iter::once((name, name.to_owned())).chain(of_it)
+    });
+    let others = OTHER_NAMES.map(|(other, name)| (other, name.to_owned()));
+    match nearest(&word.to_lowercase(), others.into_iter().chain(commands)) {
+        Some(near) => format!("no such command; did you mean `glossmith {near}`?"),
+        None => "no such command; `glossmith --help` lists them".to_owned(),
+    }
 }
 
 /// Of several things some were done and others could not be.

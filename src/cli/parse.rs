@@ -138,6 +138,17 @@ pub(super) fn material(text: &str) -> Result<String, Infallible> {
     Ok(text.to_owned())
 }
 
+/// A file to open. A word without an ending that names no file is taken for a command.
+pub(super) fn opened() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path: PathBuf| match path.extension() {
+        None if !path.exists() => Err(format!(
+            "no such file, and {}",
+            super::no_command(&path.display().to_string())
+        )),
+        _ => Ok(path),
+    })
+}
+
 /// The name of an image; its ending is one of those that are written.
 pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };

@@ -60,6 +60,11 @@ impl RenderArguments {
             bail!("--samples-from {from} leaves no numbers for the samples; give --samples-to");
         }
         render.first_sample = from;
+        let is_part = from > 0 || self.samples_to.is_some();
+        if is_part && document.view.denoise != Denoise::Off && !self.scene.settings.has("view.denoise") {
+            document.view.denoise = Denoise::Off;
+            message!("a part of the samples is not denoised; `glossmith merge --denoise auto` does that to the whole");
+        }
         if from > 0 && (self.aovs || document.view.denoise != Denoise::Off) {
             bail!("--samples-from {from}: layers and the denoiser need the first samples; merge, then denoise");
         }

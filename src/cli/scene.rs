@@ -106,7 +106,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
     region: Option<[f64; 4]>,
     #[command(flatten)]
-    settings: SettingOptions,
+    pub(super) settings: SettingOptions,
     /// Which effects are simulated: those that the scene calls for (auto); all, needed or not; or these alone (names of
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for) [default: auto].
     #[arg(long, value_name = "auto|all|LIST", allow_hyphen_values = true)]
@@ -227,6 +227,7 @@ impl SceneArguments {
             .iter()
             .try_for_each(|path| parse::check_writable(path))?;
         let model = session.assets().model(&document.model, &document.import)?;
+        self.check_choices(document, &model)?;
         if let Some(path) = &self.import_report {
             write_import_report(path, &model, self.import_lobe)?;
         }
@@ -245,6 +246,24 @@ impl SceneArguments {
             log::warn!("{message}");
         }
         Ok(())
+    }
+
+    /// Refuses a scene or a variant that the model's file does not have; of several files each has its own.
+    fn check_choices(&self, document: &Document, model: &Model) -> anyhow::Result<()> {
+        let (scenes, variants) = (model.scenes.len().max(1), &model.variants);
+        if !document.import.beside.is_empty() {
+            return Ok(());
+        }
+        match (self.scene, &self.variant) {
+            (Some(scene), _) if scene >= scenes => {
+                bail!("--scene {scene}: the model's scenes are 0 to {}", scenes - 1)
+            }
+            (_, Some(wanted)) if variants.is_empty() => bail!("--variant {wanted}: the model has no variants"),
+            (_, Some(wanted)) if !variants.contains(wanted) => {
+                bail!("--variant {wanted}: the model has no such variant; it has {}", variants.join(", "))
+            }
+            _ => Ok(()),
+        }
     }
 
     fn put_light(&self, document: &mut Document) {
@@ -326,10 +345,7 @@ fn open(path: &Path, document: &mut Document, options: ReadOptions) -> anyhow::R
                 *document = project.value;
             }
         },
-        _ if !path.exists() => bail!(
-            "{}: no such command or file; `glossmith --help` lists what there is",
-            path.display()
-        ),
+        _ if !path.exists() => bail!("{}: no such file; check the path", path.display()),
         _ => bail!(
             "{}: not a kind of file that can be opened; those are {}",
             path.display(),

@@ -43,7 +43,7 @@ pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
     command.build();
     if let Some(name) = &arguments.subcommand {
         let found = command.find_subcommand(name).cloned();
-        command = found.with_context(|| format!("no subcommand is called {name}; `glossmith --help` lists them"))?;
+        command = found.with_context(|| format!("{name}: {}", super::no_command(name)))?;
     }
     let mut page = Vec::new();
     clap_mangen::Man::new(command).render(&mut page)?;

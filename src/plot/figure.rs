@@ -212,10 +212,11 @@ pub(super) fn round_step(value: f64, parts: f64) -> f64 {
 }
 
 /// A number as people write it: as many digits as it needs.
-pub(super) fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e5).contains(&size) {
-        return format!("{value:.0e}");
+        let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+        return format!("{rounded:e}");
     }
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

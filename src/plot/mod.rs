@@ -9,6 +9,7 @@ mod scale;
 mod solids;
 
 pub use charts::{BarPlot, NamedPoint, PictureSheet, PointPlot};
+pub(crate) use figure::number;
 pub use maps::scale_color;
 
 use std::io;

@@ -72,19 +72,25 @@ impl Check {
             passed: if measure == "p" { value > limit } else { value <= limit },
         }
     }
+
+    /// Value and limit: counts as they are, other numbers in three digits, or in as many as show which is larger.
+    pub fn texts(&self) -> [String; 2] {
+        let both = [self.value, self.limit];
+        if self.measure == "count" {
+            return both.map(|count| count.to_string());
+        }
+        let rounded = |digits: usize| both.map(|x| format!("{x:.digits$e}").parse().unwrap_or(x));
+        let order = |[value, limit]: [f64; 2]| value.partial_cmp(&limit);
+        let digits = (2..16).find(|digits| order(rounded(*digits)) == order(both)).unwrap_or(16);
+        [format!("{:.digits$e}", self.value), format!("{:e}", rounded(digits)[1])]
+    }
 }
 
 impl std::fmt::Display for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let comparison = if self.measure == "p" { "above" } else { "at most" };
-        let Self {
-            name,
-            measure,
-            value,
-            limit,
-            ..
-        } = self;
-        write!(f, "{name}: {measure} {value:.3e}, {comparison} {limit:.1e}")
+        let [value, limit] = self.texts();
+        write!(f, "{}: {} {value}, {comparison} {limit}", self.name, self.measure)
     }
 }
 

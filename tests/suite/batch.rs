@@ -152,6 +152,8 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     place.refused(1, "batch a.toml --pictures 2-3", &["--pictures 2-3", "2 only"]);
     place.refused(1, "batch a.toml --frame-range 2", &["a.toml", "frames"]);
     place.refused(2, "batch a.toml --slice 3/2", &["2/5"]);
+    place.write("d.toml", format!("materials = [\"gold\"]\nframes = 2{SMALL}").as_bytes());
+    place.refused(1, "batch d.toml --pictures 1 --frame-range 2", &["in common"]);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use glossmith::cpu;
 use glossmith::job::scatter::ScatterRequest;
 use glossmith::render::EngineChoice;
-use glossmith::study::check::{CheckOptions, chi_square, run, sample_cases};
+use glossmith::study::check::{Check, CheckOptions, chi_square, run, sample_cases};
 
 use crate::lobe_cases::lobes_and_curves;
 
@@ -76,6 +76,20 @@ fn the_whole_check_passes() {
         // Every lobe's samples on this engine against their density.
         let sampled = checks.iter().filter(|check| check.group == "samples").count();
         assert_eq!(sampled, sample_cases(false).len());
+    }
+}
+
+#[test]
+fn limits_have_the_digits_that_decide() {
+    for (measure, value, limit, texts) in [
+        ("error", 2.05e-7, 2.5e-7, ["2.05e-7", "2.5e-7"]),
+        ("error", 2.50004e-7, 2.5e-7, ["2.50004e-7", "2.5e-7"]),
+        ("error", 0.0, 0.0, ["0.00e0", "0e0"]),
+        ("p", 1.6674e-6, 1.66717e-6, ["1.6674e-6", "1.6672e-6"]),
+        ("sigma", 5.0, 5.0, ["5.00e0", "5e0"]),
+        ("count", 835.0, 0.0, ["835", "0"]),
+    ] {
+        assert_eq!(Check::new("a", "b", measure, value, limit).texts(), texts);
     }
 }
 

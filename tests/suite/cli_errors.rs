@@ -124,6 +124,32 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
 }
 
 #[test]
+fn words_that_are_no_commands_are_refused() {
+    let place = Workplace::new();
+    for (arguments, near) in [
+        ("race", "`glossmith study accuracy`"),
+        ("export gold a.glb", "`glossmith convert`"),
+        ("rendr a.glb", "`glossmith render`"),
+        ("--engine cpu Turntabel", "`glossmith turntable`"),
+        ("convergence", "`glossmith study convergence`"),
+    ] {
+        place.refused(2, arguments, &["no such command", near]);
+    }
+    place.refused(1, "manual race", &["race", "`glossmith study accuracy`"]);
+    std::fs::create_dir(place.path("race")).unwrap();
+    place.refused(1, "race", &["race", "no model"]);
+}
+
+#[test]
+fn hard_cases_of_no_such_name_are_refused() {
+    let place = Workplace::new();
+    place.refused(2, "check --hard --only nosuchcase", &["nosuchcase", "white-box-lambert"]);
+    place.refused(2, "check --hard --only fresnl", &["did you mean fresnel-"]);
+    let run = place.done("check --hard --engine cpu --only fresnel-grazing");
+    assert!(run.stdout.contains("limit 2.5e-7"), "{}", run.stdout);
+}
+
+#[test]
 fn wrong_arguments_are_refused() {
     let place = Workplace::new();
     place.refused(1, "render nowhere.json", &["nowhere.json", "check the path"]);
@@ -218,7 +244,7 @@ fn wrong_arguments_are_refused() {
     ] {
         place.refused(2, &format!("scatter {arguments}"), &words);
     }
-    place.refused(1, "paint", &["paint", "no such command or file", "--help"]);
+    place.refused(2, "paint", &["paint", "no such command", "--help"]);
     place.write("notes.txt", b"milk, bread");
     place.refused(1, "--engine cpu notes.txt", &["notes.txt", ".glb"]);
 }

@@ -2,6 +2,7 @@
 //! test docs` writes them again.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
@@ -18,7 +19,9 @@ use glossmith::store::exchange::{FORMATS, Registered, SURFACES};
 use glossmith::store::file_kind::FileKind;
 use glossmith::store::preset::{command_line_name, source_of_values};
 
+use super::cli_support::Workplace;
 use super::docs::{pages, root, text_of};
+use super::docs_commands::{arguments, commands};
 
 const BEGIN: &str = "<!-- made from the program: ";
 const END: &str = "<!-- end -->";
@@ -295,6 +298,17 @@ fn file_parameters(all: &[FileParameter]) -> String {
     table(&["parameter", "goes to", "report"], all.iter().map(row))
 }
 
+/// What the command of the page on a pixel prints: up to the first contribution, and the end.
+fn path_explained() -> String {
+    let command = &commands(&text_of(Path::new("docs/how-to/explain.md")))[0];
+    let told = Workplace::new().done(&arguments(command)[1..].join(" ")).stdout;
+    let lines: Vec<&str> = told.trim_end().lines().collect();
+    let first = lines.iter().position(|line| line.starts_with('+')).expect("a contribution");
+    let end = lines.iter().rposition(|line| line.starts_with("end")).expect("an end");
+    let (start, end) = (lines[..=first].join("\n"), lines[end..].join("\n"));
+    format!("```text\n{start}\n…\n{end}\n```\n")
+}
+
 fn block(name: &str) -> String {
     match name {
         "parameters" => parameters(&PARAMETERS),
@@ -312,6 +326,7 @@ fn block(name: &str) -> String {
         "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         "keywords of MTL" => file_parameters(MTL_PARAMETERS),
         "results" => super::docs_results::table_of_results(),
+        "a path" => path_explained(),
         name => match (
             name.strip_prefix("inputs of "),
             name.strip_prefix("options of glossmith"),

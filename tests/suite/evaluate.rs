@@ -193,6 +193,7 @@ fn what_is_wrong_is_named() {
     place.write("word.csv", b"theta_o,phi_o,theta_i,phi_i\n\n1,2,steep,4\n");
     place.write("taken.csv", b"theta_o,phi_o,theta_i,phi_i,r\n1,2,3,4,5\n");
     place.write("empty.csv", b"# nothing\n");
+    place.write("head.csv", b"theta_o,phi_o,theta_i,phi_i\n");
     let gold = "evaluate --material Gold --engine cpu --output out.csv";
     for (file, words) in [
         ("short.csv", ["no column phi_i", "theta_o,phi_o"]),
@@ -200,6 +201,7 @@ fn what_is_wrong_is_named() {
         ("word.csv", ["line 3", "steep"]),
         ("taken.csv", ["column r", "rename"]),
         ("empty.csv", ["empty.csv", "empty"]),
+        ("head.csv", ["head.csv", "no directions"]),
         ("missing.csv", ["missing.csv", "cannot be read"]),
     ] {
         place.refused(1, &format!("{gold} --directions {file}"), &words);

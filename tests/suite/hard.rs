@@ -10,6 +10,7 @@ use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
+use glossmith::study::check::Check;
 use glossmith::study::hard::{HardOptions, catalogue, markdown, run};
 
 fn options(engine: EngineChoice, thorough: bool) -> HardOptions {
@@ -84,6 +85,8 @@ fn the_table_of_stability_is_the_programs_own() {
             case.group, case.name, case.danger, case.made, case.must
         );
         assert!(line.starts_with(&fixed), "{line}: run UPDATE_DOCS=1 cargo test hard");
+        let [_, limit] = Check::new(case.group, case.name, case.measure, 0.0, case.limit).texts();
+        assert!(line.contains(&format!("| {} {limit} |", case.measure)), "{line}: the limit is {limit}");
         assert!(!line.contains("**fails**"), "{line}");
     }
 }

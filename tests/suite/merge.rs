@@ -192,4 +192,9 @@ fn films_that_do_not_belong_together_are_refused() {
     place.refused(1, "merge a.exr plain.exr --output x.exr", &["plain.exr", "--keep-sums"]);
     place.refused(1, "render --samples-from 4 --samples-to 4", &["--samples-to 4"]);
     place.refused(1, "render --keep-sums --output a.png", &["--keep-sums", ".exr"]);
+    place.refused(
+        1,
+        &format!("render {SCENE} --samples-from 4 --denoise fast"),
+        &["--samples-from 4", "denoiser"],
+    );
 }

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::app::kit::words::{duration, percent_short};
+pub(in crate::app) use crate::plot::number as short;
 
 /// The share of an axis at either end in which there are no labels: half of a label's height in a small chart.
 const LABEL_GAP: f64 = 0.05;
@@ -57,15 +58,6 @@ pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: 
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .set_margin_fraction(margin.into())
-}
-
-/// A number on an axis.
-pub(in crate::app) fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
-        format!("{}", (value * 1e4).round() / 1e4)
-    } else {
-        format!("{value:.0e}")
-    }
 }
 
 /// The first round number that is not below this one: where an axis ends so that its last label is always seen.

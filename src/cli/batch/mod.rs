@@ -207,7 +207,11 @@ fn chosen<'a>(
                 .as_ref()
                 .is_none_or(|range| range.contains(&frame))
     };
-    Ok((1..).zip(all).filter(is_chosen).collect())
+    let chosen: Vec<_> = (1..).zip(all).filter(is_chosen).collect();
+    if chosen.is_empty() {
+        bail!("--pictures and --frame-range have no image in common; --pictures counts every frame");
+    }
+    Ok(chosen)
 }
 
 /// A line to the program that called, and one for people.

@@ -71,6 +71,9 @@ impl Pairs {
             pairs.rows.push(line.to_owned());
             pairs.angles_deg.push([[theta_o, phi_o], [theta_i, phi_i]]);
         }
+        if pairs.rows.is_empty() {
+            bail!("{name}: there are no directions below the names of the columns");
+        }
         Ok(pairs)
     }
 

@@ -214,17 +214,19 @@ pub(super) fn shortened(text: String) -> String {
     }
 }
 
-/// The key that was probably meant: nearest by edits, the group being left out or not.
+/// The key that was probably meant, the group being left out or not.
 pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
-    let distance = |known: &str| {
-        let short = known.rsplit_once('.').map_or(known, |(_, short)| short);
-        edit_distance(key, known).min(edit_distance(key, short))
-    };
-    let near = keys()
-        .map(|known| (distance(known), known))
+    let short = |known: &'static str| known.rsplit_once('.').map_or(known, |(_, short)| short);
+    nearest(key, keys().flat_map(|known| [(known, known), (short(known), known)]))
+}
+
+/// What belongs to the name that was probably meant: the nearest by edits, of which a third of the letters may be needed.
+pub(crate) fn nearest<'a, T>(name: &str, known: impl Iterator<Item = (&'a str, T)>) -> Option<T> {
+    let near = known
+        .map(|(known, of_it)| (edit_distance(name, known), of_it))
         .min_by_key(|(edits, _)| *edits);
-    near.filter(|(edits, _)| 3 * edits <= key.chars().count())
-        .map(|(_, key)| key)
+    near.filter(|(edits, _)| 3 * edits <= name.chars().count())
+        .map(|(_, of_it)| of_it)
 }
 
 /// Fewest insertions, removals and replacements of characters that turn one text into the other.

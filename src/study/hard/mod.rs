@@ -125,17 +125,17 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
     };
     for (index, row) in first.iter().enumerate() {
         let case = row.case;
+        let [_, limit] = row.check.texts();
         let _ = write!(
             text,
-            "| {}: {} | {} | {}: {} | {} | {} {:.0e} |",
+            "| {}: {} | {} | {}: {} | {} | {} {limit} |",
             case.group,
             case.name,
             case.danger,
             case.made,
             case.must,
             (case.naive)(),
-            case.measure,
-            case.limit
+            case.measure
         );
         for check in engines
             .iter()
@@ -143,7 +143,7 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
             .map(|row| &row.check)
         {
             let verdict = if check.passed { "" } else { "**fails** " };
-            let _ = write!(text, " {verdict}{:.2e} |", check.value);
+            let _ = write!(text, " {verdict}{} |", check.texts()[0]);
         }
         text.push('\n');
     }

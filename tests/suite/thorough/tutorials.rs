@@ -11,7 +11,7 @@ use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::app::workspaces::LOOK;
 use glossmith::app::{App, Options};
-use glossmith::document::Document;
+use glossmith::document::{Denoise, Document};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::shown::Shown;
 use glossmith::scene::environment::EnvironmentSource;
@@ -267,7 +267,9 @@ fn automate_it() {
         .filter_map(|rest| rest.split(')').next());
     let calls: Vec<String> = calls.map(|call| call.replace("\", \"", " ").replace('"', "")).collect();
     assert!(calls.len() >= 5, "{calls:?}");
-    let scene = super::worker::small_document();
+    // As the window saves it.
+    let mut scene = super::worker::small_document();
+    scene.view.denoise = Denoise::Fast;
     glossmith::store::save_document(&place.path("scene.json"), &scene).unwrap();
     place.write(
         "scene.toml",
@@ -275,6 +277,8 @@ fn automate_it() {
     );
     for call in calls {
         let run = place.done(&call);
+        let says_so = run.stderr.contains("a part of the samples is not denoised");
+        assert_eq!(says_so, call.contains("--samples-from"), "{call}: {}", run.stderr);
         let answers = call.starts_with("batch") || call.contains("--json");
         if !answers {
             continue;

@@ -175,8 +175,8 @@ fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHan
     }
     let tooltip = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
     ui.label(in_words(case.name)).on_hover_text(tooltip);
-    let verdict = format!("{} {}", check.measure, short(check.measure, check.value));
-    let most = short(check.measure, check.limit);
+    let [value, most] = check.texts();
+    let verdict = format!("{} {value}", check.measure);
     let hover = format!("at most {most}; naive: {}", (case.naive)());
     if check.passed {
         ui.label(format!("✔ {verdict}")).on_hover_text(hover);
@@ -191,10 +191,3 @@ fn in_words(name: &str) -> String {
     name.replace('-', " ")
 }
 
-/// A measure's value: things that are counted as they are.
-fn short(measure: &str, value: f64) -> String {
-    match measure {
-        "count" => format!("{value:.0}"),
-        _ => format!("{value:.1e}"),
-    }
-}

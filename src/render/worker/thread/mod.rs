@@ -66,8 +66,6 @@ struct State<'a> {
     denoising: Denoising,
     /// The latest frame shown of the submission.
     frame: Option<Frame>,
-    /// Held while the thread has work.
-    at_work: Option<AtWork<'static>>,
 }
 
 /// A session for the window, which keeps guides: denoising and layers may be requested for samples already rendered.
@@ -103,7 +101,6 @@ impl<'a> State<'a> {
                 move || shared.commands.change(|_| ())
             }),
             frame: None,
-            at_work: None,
         }
     }
 }
