@@ -222,10 +222,10 @@ mod renders;
 mod rough_diffuse;
 #[path = "suite/same_bits.rs"]
 mod same_bits;
-#[path = "suite/scenes.rs"]
-mod scenes;
 #[path = "suite/scattering.rs"]
 mod scattering;
+#[path = "suite/scenes.rs"]
+mod scenes;
 #[path = "suite/shadow_catcher.rs"]
 mod shadow_catcher;
 #[path = "suite/signals.rs"]

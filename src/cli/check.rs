@@ -58,7 +58,10 @@ fn part_of_name(text: &str) -> Result<String, String> {
     let parts = names().flat_map(|name| name.split('-').chain([name]).map(move |part| (part, name)));
     Err(match nearest(text, parts) {
         Some(near) => format!("in no name of a hard case; did you mean {near}?"),
-        None => format!("in no name of a hard case; there are {}", names().collect::<Vec<_>>().join(", ")),
+        None => format!(
+            "in no name of a hard case; there are {}",
+            names().collect::<Vec<_>>().join(", ")
+        ),
     })
 }
 

@@ -260,7 +260,10 @@ impl SceneArguments {
             }
             (_, Some(wanted)) if variants.is_empty() => bail!("--variant {wanted}: the model has no variants"),
             (_, Some(wanted)) if !variants.contains(wanted) => {
-                bail!("--variant {wanted}: the model has no such variant; it has {}", variants.join(", "))
+                bail!(
+                    "--variant {wanted}: the model has no such variant; it has {}",
+                    variants.join(", ")
+                )
             }
             _ => Ok(()),
         }

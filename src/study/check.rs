@@ -81,7 +81,9 @@ impl Check {
         }
         let rounded = |digits: usize| both.map(|x| format!("{x:.digits$e}").parse().unwrap_or(x));
         let order = |[value, limit]: [f64; 2]| value.partial_cmp(&limit);
-        let digits = (2..16).find(|digits| order(rounded(*digits)) == order(both)).unwrap_or(16);
+        let digits = (2..16)
+            .find(|digits| order(rounded(*digits)) == order(both))
+            .unwrap_or(16);
         [format!("{:.digits$e}", self.value), format!("{:e}", rounded(digits)[1])]
     }
 }

@@ -101,7 +101,12 @@ fn faults(session: &mut Session, case: &Case, run: Run) -> Option<String> {
     for (channel, ([mean, error], expected)) in found.into_iter().zip(case.expected).enumerate() {
         let allowed = SIGMAS * error + ROUNDING * expected.abs() + 1e-9;
         // Adaptive renders stop by the luminance of all pixels, whatever is left in a channel.
-        let bound = BOUND * if run.is_adaptive { 4.0 } else { f64::from(run.fewer).sqrt() };
+        let bound = BOUND
+            * if run.is_adaptive {
+                4.0
+            } else {
+                f64::from(run.fewer).sqrt()
+            };
         let is_sharp = allowed <= bound * expected.abs() + 1e-9;
         if (mean - expected).abs() > allowed || !is_sharp {
             return Some(format!(

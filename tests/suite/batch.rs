@@ -1,11 +1,11 @@
 //! Batches: all combinations of lists as pictures, whole or in parts, and what happens when something goes wrong.
 
+use crate::cli_support::{Run, Workplace};
+use glossmith::store::PRESETS;
+use serde_json::Value as Json;
 use std::collections::HashMap;
 use std::io::{BufRead as _, BufReader};
 use std::process::{Command, Stdio};
-use glossmith::store::PRESETS;
-use serde_json::Value as Json;
-use crate::cli_support::{Run, Workplace};
 
 const SMALL: &str = "\n[common]\nsize = \"16x16\"\nsamples = 4\nmodel = \"sphere\"\n";
 
@@ -152,7 +152,10 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
     place.refused(1, "batch a.toml --pictures 2-3", &["--pictures 2-3", "2 only"]);
     place.refused(1, "batch a.toml --frame-range 2", &["a.toml", "frames"]);
     place.refused(2, "batch a.toml --slice 3/2", &["2/5"]);
-    place.write("d.toml", format!("materials = [\"gold\"]\nframes = 2{SMALL}").as_bytes());
+    place.write(
+        "d.toml",
+        format!("materials = [\"gold\"]\nframes = 2{SMALL}").as_bytes(),
+    );
     place.refused(1, "batch d.toml --pictures 1 --frame-range 2", &["in common"]);
 }
 

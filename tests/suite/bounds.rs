@@ -1,7 +1,7 @@
 //! Small files that ask for large work end soon, or with a message: each of these once took a minute or for ever.
 
-use serde_json::json;
 use super::cli_support::Workplace;
+use serde_json::json;
 
 const QUICK: &str = "--engine cpu --size 8x8 --samples 1 --output a.exr";
 

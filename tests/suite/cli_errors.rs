@@ -143,7 +143,11 @@ fn words_that_are_no_commands_are_refused() {
 #[test]
 fn hard_cases_of_no_such_name_are_refused() {
     let place = Workplace::new();
-    place.refused(2, "check --hard --only nosuchcase", &["nosuchcase", "white-box-lambert"]);
+    place.refused(
+        2,
+        "check --hard --only nosuchcase",
+        &["nosuchcase", "white-box-lambert"],
+    );
     place.refused(2, "check --hard --only fresnl", &["did you mean fresnel-"]);
     let run = place.done("check --hard --engine cpu --only fresnel-grazing");
     assert!(run.stdout.contains("limit 2.5e-7"), "{}", run.stdout);

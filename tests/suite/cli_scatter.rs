@@ -1,6 +1,5 @@
 //! `glossmith scatter`: the samples as a table and as a picture.
 
-
 use crate::cli_support::Workplace;
 
 /// The rows of a table, whose head is checked.

@@ -13,7 +13,6 @@ use glossmith::optics::material::{Material, Surface};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 
-
 /// Samples of a case.
 const SAMPLES: u32 = 40_000;
 

@@ -6,8 +6,8 @@ use glossmith::analysis::halves::Halves;
 use glossmith::document::{Denoise, Document};
 use glossmith::job::film::{Extras, Film, Image};
 use glossmith::job::guides::GuideSums;
-use glossmith::render::denoise::{Denoised, Denoiser, Noisy};
 use glossmith::render::EngineChoice;
+use glossmith::render::denoise::{Denoised, Denoiser, Noisy};
 use glossmith::scene::ModelSource;
 
 use super::cli_support::{Workplace, read_exr};

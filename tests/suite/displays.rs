@@ -17,8 +17,7 @@ use glossmith::render::worker::{Pace, Picture, Snapshot, Worker};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
 
-use super::monkey::{broken, listen};
-use super::support::{Random, is_thorough};
+use super::support::{Random, broken, listen};
 use super::ui::options;
 use super::worker::{small_document, wait};
 
@@ -142,7 +141,7 @@ fn a_coarse_image_shown_brighter_stays_coarse() {
 /// How long the soak goes on: `GLOSSMITH_SOAK_MINUTES`, else 20 minutes with `GLOSSMITH_THOROUGH`, else seconds.
 fn soak_time() -> Duration {
     let chosen = std::env::var("GLOSSMITH_SOAK_MINUTES").ok();
-    let default = if is_thorough() { 20.0 } else { 0.25 };
+    let default = if cfg!(feature = "thorough") { 20.0 } else { 0.25 };
     let minutes = chosen.map_or(default, |text| text.parse().expect("minutes"));
     Duration::from_secs_f64(60.0 * minutes)
 }

@@ -303,7 +303,10 @@ fn path_explained() -> String {
     let command = &commands(&text_of(Path::new("docs/how-to/explain.md")))[0];
     let told = Workplace::new().done(&arguments(command)[1..].join(" ")).stdout;
     let lines: Vec<&str> = told.trim_end().lines().collect();
-    let first = lines.iter().position(|line| line.starts_with('+')).expect("a contribution");
+    let first = lines
+        .iter()
+        .position(|line| line.starts_with('+'))
+        .expect("a contribution");
     let end = lines.iter().rposition(|line| line.starts_with("end")).expect("an end");
     let (start, end) = (lines[..=first].join("\n"), lines[end..].join("\n"));
     format!("```text\n{start}\n…\n{end}\n```\n")

@@ -1,11 +1,15 @@
 //! Environments: conventions of the map, look-up, and the sampling density against statistics and quadrature.
 
-use std::f64::consts::{PI, TAU};
+use crate::support::Random;
 use glossmith::import::environment::load;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::{Environment, EnvironmentSource, SkyParams, brightened, environment_direction, environment_local_from_world, environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction, sun_irradiance, thumbnail};
-use crate::support::Random;
+use glossmith::scene::environment::{
+    Environment, EnvironmentSource, SkyParams, brightened, environment_direction, environment_local_from_world,
+    environment_radiance, environment_sample, environment_uv, environment_world_from_local, sky, studio, sun_direction,
+    sun_irradiance,
+};
+use std::f64::consts::{PI, TAU};
 
 /// A direction, uniform on the sphere.
 pub fn random_direction(random: &mut Random) -> Vec3<f64> {

@@ -1,16 +1,16 @@
 //! Environments: the density that they are sampled with, against quadrature and statistics.
 
-use std::f64::consts::{PI, TAU};
+use crate::environment::{assert_near, constant_map, random_map, sun_map, triple};
+use crate::support::Random;
 use glossmith::analysis::chi_square::test_counts;
 use glossmith::import::environment::load;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
-    Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction,
-    environment_radiance, environment_sample, environment_uv, furnace, sky, thumbnail,
+    Distribution, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
+    environment_sample, environment_uv, furnace, sky, thumbnail,
 };
 use glossmith::scene::inversion::{DRAW_BITS, drawn, find, place_in, shares};
-use crate::environment::{assert_near, constant_map, random_map, sun_map, triple};
-use crate::support::Random;
+use std::f64::consts::{PI, TAU};
 
 #[test]
 fn density_is_the_luminance_of_the_bilinear_picture() {
@@ -113,7 +113,11 @@ fn p_values(distribution: &Distribution, block: [u32; 2]) -> [f64; 2] {
         let size = [distribution.width, distribution.height];
         found[block_of([0, 1].map(|axis| ((uv[axis] * f64::from(size[axis])) as u32).min(size[axis] - 1)))] += 1;
     }
-    let tampered: Vec<f64> = expected.iter().enumerate().map(|(i, x)| x * [1.01, 0.99][i % 2]).collect();
+    let tampered: Vec<f64> = expected
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x * [1.01, 0.99][i % 2])
+        .collect();
     [&expected, &tampered].map(|expected| test_counts(&found, expected).p_value)
 }
 

@@ -6,6 +6,7 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 use glossmith::scene::texture::TextureTarget;
+use glossmith::store::exchange::{ReadOptions, read};
 use glossmith::store::{load_material, save_document, save_material};
 use serde_json::Value as Json;
 

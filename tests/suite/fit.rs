@@ -4,9 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use glossmith::analysis::fit::merl::{CELLS, SCALES};
-use glossmith::analysis::fit::{
-    Measure, Merl, Nearest, nearest_roughness, total_variation,
-};
+use glossmith::analysis::fit::{Measure, Merl, Nearest, nearest_roughness, total_variation};
 use glossmith::document::MaterialSettings;
 use glossmith::matching::{MatchError, Target, match_look};
 use glossmith::optics::curve::Curve;
@@ -14,7 +12,6 @@ use glossmith::optics::lobe::model::{LobeModel, view_direction};
 use glossmith::optics::lobe::{Lobe, phong};
 use glossmith::optics::vector::vec3;
 use glossmith::store::load_material;
-
 
 /// The roughness of `lobe` nearest to a target, at normal incidence unless said otherwise.
 fn nearest(target: &LobeModel, lobe: Lobe, view_angle_deg: f64, measure: Measure) -> Nearest {

@@ -5,10 +5,7 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3, Vec3A, Vec4};
 use glossmith::import::load;
 use glossmith::scene::mesh::{Mesh, plane_normal};
-use glossmith::scene::{
-    Geometry, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, teapot,
-};
-
+use glossmith::scene::{Geometry, Loading, Model, ModelSource, RayFrame, Slot, intersect_triangle, teapot};
 
 const BUILT_IN: [ModelSource; 4] = [
     ModelSource::Teapot,

@@ -1,20 +1,20 @@
 //! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, TIFF of halves, floats and
 //! doubles, textures of 16 bits and of light.
 
+use super::environment_shapes::{FACES, assert_is_that_cube};
+use super::gltf_builder::{Folder, glb, square};
 use glossmith::import::environment::load;
 use glossmith::optics::material::NO_TEXTURE;
-use glossmith::scene::environment::EnvironmentSource;
 use glossmith::optics::tone::{linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
+use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::texture::TextureTarget;
 use glossmith::scene::texture::scale::scaled_to;
 use glossmith::scene::texture::{Textures, texture_lookup};
-use glossmith::scene::{Fate, Model, ModelOptions, ModelSource, Texture};
+use glossmith::scene::{Fate, Model, Texture};
 use half::f16;
 use image::{DynamicImage, ImageBuffer, Rgb};
 use serde_json::{Value, json};
-use super::environment_shapes::{FACES, assert_is_that_cube};
-use super::gltf_builder::{Folder, glb, square};
 
 /// A KTX2 file of levels as they are.
 fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {

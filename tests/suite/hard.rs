@@ -86,7 +86,10 @@ fn the_table_of_stability_is_the_programs_own() {
         );
         assert!(line.starts_with(&fixed), "{line}: run UPDATE_DOCS=1 cargo test hard");
         let [_, limit] = Check::new(case.group, case.name, case.measure, 0.0, case.limit).texts();
-        assert!(line.contains(&format!("| {} {limit} |", case.measure)), "{line}: the limit is {limit}");
+        assert!(
+            line.contains(&format!("| {} {limit} |", case.measure)),
+            "{line}: the limit is {limit}"
+        );
         assert!(!line.contains("**fails**"), "{line}");
     }
 }

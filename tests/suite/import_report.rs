@@ -55,7 +55,11 @@ fn the_command_line_tells_one_line_and_writes_the_rest() {
     // The variant has no such texture.
     let run = place.done(&format!("{render} --variant night"));
     assert!(!run.stderr.contains("tree.glb"), "{}", run.stderr);
-    place.refused(1, &format!("{render} --variant nigth"), &["--variant nigth", "it has night"]);
+    place.refused(
+        1,
+        &format!("{render} --variant nigth"),
+        &["--variant nigth", "it has night"],
+    );
     place.refused(1, &format!("{render} --scene 7"), &["--scene 7", "0 to 0"]);
     place.refused(2, "render --model tree.glb --time-of-pose -1", &["-1"]);
 }

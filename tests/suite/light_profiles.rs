@@ -1,7 +1,8 @@
 //! Light profiles: the light below a lamp is that of its file's intensities on both engines, by all strategies; files and
 //! names on the command line, in projects and in the window. The files are built here.
 
-use std::f64::consts::PI;
+use super::cli_support::{Workplace, read_exr};
+use super::renders::{document, render};
 use glam::DVec3;
 use glossmith::document::{AreaLight, AreaLightShape, Background, Document, ProfileFile};
 use glossmith::import::light_profile;
@@ -12,8 +13,7 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::light_profile::{LightProfile, profile_share};
 use glossmith::scene::{AreaFrame, AreaShape, ModelSource, Outline};
 use glossmith::store::{load_document, save_document};
-use super::cli_support::{Workplace, read_exr};
-use super::renders::{document, render};
+use std::f64::consts::PI;
 
 /// A lamp that shines along its width, hardly along its height, and not upwards.
 pub const LAMP: &str =

@@ -1,22 +1,22 @@
 //! Surfaces that emit: their sampler against its density, area lights against Lambert's formula, the strategies and
 //! engines against each other.
 
-use std::f64::consts::{PI, TAU};
-use glam::{DVec3, Vec2, Vec4};
-use glossmith::analysis::chi_square::test_counts;
-use glossmith::compile::compile;
-use glossmith::document::{AreaLight, AreaLightShape, Background, Document, Strategy};
-use glossmith::optics::material::Material;
-use glossmith::optics::vector::{Vec3, vec3};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::camera::orbit_direction;
-use glossmith::scene::light::{Emitters, LightChoice, Lights, Sampled, light_density, light_sample, spot_share};
-use glossmith::scene::mesh::Mesh;
-use glossmith::scene::texture::Textures;
-use glossmith::scene::{Geometry, Model, ModelSource, Slot};
 use crate::environment::triple;
 use crate::renders::document;
 use crate::support::Random;
+use glam::{DVec3, Vec2, Vec4};
+use glossmith::analysis::chi_square::test_counts;
+use glossmith::compile::compile;
+use glossmith::document::{AreaLight, AreaLightShape, Background, Document};
+use glossmith::optics::material::Material;
+use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::scene::camera::orbit_direction;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::light::{Emitters, Lights, light_density, light_sample, spot_share};
+use glossmith::scene::mesh::Mesh;
+use glossmith::scene::texture::Textures;
+use glossmith::scene::{Geometry, Model, ModelSource, Slot};
+use std::f64::consts::PI;
 
 /// Rows of cells that a triangle is cut into.
 const CUTS: u32 = 10;
@@ -137,7 +137,11 @@ fn p_values(origin: Vec3<f64>) -> [f64; 2] {
         );
         observed[hit.triangle as usize * CELLS + cell_of(hit.u.into(), hit.v.into())] += 1;
     }
-    let tampered: Vec<f64> = expected.iter().enumerate().map(|(i, x)| x * [1.03, 0.97][i % 2]).collect();
+    let tampered: Vec<f64> = expected
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x * [1.03, 0.97][i % 2])
+        .collect();
     [&expected, &tampered].map(|expected| test_counts(&observed, expected).p_value)
 }
 

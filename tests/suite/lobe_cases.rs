@@ -5,7 +5,6 @@ use glossmith::optics::frame::{Frame, frame_from_normal};
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
 use glossmith::optics::vector::{Vec3, vec3};
 
-
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
 pub const ROUGHNESS: [f64; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 /// From above to grazing.

@@ -1,9 +1,7 @@
 //! Pictures as files: every format and every channel against the film that it was made of.
 
-use std::collections::HashMap;
-use std::io::Cursor;
-use std::path::Path;
-use std::time::Duration;
+use crate::cli_support::{Workplace, channels};
+use crate::support::Random;
 use glossmith::document::{AreaLight, Background, Document, MaterialSettings, assign};
 use glossmith::job::film::{Film, Image};
 use glossmith::optics::tone::ToneCurve;
@@ -11,11 +9,13 @@ use glossmith::render::output::{self, Layers};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::picture::{load_picture_document, parse_picture_document, png_bytes};
+use glossmith::store::picture::{parse_picture_document, png_bytes};
 use glossmith::store::project::document_text;
-use glossmith::store::{FileError, Loaded, snapshots};
-use crate::cli_support::{Workplace, channels};
-use crate::support::Random;
+use glossmith::store::{FileError, Loaded};
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::path::Path;
+use std::time::Duration;
 
 /// Coloured, brighter than white in places, its pixels covered in part or not at all, with more samples here than there.
 fn document() -> Document {

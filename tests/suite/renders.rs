@@ -46,7 +46,9 @@ pub fn render(choice: EngineChoice, document: &Document) -> Film {
     }
     let has_files = !is_built_in(&document);
     let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
-    let place = idle.iter().position(|(of, files, _)| (*of, *files) == (choice, has_files));
+    let place = idle
+        .iter()
+        .position(|(of, files, _)| (*of, *files) == (choice, has_files));
     let kept = place.map(|place| idle.swap_remove(place).2);
     drop(idle);
     let assets = || if has_files { Assets::default() } else { ASSETS.clone() };

@@ -29,8 +29,14 @@ const CLEAR: &str = "base.metalness=0 transmission.weight=1";
 /// Materials on the teapot under the studio, in which light is reflected often.
 const MATERIALS: [(&str, &str); 9] = [
     ("metal", "specular.roughness=0.4 base.metalness=1"),
-    ("gloss", "specular.roughness=0.2 base.metalness=0 specular.fresnel=dielectric"),
-    ("brushed", "specular.lobe=ggx specular.anisotropy=0.6 specular.fresnel=conductor"),
+    (
+        "gloss",
+        "specular.roughness=0.2 base.metalness=0 specular.fresnel=dielectric",
+    ),
+    (
+        "brushed",
+        "specular.lobe=ggx specular.anisotropy=0.6 specular.fresnel=conductor",
+    ),
     ("long tail", "specular.curve=long-tail specular.horizon=absorb"),
     (
         "coat",
@@ -42,9 +48,15 @@ const MATERIALS: [(&str, &str); 9] = [
         "base.metalness=0.4 base.diffuse_roughness=0.5 fuzz.weight=0.3 thin_film.weight=0.5 coat.weight=0.5 \
          coat.lobe=ggx coat.roughness=0.4 specular.lobe=ggx specular.roughness=0.5",
     ),
-    ("amber glass", "specular.roughness=0 transmission.color=0.8,0.4,0.2 transmission.depth=0.5"),
+    (
+        "amber glass",
+        "specular.roughness=0 transmission.color=0.8,0.4,0.2 transmission.depth=0.5",
+    ),
     ("rough glass", "specular.roughness=0.4 transmission.color=0.5,0.9,0.7"),
-    ("frosted", "specular.lobe=ggx-ndf specular.roughness=0.5 transmission.roughness=-0.2"),
+    (
+        "frosted",
+        "specular.lobe=ggx-ndf specular.roughness=0.5 transmission.roughness=-0.2",
+    ),
 ];
 
 fn words(assignments: &str) -> Vec<&str> {
@@ -62,7 +74,11 @@ fn scenes(folders: &[Folder; 3]) -> Vec<Scene> {
         });
     };
     for (name, assignments) in MATERIALS {
-        let clear = if ["amber glass", "rough glass", "frosted"].contains(&name) { CLEAR } else { "" };
+        let clear = if ["amber glass", "rough glass", "frosted"].contains(&name) {
+            CLEAR
+        } else {
+            ""
+        };
         let all = [words(clear), words(assignments)].concat();
         add(name, document(ModelSource::Teapot, EnvironmentSource::Studio, &all));
     }
@@ -186,11 +202,19 @@ fn strategies_find_the_same_light() {
         let [mis, error] = sharp(session, &document, Strategy::Mis, 0);
         // What the sun or a small lamp lights is found by lobes too rarely for means that are normal.
         let is_small = ["coat", "shadow catcher", "half transparent", "profile"].contains(&scene.name);
-        let others: &[Strategy] = if is_small { &[Strategy::Light] } else { &[Strategy::Light, Strategy::Lobe] };
+        let others: &[Strategy] = if is_small {
+            &[Strategy::Light]
+        } else {
+            &[Strategy::Light, Strategy::Lobe]
+        };
         for (seed, &strategy) in (1..).zip(others) {
             let [other, its] = sharp(session, &document, strategy, seed);
             let off = (other - mis) / error.hypot(its);
-            println!("{}, {strategy:?}: {off:+.1} sigma, {:+.2} %", scene.name, 100.0 * (other / mis - 1.0));
+            println!(
+                "{}, {strategy:?}: {off:+.1} sigma, {:+.2} %",
+                scene.name,
+                100.0 * (other / mis - 1.0)
+            );
             if off.abs() > 4.0 {
                 wrong.push(format!("{}, {strategy:?}: {off:+.1} sigma", scene.name));
             }
@@ -206,44 +230,106 @@ fn the_same_bits_however_steps_are_cut_and_all_finite() {
         document.render.samples = 4;
         let whole = render(session, &document, Duration::from_secs(1000));
         assert_eq!(whole.dropped(), 0, "{}", scene.name);
-        assert!(whole.colors().flatten().all(|value| value.is_finite()), "{}", scene.name);
+        assert!(
+            whole.colors().flatten().all(|value| value.is_finite()),
+            "{}",
+            scene.name
+        );
         session.reset();
-        assert!(whole == render(session, &document, Duration::from_micros(200)), "{}: other bits", scene.name);
+        assert!(
+            whole == render(session, &document, Duration::from_micros(200)),
+            "{}: other bits",
+            scene.name
+        );
     });
 }
 
 /// Stacks that absorb nothing, and what tables and mean facets may take from their light or add to it.
 const WHITE: [(&str, f64); 30] = [
-    ("base.metalness=0 specular.roughness=0.3 specular.fresnel=dielectric", 3e-3),
+    (
+        "base.metalness=0 specular.roughness=0.3 specular.fresnel=dielectric",
+        3e-3,
+    ),
     ("specular.fresnel=none specular.roughness=0.5", 3e-3),
-    ("specular.fresnel=none specular.roughness=1 specular.curve=long-tail", 3e-3),
+    (
+        "specular.fresnel=none specular.roughness=1 specular.curve=long-tail",
+        3e-3,
+    ),
     ("base.metalness=1 specular.lobe=ggx specular.roughness=0.2", 3e-3),
     ("base.metalness=1 specular.lobe=ggx specular.roughness=0.9", 3e-3),
-    ("base.metalness=0 specular.lobe=ggx specular.roughness=0.6 specular.fresnel=dielectric", 3e-3),
+    (
+        "base.metalness=0 specular.lobe=ggx specular.roughness=0.6 specular.fresnel=dielectric",
+        3e-3,
+    ),
     ("base.metalness=0.5 specular.lobe=ggx specular.roughness=0.4", 5e-3),
     ("base.metalness=0 specular.weight=0 base.diffuse_roughness=1", 3e-3),
-    ("base.metalness=0 specular.roughness=0.3 base.diffuse_roughness=0.7", 3e-3),
+    (
+        "base.metalness=0 specular.roughness=0.3 base.diffuse_roughness=0.7",
+        3e-3,
+    ),
     ("transmission.weight=1 specular.roughness=0", 3e-3),
     ("transmission.weight=1 specular.roughness=0.3", 3e-3),
-    ("transmission.weight=1 specular.roughness=0.4 specular.anisotropy=0.6", 5e-3),
+    (
+        "transmission.weight=1 specular.roughness=0.4 specular.anisotropy=0.6",
+        5e-3,
+    ),
     ("transmission.weight=1 specular.lobe=ggx specular.roughness=0.6", 5e-3),
     ("transmission.weight=0.5 specular.roughness=0.6", 3e-3),
-    ("transmission.weight=1 specular.roughness=0.3 specular.color=0.3,0.3,0.3 specular.weight=0.5", 3e-3),
+    (
+        "transmission.weight=1 specular.roughness=0.3 specular.color=0.3,0.3,0.3 specular.weight=0.5",
+        3e-3,
+    ),
     ("base.metalness=0.5 transmission.weight=1 specular.roughness=0.3", 5e-3),
     ("base.metalness=0 coat.weight=1 coat.roughness=0", 3e-3),
-    ("base.metalness=0 coat.weight=0.5 coat.roughness=0.5 specular.roughness=0.3", 3e-3),
+    (
+        "base.metalness=0 coat.weight=0.5 coat.roughness=0.5 specular.roughness=0.3",
+        3e-3,
+    ),
     ("base.metalness=0 coat.weight=1 coat.lobe=ggx coat.roughness=0.5", 3e-3),
-    ("base.metalness=1 coat.weight=1 coat.ior=2.2 coat.roughness=0.8 specular.roughness=0.3", 4e-3),
-    ("transmission.weight=1 coat.weight=1 coat.roughness=0.2 specular.roughness=0.3", 4e-3),
-    ("base.metalness=0 fuzz.weight=1 fuzz.roughness=0.6 specular.weight=0", 4e-3),
-    ("base.metalness=0 fuzz.weight=1 fuzz.roughness=0 coat.weight=1 coat.roughness=0.3", 1e-2),
-    ("base.metalness=1 fuzz.weight=0.3 fuzz.roughness=0.6 specular.roughness=0.4", 4e-3),
-    ("base.metalness=0 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx", 3e-3),
-    ("base.metalness=1 thin_film.weight=0.5 thin_film.ior=2 thin_film.thickness=1 specular.roughness=0.2", 3e-3),
-    ("transmission.weight=1 thin_film.weight=1 thin_film.ior=1.33 thin_film.thickness=0.3 specular.roughness=0", 3e-3),
-    ("transmission.weight=1 thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx specular.roughness=0.5", 5e-3),
-    ("base.metalness=0.5 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=1.4 specular.roughness=0.3", 3e-2),
-    ("base.metalness=0 coat.weight=0 fuzz.weight=0 thin_film.weight=0 specular.fresnel=dielectric", 3e-3),
+    (
+        "base.metalness=1 coat.weight=1 coat.ior=2.2 coat.roughness=0.8 specular.roughness=0.3",
+        4e-3,
+    ),
+    (
+        "transmission.weight=1 coat.weight=1 coat.roughness=0.2 specular.roughness=0.3",
+        4e-3,
+    ),
+    (
+        "base.metalness=0 fuzz.weight=1 fuzz.roughness=0.6 specular.weight=0",
+        4e-3,
+    ),
+    (
+        "base.metalness=0 fuzz.weight=1 fuzz.roughness=0 coat.weight=1 coat.roughness=0.3",
+        1e-2,
+    ),
+    (
+        "base.metalness=1 fuzz.weight=0.3 fuzz.roughness=0.6 specular.roughness=0.4",
+        4e-3,
+    ),
+    (
+        "base.metalness=0 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx",
+        3e-3,
+    ),
+    (
+        "base.metalness=1 thin_film.weight=0.5 thin_film.ior=2 thin_film.thickness=1 specular.roughness=0.2",
+        3e-3,
+    ),
+    (
+        "transmission.weight=1 thin_film.weight=1 thin_film.ior=1.33 thin_film.thickness=0.3 specular.roughness=0",
+        3e-3,
+    ),
+    (
+        "transmission.weight=1 thin_film.weight=1 thin_film.ior=2 specular.lobe=ggx specular.roughness=0.5",
+        5e-3,
+    ),
+    (
+        "base.metalness=0.5 specular.fresnel=dielectric thin_film.weight=1 thin_film.ior=1.4 specular.roughness=0.3",
+        3e-2,
+    ),
+    (
+        "base.metalness=0 coat.weight=0 fuzz.weight=0 thin_film.weight=0 specular.fresnel=dielectric",
+        3e-3,
+    ),
 ];
 
 /// Half a percent of the energy is seen where a row allows no more.
@@ -252,12 +338,20 @@ fn white_stays_white() {
     let mut wrong = Vec::new();
     for (stack, allowed) in WHITE {
         let mut material = MaterialSettings::default();
-        let default = if stack.contains("transmission.weight=1") { "base.metalness=0" } else { "base.color=1,1,1" };
+        let default = if stack.contains("transmission.weight=1") {
+            "base.metalness=0"
+        } else {
+            "base.color=1,1,1"
+        };
         for assignment in [default, "base.color=1,1,1"].into_iter().chain(words(stack)) {
             assign(&mut material, assignment).unwrap();
         }
         let evaluator = Evaluator::open(&material, EngineChoice::Cpu, Precision::Single).unwrap();
-        let within: &[f64] = if stack.contains("transmission.weight=1") { &[-1.0, -0.8] } else { &[] };
+        let within: &[f64] = if stack.contains("transmission.weight=1") {
+            &[-1.0, -0.8]
+        } else {
+            &[]
+        };
         for cosine in [1.0, 0.6, 0.2].iter().chain(within).copied() {
             let found = evaluator.albedo(cosine, 1 << 14, 1).unwrap();
             let off = [0, 1, 2].map(|i| (found.reflected[i] + found.transmitted[i] - 1.0).abs());
@@ -276,7 +370,11 @@ fn white_stays_white() {
 fn white_bodies_are_not_seen_in_even_light() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     for (number, (stack, allowed)) in WHITE.iter().enumerate() {
-        let default = if stack.contains("transmission") { "base.metalness=0" } else { "base.color=1,1,1" };
+        let default = if stack.contains("transmission") {
+            "base.metalness=0"
+        } else {
+            "base.color=1,1,1"
+        };
         let all = [vec![default, "base.color=1,1,1"], words(stack)].concat();
         let model = [ModelSource::Sphere, ModelSource::Teapot][number % 2].clone();
         let mut document = document(model, EnvironmentSource::Furnace, &all);

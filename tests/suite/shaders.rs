@@ -4,9 +4,7 @@
 use glossmith::cpu::integrator;
 use glossmith::document::Document;
 use glossmith::gpu::Traversal;
-use glossmith::gpu::shader::{
-    GENERATED, Linked, link, link_for, module_names,
-};
+use glossmith::gpu::shader::{GENERATED, Linked, link, link_for, module_names};
 use glossmith::job::plan::Plan;
 use glossmith::job::tiles::TILE_SIDE;
 use glossmith::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, TOTAL_NODES};

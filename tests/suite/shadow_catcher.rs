@@ -1,18 +1,18 @@
 //! Grounds: the shadow catcher is the background where nothing stands on it, its shadows and reflections have their true
 //! values, on both engines; the cyclorama's wall stands where it should.
 
-use std::f64::consts::PI;
+use crate::renders::{assert_same_picture, document, render};
 use glam::DVec3;
 use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
 use glossmith::scene::catcher::{CatcherLight, NearLight, catcher_light, catcher_reflectance, catcher_table};
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::ModelSource;
-use glossmith::scene::{AreaShape, Geometry, ModelSource, Outline};
-use crate::renders::{assert_same_picture, document, render};
+use glossmith::scene::{AreaShape, Outline};
+use std::f64::consts::PI;
 
 const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
 

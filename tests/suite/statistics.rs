@@ -1,7 +1,7 @@
 //! χ² of every sampler against its density, in f64, and proof that the test finds a density that is wrong by 2 %.
 
-use std::f64::consts::{PI, TAU};
-use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples, upper_tail};
+use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, is_quick, lobes_and_curves, lobes_and_quick_curves};
+use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_samples, upper_tail};
 use glossmith::analysis::histogram::{Histogram, angle_density};
 use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
 use glossmith::optics::curve::Curve;
@@ -10,7 +10,7 @@ use glossmith::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, 
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
-use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, is_quick, lobes_and_curves, lobes_and_quick_curves};
+use std::f64::consts::{PI, TAU};
 
 /// Probability that chance alone fails a right sampler, over all cases of a test.
 const LEVEL: f64 = 1e-3;

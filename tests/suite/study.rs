@@ -1,6 +1,6 @@
 //! Studies: the race and the ledger, in numbers small enough for a test.
 
-use std::time::Duration;
+use super::cli_support::Workplace;
 use glossmith::document::{Document, MaterialSettings};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -10,7 +10,7 @@ use glossmith::study::StudyError;
 use glossmith::study::ledger::{LedgerOptions, ledger};
 use glossmith::study::race::{Race, RaceOptions, Runner, race};
 use serde_json::Value;
-use super::cli_support::Workplace;
+use std::time::Duration;
 
 fn sphere(side: u32) -> Document {
     let mut document = Document {

@@ -3,9 +3,9 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
+use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::Options;
 
 use super::ui::{Editor, editor, editor_of, options, request, see, see_label, settle, wait};
 

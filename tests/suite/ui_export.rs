@@ -1,11 +1,11 @@
 //! Files for other programs, made and opened in the window.
 
+use crate::ui::{Editor, editor, request, see, see_label, wait};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::store::PRESETS;
 use glossmith::store::preset::{load_material, material_text};
-use crate::ui::{Editor, editor, request, see, see_label, wait};
 
 /// Chooses *Export…* and types a path.
 fn ask_for(harness: &mut Editor, path: &std::path::Path) {

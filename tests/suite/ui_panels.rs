@@ -18,8 +18,7 @@ use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
 use super::ui::{
-    Editor, editor, editor_of, editor_with, options, picture, request, see,
-    see_label, settle, undo, wait,
+    Editor, editor, editor_of, editor_with, options, picture, request, see, see_label, settle, undo, wait,
 };
 use super::worker::small_document;
 

@@ -4,8 +4,8 @@ use egui::accesskit::Role;
 use egui::{Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::layout::Pane;
-use glossmith::document::effect::Switch;
 use glossmith::document::AreaLight;
+use glossmith::document::effect::Switch;
 use glossmith::job::effect::EffectId;
 use glossmith::scene::ModelSource;
 

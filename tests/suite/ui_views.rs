@@ -1,8 +1,8 @@
 //! Views, small windows and plots: parallel views from the sides, lights that are hidden and moved along axes, tabs that are
 //! whole, and the radius of the lobe's slice.
 
-use egui::accesskit::Role;
 use egui::Key;
+use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
 use glossmith::app::layout::Pane;

@@ -1,6 +1,10 @@
 //! What must not stand in the way of who works at the window: charts that can be read, a bar that fits, checks that can be
 //! stopped, measurements that say when they are old, the engine that was chosen.
 
+use super::cli_support::passes_alone;
+use super::ui::{
+    Editor, Memory, editor, editor_of, editor_remembering, options, request, see, see_label, settle, wait,
+};
 use eframe::App as _;
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -9,10 +13,6 @@ use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
 use glossmith::render::{EngineChoice, EngineKind, RayQueries};
 use glossmith::store::examples::EXAMPLES;
-use super::cli_support::passes_alone;
-use super::ui::{
-    Editor, Memory, editor, editor_of, editor_remembering, options, request, see, see_label, settle, wait,
-};
 
 #[test]
 fn the_engine_chosen_in_the_menu_is_remembered() {

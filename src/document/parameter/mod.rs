@@ -22,8 +22,8 @@ pub use of_document::SETTINGS;
 pub use of_light::LIGHT_PARAMETERS;
 pub use of_material::PARAMETERS;
 pub use of_texture::TEXTURE_PARAMETERS;
-pub(crate) use text::{nearest, nearest_key};
 pub use text::{ColorError, parse_color};
+pub(crate) use text::{nearest, nearest_key};
 
 /// The value of a parameter.
 #[derive(Clone, Debug, PartialEq)]

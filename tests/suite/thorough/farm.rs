@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::cli_support::Workplace;
 use super::exchange_tools::tools;
+use crate::cli_support::Workplace;
 
 /// Longest time for the tasks of a test.
 const PATIENCE: Duration = Duration::from_secs(240);

@@ -5,7 +5,6 @@
 
 use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
-use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
@@ -21,7 +20,7 @@ use tempfile::TempDir;
 use super::cli_support::write_hdr;
 use super::monkey_deeds::{Deed, Gesture, Surroundings};
 use super::random_documents::random_document;
-use super::support::Random;
+use super::support::{Random, broken, listen};
 use super::ui::{Editor, assert_same_controls, controls};
 use super::ui_panels::write_textured_square;
 
@@ -38,33 +37,6 @@ const TOLD: usize = 40;
 const QUIET_FRAMES: usize = 3;
 /// How long files that are being opened may take.
 const PATIENCE: Duration = Duration::from_secs(600);
-/// What tests let panic on purpose says so.
-const ON_PURPOSE: &str = "on purpose";
-
-/// Panics of the program's own threads, which no test sees otherwise.
-static BROKEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-pub(super) fn broken() -> std::sync::MutexGuard<'static, Vec<String>> {
-    BROKEN.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
-/// Takes note of panics in threads that have a name of the program's: tests are named after their path.
-pub(super) fn listen() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let usual = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |panic| {
-            let thread = std::thread::current();
-            let is_ours = thread.name().is_some_and(|name| name != "main" && !name.contains("::"));
-            let text = panic.to_string();
-            if is_ours && !text.contains(ON_PURPOSE) && !glossmith::panics::is_contained() {
-                broken().push(format!("{}: {text}", thread.name().unwrap_or_default()));
-            }
-            usual(panic);
-        }));
-    });
-}
-
 /// What was done last, told where the episode breaks.
 struct Trail {
     seed: u64,

@@ -211,4 +211,3 @@ fn windows() {
     see_label(&mut harness, "Write the file");
     take(&mut harness, "window-export");
 }
-

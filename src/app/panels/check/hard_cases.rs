@@ -190,4 +190,3 @@ fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHan
 fn in_words(name: &str) -> String {
     name.replace('-', " ")
 }
-
