@@ -32,8 +32,6 @@ mod analytic_lobes;
 mod analytic_media;
 #[path = "suite/analytic_scenes.rs"]
 mod analytic_scenes;
-#[path = "suite/assets.rs"]
-mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
 #[path = "suite/benchmark.rs"]
@@ -166,8 +164,6 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
-#[path = "suite/long_passes.rs"]
-mod long_passes;
 #[path = "suite/look_of_ggx.rs"]
 mod look_of_ggx;
 #[path = "suite/lut.rs"]

@@ -16,7 +16,7 @@ use super::instanced::{Instanced, Traceable};
 use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::memory::prefetch;
-use super::model::{Model, Slot};
+use super::model::Model;
 use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
 use crate::instructions;
 use crate::parallel;
@@ -62,8 +62,7 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Makes a model ready to trace; a ground touches its lowest point, in the slot after the model's (see
-    /// [`Geometry::ground_slot`]).
+    /// Makes a model ready to trace; a ground touches its lowest point, in the slot after the model's.
     pub fn build(model: &Model, ground: impl Into<Ground>) -> Self {
         let alone = Self::of_model(model, &[], &Loading::default()).expect("nobody cancels it");
         alone.surrounded(ground, &[])
@@ -459,11 +458,6 @@ impl Geometry {
     /// Height of the ground, in the geometry's units.
     pub fn ground_height(&self) -> f64 {
         (self.bounds_world[0].y - self.center_world.y) / self.world_units_per_unit - GROUND_GAP
-    }
-
-    /// The material of the ground, for the slot after the model's.
-    pub fn ground_slot() -> Slot {
-        Slot::neutral("ground")
     }
 
     /// Messages on triangles that were left out, one line each.

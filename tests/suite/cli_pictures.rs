@@ -108,21 +108,6 @@ fn a_png_brings_its_document_back() {
 }
 
 #[test]
-fn pictures_given_to_the_program_are_opened_or_named() {
-    let place = Workplace::new();
-    image::RgbaImage::new(4, 4).save(place.path("plain.png")).unwrap();
-    place.refused(1, "plain.png", &["plain.png", "without a Glossmith document"]);
-    place.write("cut.png", &std::fs::read(place.path("plain.png")).unwrap()[..20]);
-    place.refused(1, "cut.png", &["cut.png", "PNG"]);
-    // A model that is gone is named.
-    let (buffer, gltf) = crate::gltf_builder::square();
-    place.write("square.glb", &crate::gltf_builder::glb(&gltf, &buffer.bytes));
-    place.done("render --model square.glb --size 16x16 --samples 1 --engine cpu --output square.png");
-    std::fs::remove_file(place.path("square.glb")).unwrap();
-    place.refused(1, "square.png --engine cpu", &["square.glb"]);
-}
-
-#[test]
 fn a_turntable_is_numbered_frames_of_a_turn() {
     let place = Workplace::new();
     place.done(

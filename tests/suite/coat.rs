@@ -1,4 +1,4 @@
-//! The coat and the edge tint: samples against the density of the whole mixture, energy, engines and strategies.
+//! The coat and the edge tint: samples against the density of the whole mixture, and the tint in closed form.
 
 use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use glossmith::compile::compile;
@@ -14,7 +14,7 @@ use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 
 /// Samples of a case.
-const SAMPLES: u32 = 40_000;
+const SAMPLES: u32 = 20_000;
 
 fn material(assignments: &[&str]) -> (Material<f64>, Vec<f32>) {
     let mut settings = MaterialSettings::default();
@@ -70,8 +70,8 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
     let middle = surface.wo.mirrored_about(surface.normal);
     let grid = PolarGrid::following(
         frame_from_normal(middle),
-        12,
-        12,
+        8,
+        8,
         samples.iter().flatten().take(4000).copied(),
     );
     let mut supposed = *material;
@@ -89,7 +89,7 @@ fn samples_follow_the_density_of_the_mixture() {
         &["base.metalness=0.5", "specular.lobe=ggx", "specular.roughness=0.6"],
         &["base.metalness=0", "specular.weight=0", "coat.roughness=0.6"],
     ];
-    let angles = [0.0, 45.0, 80.0];
+    let angles = [45.0, 80.0];
     let level = sidak_level(1e-3, cases.len() * angles.len());
     let mut found = false;
     for (number, case) in cases.iter().enumerate() {

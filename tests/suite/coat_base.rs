@@ -1,5 +1,5 @@
-//! What a coat does to what lies below it, as OpenPBR 1.1 has it: index, darkening, roughness, absorption and emission by closed
-//! forms, the furnace, both engines, and files from before.
+//! What a coat does to what lies below it, as OpenPBR 1.1 has it: darkening, roughness, absorption and emission by closed
+//! forms, and files from before.
 
 use std::path::Path;
 

@@ -1,21 +1,18 @@
 //! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
-use std::path::Path;
-
+use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
+use super::ui_hands::press;
+use super::worker::small_document;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
+use glossmith::app::actions::Action;
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
 use glossmith::document::Document;
 use glossmith::render::worker::{Activity, Picture};
 use glossmith::store::PRESETS;
-
-use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
-use super::ui_hands::press;
-use super::worker::small_document;
 
 /// Waits until B, too, is finished and both have been compared.
 fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> bool) {
@@ -216,57 +213,4 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     see(&mut harness, "it to go", |harness| !has_button(harness, "Quagga"));
     press(&mut harness, "Restore Quagga");
     see(&mut harness, "it to come back", |harness| has_button(harness, "Quagga"));
-}
-
-/// Chooses a file in the path field.
-fn choose(harness: &mut Editor, command: Command, path: &Path) {
-    request(harness, Action::Do(command));
-    see(harness, "the path field", |harness| {
-        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
-    });
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(&path.display().to_string());
-    harness.run_steps(2);
-    press(harness, "Save");
-    let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-    wait(harness, "the file", |app| {
-        app.messages()
-            .iter()
-            .any(|text| text.contains("Saved") && text.contains(&name))
-    });
-}
-
-#[test]
-fn a_picture_that_is_opened_brings_all_back_and_is_not_replaced() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = folder.path().join("shown.png");
-    let mut harness = editor();
-    let shown = harness.state().document().clone();
-    choose(&mut harness, Command::SavePicture, &path);
-    let bytes = std::fs::read(&path).expect("written");
-    let mut other = shown.materials[0].clone();
-    other.roughness = 0.9;
-    request(&mut harness, Action::UseMaterial(Box::new(other)));
-    request(&mut harness, Action::LookFrom(90.0, 10.0));
-    settle(&mut harness);
-    let before = harness.state().document().clone();
-    request(&mut harness, Action::Open(path.clone()));
-    wait(&mut harness, "the document", |app| *app.document() == shown);
-    settle(&mut harness);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
-    harness.run_steps(2);
-    assert_eq!(*harness.state().document(), before, "one step");
-    // Saving asks for a project's name: the picture stays.
-    request(&mut harness, Action::Do(Command::Save));
-    harness.run_steps(2);
-    assert_eq!(std::fs::read(&path).expect("there"), bytes);
-    // A picture without a document says so.
-    let plain = folder.path().join("plain.png");
-    image::RgbaImage::new(4, 4).save(&plain).expect("a temporary file");
-    request(&mut harness, Action::Open(plain));
-    wait(&mut harness, "the message", |app| {
-        app.messages()
-            .iter()
-            .any(|text| text.contains("plain.png") && text.contains("without a Glossmith document"))
-    });
 }

@@ -215,7 +215,7 @@ fn cases((curve, table): (Curve, &'static [f32])) -> Vec<Case> {
     let mut cases = Vec::new();
     for &horizon in Horizon::ALL {
         for (stretch, eta) in KINDS {
-            let grid = Case::grid(Lobe::Geometric, curve, horizon, &[stretch], &ROUGHNESS, &ANGLES_DEG);
+            let grid = Case::grid(Lobe::Geometric, curve, horizon, &[stretch], ROUGHNESS, ANGLES_DEG);
             cases.extend(grid.into_iter().map(|case| Case { eta, table, ..case }));
         }
     }

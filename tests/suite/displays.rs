@@ -79,7 +79,7 @@ fn every_display_at_every_step_is_of_one_film() {
     let mut document = small_document();
     // The smallest with a step of 1/8.
     (document.render.width, document.render.height, document.render.samples) = (768, 768, 2);
-    document.view.denoise = Denoise::Auto;
+    document.view.denoise = Denoise::Fast;
     let mut coarse = Vec::new();
     for (turn, (shown, label, _)) in Shown::ALL.into_iter().enumerate() {
         let has_map = !matches!(shown, Shown::Picture | Shown::Precision);
@@ -138,7 +138,7 @@ fn a_coarse_image_shown_brighter_stays_coarse() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-/// How long the soak goes on: `GLOSSMITH_SOAK_MINUTES`, else 20 minutes with `GLOSSMITH_THOROUGH`, else seconds.
+/// How long the soak goes on: `GLOSSMITH_SOAK_MINUTES`, else 20 minutes with the feature `thorough`, else seconds.
 fn soak_time() -> Duration {
     let chosen = std::env::var("GLOSSMITH_SOAK_MINUTES").ok();
     let default = if cfg!(feature = "thorough") { 20.0 } else { 0.25 };

@@ -58,15 +58,15 @@ fn density_integral(distribution: &Distribution, columns: u32, rows: u32) -> f64
 fn density_integrates_to_one() {
     // The error is that of borders between cells that fall between midpoints: it goes with 1 / rows.
     assert_near(
-        density_integral(random_map(37, 19).distribution(true), 37 * 4, 10_000),
+        density_integral(random_map(37, 19).distribution(true), 37 * 4, 4_000),
         1.0,
-        8e-4,
+        2e-3,
         "random 37 × 19",
     );
     assert_near(
-        density_integral(sun_map().distribution(true), 256, 10_000),
+        density_integral(sun_map().distribution(true), 256, 4_000),
         1.0,
-        4e-3,
+        1e-2,
         "sun",
     );
     assert_near(
@@ -127,7 +127,6 @@ fn samples_follow_the_density() {
         ("random", random_map(37, 19), [5, 3], true),
         ("single sun", sun_map(), [4, 4], true),
         ("sky", load(&EnvironmentSource::Sky).unwrap(), [256, 128], false),
-        ("studio", load(&EnvironmentSource::Studio).unwrap(), [128, 64], true),
     ];
     for (name, environment, block, is_alone) in &cases {
         let [right, tampered] = p_values(environment.distribution(*is_alone), *block);
@@ -166,7 +165,7 @@ fn the_density_of_a_sampled_direction_is_the_one_it_was_drawn_with() {
         ]
         .map(f64::from);
         let mut strays = 0;
-        for _ in 0..200_000 {
+        for _ in 0..50_000 {
             let (direction, density) = environment_sample::<f32>(environment.distribution(true), triple(&mut random));
             if environment_density(environment.distribution(true), direction) == density {
                 continue;
@@ -186,7 +185,7 @@ fn the_density_of_a_sampled_direction_is_the_one_it_was_drawn_with() {
                 environment.name
             );
         }
-        assert!(strays < 200, "{}: {strays} strays", environment.name);
+        assert!(strays < 50, "{}: {strays} strays", environment.name);
     }
 }
 

@@ -1,5 +1,5 @@
-//! Environments in other shapes than a lat-long map of rows from the top: orders of pixels, old run lengths, cube maps,
-//! tiles, pictures for screens, pictures too large to keep.
+//! Environments in other shapes than a lat-long map of rows from the top: old run lengths, cube maps, pictures for
+//! screens, pictures too large to keep.
 
 use std::path::Path;
 
@@ -11,52 +11,6 @@ use tempfile::TempDir;
 
 fn load_file(path: &Path) -> Environment {
     load(&EnvironmentSource::File(path.to_owned())).expect("loads")
-}
-
-/// RGBE of a picture of 6 × 3 whose texel (x, y) is [x + 10, y + 20, 9] in 1/256.
-fn texel(x: usize, y: usize) -> [u8; 4] {
-    [x as u8 + 10, y as u8 + 20, 9, 128]
-}
-
-fn assert_is_that_picture(environment: &Environment, what: &str) {
-    assert_eq!((environment.width, environment.height), (6, 3), "{what}");
-    for (index, found) in environment.texels.iter().enumerate() {
-        let [r, g, b, _] = texel(index % 6, index / 6).map(|code| f32::from(code) / 256.0);
-        assert_eq!(*found, [r, g, b, 1.0], "{what}, texel {index}");
-    }
-}
-
-#[test]
-fn hdr_pixels_may_be_in_any_of_eight_orders() {
-    let folder = TempDir::new().unwrap();
-    let (width, height) = (6, 3);
-    for (x_sign, y_sign, by_columns) in (0..8).map(|i| (i & 1 == 0, i & 2 == 0, i & 4 == 0)) {
-        let sign = |is_plus: bool| if is_plus { '+' } else { '-' };
-        let (x_name, y_name) = (
-            format!("{}X {width}", sign(x_sign)),
-            format!("{}Y {height}", sign(y_sign)),
-        );
-        let column = |i: usize| if x_sign { i } else { width - 1 - i };
-        let row = |i: usize| if y_sign { height - 1 - i } else { i };
-        let (size, pixels): (String, Vec<u8>) = if by_columns {
-            let places = (0..width).flat_map(|x| (0..height).map(move |y| (x, y)));
-            (
-                format!("{x_name} {y_name}"),
-                places.flat_map(|(x, y)| texel(column(x), row(y))).collect(),
-            )
-        } else {
-            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-            (
-                format!("{y_name} {x_name}"),
-                places.flat_map(|(x, y)| texel(column(x), row(y))).collect(),
-            )
-        };
-        let mut bytes = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n").into_bytes();
-        bytes.extend(pixels);
-        let path = folder.path().join("order.hdr");
-        std::fs::write(&path, bytes).unwrap();
-        assert_is_that_picture(&load_file(&path), &size);
-    }
 }
 
 #[test]

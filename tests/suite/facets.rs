@@ -97,7 +97,7 @@ impl Case {
         let samples: Vec<_> = (0..SAMPLES).map(draw).collect();
         let normal = self.surface.normal;
         let middle = frame_from_normal(self.surface.wo.mirrored_about(normal));
-        let grid = PolarGrid::following(middle, 12, 12, samples.iter().flatten().take(4000).copied());
+        let grid = PolarGrid::following(middle, 8, 8, samples.iter().flatten().take(4000).copied());
         test_samples(&grid, &samples, &[normal], |wi| supposed.density(wi)).p_value
     }
 }
@@ -108,16 +108,19 @@ fn samples_follow_the_density_that_light_sampling_competes_with() {
     let cases = CASES.iter().filter(|case| !case.contains(&"transmission.weight=0.6"));
     let level = sidak_level(1e-3, VIEWS.len() * (CASES.len() - 1));
     for assignments in cases {
-        let mut found = false;
         for view in VIEWS {
             let case = Case::new(assignments, view);
             let p = case.p_value(&case);
             assert!(p > level, "{assignments:?} seen at {view:?}: p = {p:.1e}");
-            let mut wrong = Case::new(assignments, view);
-            wrong.material.ior *= 1.03;
-            found |= case.p_value(&wrong) < level;
         }
-        assert!(found, "{assignments:?}: another index of refraction is not seen");
+        let near_critical = VIEWS[VIEWS.len() - 1];
+        let mut wrong = Case::new(assignments, near_critical);
+        wrong.material.ior *= 1.03;
+        let p = Case::new(assignments, near_critical).p_value(&wrong);
+        assert!(
+            p < level,
+            "{assignments:?}: another index of refraction is not seen, p = {p:.1e}"
+        );
     }
 }
 

@@ -53,7 +53,7 @@ fn seen(document: &Document, engine: EngineChoice, [x, y]: [f64; 2]) -> f64 {
     document.camera.position = Some([0.5, -0.8, 0.9]);
     document.camera.target = Some([x, y, 0.0]);
     document.camera.fov_deg = 0.2;
-    (document.render.width, document.render.height, document.render.samples) = (8, 8, 4096);
+    (document.render.width, document.render.height, document.render.samples) = (8, 8, 512);
     document.render.bounces = 1;
     document.render.sequence = Sequence::Sobol;
     let luminance = render(engine, &document).luminance();
@@ -93,9 +93,10 @@ fn candela_and_lux_of_a_file_are_right() {
         for engine in ENGINES {
             for (place, expected) in [MIDDLE, ASIDE].into_iter().zip(expected) {
                 let found = seen(&document, engine, place);
-                // Half of the samples of a ball go to its far side: 262 144 of them are right to 0.25 % (1σ).
+                // Half of the samples of a ball go to its far side: 32 768 of them are right to 0.7 % (1σ). A unit that is
+                // wrong is off by far more.
                 assert!(
-                    (found - expected).abs() <= 0.012 * expected,
+                    (found - expected).abs() <= 0.03 * expected,
                     "{name} at {place:?}, {engine:?}: {found}, not {expected}"
                 );
             }

@@ -1,4 +1,4 @@
-//! The fuzz layer: its albedo by the published fits, samples against their density, the furnace, and both engines.
+//! The fuzz layer: its albedo by the published fits, and samples against their density.
 
 use glossmith::analysis::chi_square::{PolarGrid, test_samples};
 use glossmith::compile::compile;
@@ -27,7 +27,7 @@ const ALBEDOS: [(f64, [f64; 4]); 3] = [
     (1.0, [0.3446, 0.4957, 0.6432, 0.7205]),
 ];
 /// Samples of a case.
-const SAMPLES: u32 = 40_000;
+const SAMPLES: u32 = 20_000;
 
 /// Fuzz of weight 1 over a matt base.
 fn fuzzy(base: f64, roughness: f64, more: &[&str]) -> MaterialSettings {
@@ -100,7 +100,7 @@ fn p_value(material: &Material<f64>, tables: &[f32], supposed: &Material<f64>, a
         })
         .collect();
     let middle = frame_from_normal(surface.wo.mirrored_about(normal));
-    let grid = PolarGrid::following(middle, 12, 12, samples.iter().flatten().take(4000).copied());
+    let grid = PolarGrid::following(middle, 8, 8, samples.iter().flatten().take(4000).copied());
     let density = |wi| material_density(supposed, tables, &surface, &layers, wi);
     test_samples(&grid, &samples, &[normal], density).p_value
 }

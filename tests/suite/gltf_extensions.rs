@@ -178,24 +178,6 @@ fn meshopt_meshes_are_those_that_were_compressed() {
     }
 }
 
-#[test]
-fn instances_are_put_where_they_are_said_to_be() {
-    let (mut buffer, _) = square();
-    let translations = buffer.floats(&[[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 7.0, 0.0]]);
-    let scales = buffer.floats(&[[1.0, 1.0, 1.0], [2.0, 2.0, 2.0], [1.0, 1.0, 1.0]]);
-    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3});
-    let mut document = buffer.document(json!([primitive]));
-    document["nodes"] = json!([{"mesh": 0, "translation": [0, 0, 1], "extensions": {
-        "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": translations, "SCALE": scales}},
-    }}]);
-    document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
-    let model = load_plain(&document, &buffer);
-    assert_eq!(model.mesh.triangles.len(), 6);
-    assert_eq!(model.mesh.positions[4 + 2], DVec3::new(7.0, 2.0, 1.0));
-    assert_eq!(model.mesh.positions[8 + 2], DVec3::new(1.0, 8.0, 1.0));
-    assert!(model.report.is_clean(), "{:?}", model.report);
-}
-
 /// A square with a morph target that lifts it, on two joints of which an animation turns the second.
 fn puppet() -> (Buffer, Value) {
     let (mut buffer, _) = square();

@@ -8,11 +8,11 @@ use glossmith::optics::thin_film::film_path;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::texture::{TextureTarget, Textures, textured_material};
-use glossmith::scene::{Fate, Model, ModelOptions};
+use glossmith::scene::{Fate, Model};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Folder, assert_mirrored_tangents, mirrored_squares, png, square};
-use super::gltf_extensions::{load, load_plain, says};
+use super::gltf_extensions::{load_plain, says};
 
 /// The slot of a material on a square, with a picture of two texels as texture 0.
 fn slot_of(material: &Value) -> Model {
@@ -255,34 +255,6 @@ fn iridescence_is_a_thin_film() {
         ([0.5, 1.75, 0.35], Vec::<String>::new())
     );
     assert!(read.value.extra.is_empty());
-}
-
-#[test]
-fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
-    let mut webp = std::io::Cursor::new(Vec::new());
-    let picture = image::RgbaImage::from_fn(64, 32, |x, _| image::Rgba([if x < 32 { 200 } else { 0 }, 9, 8, 255]));
-    picture.write_to(&mut webp, image::ImageFormat::WebP).expect("encodes");
-    let (mut buffer, _) = square();
-    let view = buffer.view(&webp.into_inner());
-    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
-    let mut document = buffer.document(json!([primitive]));
-    document["images"] = json!([{"bufferView": view, "mimeType": "image/webp", "name": "leaf"}]);
-    document["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
-    document["materials"] = json!([{"doubleSided": true, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
-    document["extensionsRequired"] = json!(["EXT_texture_webp"]);
-    let model = load_plain(&document, &buffer);
-    assert_eq!(
-        (model.textures[0].width, &model.textures[0].rgba8[..4]),
-        (64, &[200, 9, 8, 255][..])
-    );
-    assert!(model.report.is_clean(), "{:?}", model.report);
-    let options = ModelOptions {
-        texture_side_max: 16,
-        ..ModelOptions::default()
-    };
-    let small = load(&document, &buffer, &options);
-    assert_eq!((small.textures[0].width, small.textures[0].height), (16, 8));
-    says(&small, Fate::Approximated, "64 × 32, used at 16 × 8");
 }
 
 #[test]

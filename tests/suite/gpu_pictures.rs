@@ -1,5 +1,5 @@
-//! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, TIFF of halves, floats and
-//! doubles, textures of 16 bits and of light.
+//! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, and
+//! textures of 16 bits.
 
 use super::environment_shapes::{FACES, assert_is_that_cube};
 use super::gltf_builder::{Folder, glb, square};

@@ -1,5 +1,5 @@
-//! Light profiles: the light below a lamp is that of its file's intensities on both engines, by all strategies; files and
-//! names on the command line, in projects and in the window. The files are built here.
+//! Light profiles: the light below a lamp is that of its file's intensities on both engines; files and names on the
+//! command line and in projects. The files are built here.
 
 use super::cli_support::{Workplace, read_exr};
 use super::renders::{document, render};

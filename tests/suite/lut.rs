@@ -1,4 +1,4 @@
-//! Tables of colours: by the command line, in projects, in the window.
+//! Tables of colours: by the command line and in projects.
 
 use super::cli_support::Workplace;
 use glossmith::document::Document;

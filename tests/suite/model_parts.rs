@@ -1,4 +1,4 @@
-//! Several files as one model, what is told while they are read, and reading them again.
+//! Several files as one model, and what is told while they are read.
 
 use std::path::PathBuf;
 

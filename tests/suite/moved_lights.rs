@@ -68,12 +68,12 @@ fn lights_move_on_the_gpu_as_if_they_had_been_there() {
             session.device().expect("it is open").limit_buffers(binding_bytes);
             session
         };
-        let mut moved = open();
+        let (mut moved, mut fresh) = (open(), open());
         let lit = lit()
             .into_iter()
             .filter(|document| !document.lighting.area_lights.is_empty());
         for (index, document) in lit.enumerate() {
-            let mut fresh = open();
+            fresh.reset();
             let [moved, fresh] = [&mut moved, &mut fresh].map(|session| {
                 submitted(session, &document);
                 render(session);

@@ -2,18 +2,14 @@
 
 use crate::cli_support::{Workplace, channels};
 use crate::support::Random;
-use glossmith::document::{AreaLight, Background, Document, MaterialSettings, assign};
+use glossmith::document::{AreaLight, Background, Document, assign};
 use glossmith::job::film::{Film, Image};
 use glossmith::optics::tone::ToneCurve;
 use glossmith::render::output::{self, Layers};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::picture::{parse_picture_document, png_bytes};
-use glossmith::store::project::document_text;
-use glossmith::store::{FileError, Loaded};
 use std::collections::HashMap;
-use std::io::Cursor;
 use std::path::Path;
 use std::time::Duration;
 
@@ -206,65 +202,5 @@ fn the_same_picture_is_the_same_file() {
     let first = written();
     for _ in 0..12 {
         assert!(written() == first, "another file");
-    }
-}
-
-const SAVED_SIZE: [u32; 2] = [5, 3];
-
-fn saved() -> Document {
-    let mut document = Document {
-        model: ModelSource::File("models/pot.glb".into()),
-        materials: vec![MaterialSettings {
-            name: "Öl – 油".to_owned(),
-            roughness: 0.123,
-            ..MaterialSettings::default()
-        }],
-        ..Document::default()
-    };
-    document.camera.yaw_deg = -70.25;
-    document.lighting.rotation_deg = 12.5;
-    document
-}
-
-fn saved_picture(path: &Path) -> Vec<u8> {
-    let pixels: Vec<u8> = (0..60).map(|i| i * 4).collect();
-    let text = document_text(path, &saved()).expect("Unicode");
-    png_bytes(SAVED_SIZE, &pixels, Some(&text)).expect("the right size")
-}
-
-fn parse(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
-    parse_picture_document(path, Cursor::new(bytes))
-}
-
-#[test]
-fn a_text_behind_the_pixels_is_found() {
-    let path = Path::new("/somewhere/a.png");
-    let bytes = saved_picture(path);
-    let at = |name: &[u8]| bytes.windows(4).position(|window| window == name).expect("there") - 4;
-    let (text, pixels, end) = (at(b"iTXt"), at(b"IDAT"), at(b"IEND"));
-    assert!(text < pixels);
-    let moved = [&bytes[..text], &bytes[pixels..end], &bytes[text..pixels], &bytes[end..]].concat();
-    assert_eq!(parse(path, &moved).expect("whole").value.camera, saved().camera);
-}
-
-#[test]
-fn no_damage_makes_it_panic_or_gives_another_saved() {
-    let path = Path::new("/somewhere/a.png");
-    let bytes = saved_picture(path);
-    let whole = parse(path, &bytes).expect("whole");
-    for end in 0..bytes.len() {
-        if let Ok(loaded) = parse(path, &bytes[..end]) {
-            assert_eq!(loaded, whole, "cut at {end}");
-        }
-    }
-    for at in 0..bytes.len() {
-        for flip in [1, 0x20, 0xff] {
-            let mut damaged = bytes.clone();
-            damaged[at] ^= flip;
-            // The checksum guards the text: it is read whole or not at all.
-            if let Ok(loaded) = parse(path, &damaged) {
-                assert_eq!(loaded, whole, "byte {at} ^ {flip}");
-            }
-        }
     }
 }

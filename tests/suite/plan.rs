@@ -1,4 +1,4 @@
-//! The plan: its rules, those broken on purpose, and switches.
+//! The plan: its rules and switches.
 
 use std::collections::HashSet;
 use std::time::Duration;

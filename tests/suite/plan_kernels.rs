@@ -187,6 +187,9 @@ fn random_jobs(count: usize) -> impl Iterator<Item = (Document, Job)> {
     }))
 }
 
+/// Random documents that are rendered on the processor.
+const JOBS: usize = if cfg!(feature = "thorough") { 200 } else { 60 };
+
 /// The jobs that documents are compiled to.
 fn jobs(documents: impl IntoIterator<Item = Document>) -> impl Iterator<Item = (Document, Job)> {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
@@ -200,7 +203,7 @@ fn jobs(documents: impl IntoIterator<Item = Document>) -> impl Iterator<Item = (
 fn what_kernels_leave_out_shows_nowhere() {
     let mut plans = HashSet::new();
     let mut left_out = vec![0; EFFECTS.len()];
-    for (document, job) in random_jobs(200) {
+    for (document, job) in random_jobs(JOBS) {
         plans.insert(job.plan.specialisation());
         for (count, (effect, decision)) in left_out.iter_mut().zip(job.plan.table()) {
             *count += usize::from(
@@ -213,7 +216,7 @@ fn what_kernels_leave_out_shows_nowhere() {
         let general = on_cpu(generally(&job));
         assert_same_bits(&specialised, &general, &format!("{document:?}"));
     }
-    assert!(plans.len() > 40, "only {} plans were met", plans.len());
+    assert!(plans.len() > JOBS / 5, "only {} plans were met", plans.len());
     for (effect, count) in EFFECTS.iter().zip(left_out) {
         // No built-in model has textures, colours at vertices or coarse triangles: theirs are the next test's.
         let of_models = [
@@ -229,9 +232,9 @@ fn what_kernels_leave_out_shows_nowhere() {
             continue;
         };
         // One material reflects in each of them: a choice is always narrowed down.
-        let most = if constant.general == ANY { 200 } else { 199 };
+        let most = if constant.general == ANY { JOBS } else { JOBS - 1 };
         assert!(
-            (5..=most).contains(&count),
+            (1..=most).contains(&count),
             "{} is left out of {count} plans",
             effect.name()
         );
@@ -314,7 +317,7 @@ fn weak_effects_are_in_their_kernels() {
     let folders = [Folder::new(), Folder::new()];
     let mut engine = gpu();
     let mut seen = HashSet::new();
-    for (document, job) in jobs(weak_documents(folders.each_ref())) {
+    for (number, (document, job)) in jobs(weak_documents(folders.each_ref())).enumerate() {
         let general = on_cpu(generally(&job));
         for (effect, decision) in job.plan.table() {
             let Some(constant) = effect.constant().filter(|constant| constant.general != ANY) else {
@@ -333,6 +336,10 @@ fn weak_effects_are_in_their_kernels() {
                     seen.insert(effect.name());
                 }
             }
+        }
+        // A kernel takes seconds to compile on a processor.
+        if number % 4 > 0 && !cfg!(feature = "thorough") {
+            continue;
         }
         let what = format!("{document:?}");
         let [specialised, of_gpu] = [job.clone(), generally(&job)].map(|job| on_gpu(&mut engine, job));
@@ -367,7 +374,7 @@ fn the_general_kernel_draws_what_the_plan_says() {
     let mut engine = gpu();
     let folder = Folder::new();
     let textured = small(all_at_once(&folder));
-    for (document, job) in random_jobs(40).chain(jobs([textured])) {
+    for (document, job) in random_jobs(12).chain(jobs([textured])) {
         let planned = on_cpu(as_its_kernel_reads(&job));
         let general = on_gpu(&mut engine, generally(&job));
         assert_same_but_for_rounding(&planned, &general, &format!("{document:?}"));

@@ -1,4 +1,4 @@
-//! The map of what in a picture's numbers is not to be trusted: black on shipped scenes, lit where a scene is made to fail.
+//! The map of what in a picture's numbers is not to be trusted: lit where a scene is made to fail.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! Pictures: the engines against each other, against analytic values, and the strategies against each other.
+//! Rendering for tests, and pictures against each other.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;

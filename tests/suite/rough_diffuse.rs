@@ -1,4 +1,4 @@
-//! The rough diffuse base: albedos and values in closed form, a white one's furnace, and light both ways.
+//! The rough diffuse base: albedos and values in closed form, and light both ways.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Multiple scattering between facets: white metals and clear interfaces keep all light, and coloured metals lose what their
+//! Multiple scattering between facets: white metals keep all light, and coloured metals lose what their
 //! colour takes each time.
 
 use glossmith::document::{MaterialSettings, assign};

@@ -1,4 +1,4 @@
-//! Every shader module links and validates by itself, says where it is wrong, translates to the other graphics
+//! Every shader module links and validates by itself, translates to the other graphics
 //! interfaces, and has the constants of its Rust twin.
 
 use glossmith::cpu::integrator;

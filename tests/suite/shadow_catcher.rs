@@ -1,5 +1,5 @@
 //! Grounds: the shadow catcher is the background where nothing stands on it, its shadows and reflections have their true
-//! values, on both engines; the cyclorama's wall stands where it should.
+//! values, on both engines.
 
 use crate::renders::{assert_same_picture, document, render};
 use glam::DVec3;

@@ -15,8 +15,9 @@ use std::f64::consts::{PI, TAU};
 /// Probability that chance alone fails a right sampler, over all cases of a test.
 const LEVEL: f64 = 1e-3;
 
-/// Samples of a case: enough for some 140 a cell.
-const SAMPLES: u32 = 20_000;
+/// Samples of a case: they see a density that is off by 13 % in half of its cells with 99.9 %. What is off by 2 % is seen by a
+/// million samples below, as by `glossmith check`.
+const SAMPLES: u32 = 10_000;
 
 /// Sample number `i` of a case.
 fn draw(case: &Case, i: u32) -> LobeSample<f64> {
@@ -110,7 +111,7 @@ fn samples_follow_their_densities() {
             &[Horizon::Mirror]
         };
         for &horizon in policies {
-            cases.extend(Case::grid(lobe, curve, horizon, &[0.0], &ROUGHNESS, &ANGLES_DEG));
+            cases.extend(Case::grid(lobe, curve, horizon, &[0.0], ROUGHNESS, ANGLES_DEG));
         }
     }
     assert_all_follow(&cases);
@@ -128,8 +129,8 @@ fn stretched_samples_follow_their_densities() {
             curve,
             Horizon::Mirror,
             &[-0.7, 0.7],
-            &ROUGHNESS,
-            &ANGLES_DEG,
+            ROUGHNESS,
+            ANGLES_DEG,
         ));
     }
     assert_all_follow(&cases);
@@ -158,7 +159,7 @@ fn refracted_samples_follow_their_densities() {
             &of_geometric[..2]
         };
         for &(horizon, eta, stretch) in kinds {
-            let grid = Case::grid(lobe, curve, horizon, &[stretch], &ROUGHNESS, &ANGLES_DEG);
+            let grid = Case::grid(lobe, curve, horizon, &[stretch], ROUGHNESS, ANGLES_DEG);
             cases.extend(refracting(grid, eta, cases.len()));
         }
     }
@@ -172,7 +173,7 @@ fn samples_refracted_at_facets_follow_their_densities() {
     for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
         for eta in [1.5, 1.0 / 1.5, 2.4] {
             let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
-            let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, &ROUGHNESS, &ANGLES_DEG);
+            let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, ROUGHNESS, ANGLES_DEG);
             // Beyond the critical angle narrow lobes refract next to nothing.
             let is_refracted = |case: &Case| eta > 1.0 || case.angle_deg < 45.0 || case.roughness >= 0.3;
             let grid = grid.into_iter().filter(is_refracted).collect();
@@ -208,7 +209,7 @@ fn samples_over_a_leaning_normal_follow_their_densities() {
 #[test]
 fn weights_are_evaluate_over_density() {
     for (lobe, curve) in lobes_and_curves() {
-        let grid = Case::grid(lobe, curve, Horizon::Mirror, &[0.0, 0.5], &ROUGHNESS, &ANGLES_DEG);
+        let grid = Case::grid(lobe, curve, Horizon::Mirror, &[0.0, 0.5], ROUGHNESS, ANGLES_DEG);
         let indices = [0.0, 1.5, 1.0 / 1.5];
         for case in grid
             .iter()

@@ -1,4 +1,4 @@
-//! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
+//! Textures against analytic look-ups, on both engines.
 
 use glossmith::compile::compile_textured;
 use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter};

@@ -1,4 +1,4 @@
-//! Thin films: closed values of Airy's sum, joins with what has no film, the furnace, and both engines.
+//! Thin films: closed values of Airy's sum, joins with what has no film, and a soap film.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! Glass: energy, absorption, invisibility, and the strategies and engines against each other.
+//! Glass: light cut at the last bounce, roulette behind clear panes, and glass that is not there.
 
 use std::sync::Arc;
 use std::time::Duration;

@@ -1,5 +1,4 @@
-//! Rough edges of the window: rows that fit, numbers that are replaced, words that a person would use, keys that go where
-//! they are meant for, and failures that are told.
+//! Rough edges of the window: endings of saved projects, hard cases that stop.
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;

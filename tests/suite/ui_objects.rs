@@ -1,4 +1,4 @@
-//! The tree of the scene: objects and materials chosen, hidden, renamed, edited together, and materials dropped on them.
+//! The tree of the scene: objects and materials chosen, hidden, renamed and edited together.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};

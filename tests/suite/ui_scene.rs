@@ -1,4 +1,4 @@
-//! Effects, depth of field, bookmarks and picking, in the editor with the real renderer.
+//! Effects, depth of field and picking, in the editor with the real renderer.
 
 use egui::accesskit::Role;
 use egui::{Modifiers, Pos2, Vec2};

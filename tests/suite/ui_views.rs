@@ -1,5 +1,4 @@
-//! Views, small windows and plots: parallel views from the sides, lights that are hidden and moved along axes, tabs that are
-//! whole, and the radius of the lobe's slice.
+//! Views: parallel views from the sides, lights that are hidden, a reference under, over and beside the render.
 
 use egui::Key;
 use egui::accesskit::Role;

