@@ -98,9 +98,9 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     );
     var shading = smooth_normal;
     var coat_normal = smooth_normal;
-    if PLAN_NORMAL_MAPS == 1u && material.textures.z != NO_TEXTURE {
+    if PLAN_NORMAL_MAPS == 1u && material.normal_texture != NO_TEXTURE {
         let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
-        let mapped = mapped_normal(material.textures.z, material.normal_strength, uvs, smoothed, tangent, outward);
+        let mapped = mapped_normal(material.normal_texture, material.normal_strength, uvs, smoothed, tangent, outward);
         shading = lifted_normal(bent_normal(side * mapped, wo), normal, wo);
     }
     if PLAN_COAT_NORMALS == 1u && material.coat_normal_texture != NO_TEXTURE {

@@ -153,13 +153,13 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         return material;
     }
     // A map with both roughness and metalness is looked up once.
-    let has_both = material.metalness_texture == material.textures.y;
+    let has_both = material.metalness_texture == material.roughness_texture;
     // A loop, so that the look-up's code is there once.
     var found = array<vec4f, 7>(
         vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0),
     );
     let indices = array<u32, 7>(
-        material.textures.x, material.textures.y, material.textures.w,
+        material.base_color_texture, material.roughness_texture, material.emission_texture,
         select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture, material.coat_roughness_texture,
         material.coat_color_texture,
     );
@@ -198,7 +198,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         }
         at_point.coat_color = material.coat_color * found[6].xyz;
     }
-    let has_roughness = PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE;
+    let has_roughness = PLAN_ROUGHNESS_TEXTURES == 1u && material.roughness_texture != NO_TEXTURE;
     let coat_varies = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
     let has_coat = PLAN_COAT_TEXTURES == 1u && coat_varies;
     let blurs = PLAN_COAT == 1u && material.coat_blur > 0.0 && (has_roughness || has_coat);
@@ -224,8 +224,8 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         if material.film_texture != NO_TEXTURE {
             at_point.film_weight = material.film_weight * texture_lookup(material.film_texture, uvs).x;
         }
-        if material.film_path_texture != NO_TEXTURE {
-            at_point.film_path = material.film_path * texture_lookup(material.film_path_texture, uvs).x;
+        if material.film_thickness_texture != NO_TEXTURE {
+            at_point.film_path = material.film_path * texture_lookup(material.film_thickness_texture, uvs).x;
         }
     }
     if PLAN_FUZZ_TEXTURES == 1u {
@@ -274,14 +274,14 @@ fn emission_at(material: Material, uvs: Uvs, of_vertices: vec4f) -> vec3f {
     // The emission map and the opacity map in a loop, so that the look-up's code is in the kernel once.
     var emission = material.emission * of_vertices.xyz;
     var opacity = material.opacity * of_vertices.w;
-    let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.textures.w != NO_TEXTURE;
+    let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.emission_texture != NO_TEXTURE;
     let has_holes = material_has_holes(material);
     let has_opacity = has_holes && material.opacity_texture != NO_TEXTURE;
     var wanted = select(0u, 1u, has_emission) + select(0u, 2u, has_opacity);
     while wanted != 0u {
         let is_emission = (wanted & 1u) != 0u;
         wanted &= wanted - 1u;
-        let found = texture_lookup(select(material.opacity_texture, material.textures.w, is_emission), uvs);
+        let found = texture_lookup(select(material.opacity_texture, material.emission_texture, is_emission), uvs);
         if is_emission {
             emission *= found.xyz;
         } else {

@@ -2,7 +2,6 @@
 
 use std::sync::{Arc, Mutex};
 
-use super::absent::absent;
 use crate::document::import::{MATCHED, geometric_from_ggx, ggx_under_texture};
 use crate::document::{CoatLobe, MaterialSettings};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
@@ -19,7 +18,7 @@ use crate::optics::table::{append_table, table_lookup};
 use crate::optics::thin_film::film_path;
 use crate::optics::vector::Vec3;
 use crate::panics::lock;
-use crate::scene::texture::{SlotTextures, TextureTarget};
+use crate::scene::texture::{SlotTextures, TextureTarget as On};
 
 /// Samples of each node of an albedo table.
 const ALBEDO_SAMPLES: u32 = 1024;
@@ -52,43 +51,25 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
     (compiled, tables)
 }
 
-/// The record of a target's texture, if it is switched on.
-fn looked_up(settings: &MaterialSettings, slot: SlotTextures, target: TextureTarget) -> u32 {
-    if settings.uses_texture(target) {
-        slot.record(target)
-    } else {
-        NO_TEXTURE
-    }
-}
-
-/// The value of a target's texture of one value, if it is switched on.
-fn constant(settings: &MaterialSettings, slot: SlotTextures, target: TextureTarget) -> Option<[f32; 3]> {
-    slot.constant(target).filter(|_| settings.uses_texture(target))
-}
-
 /// The plain numbers of a material, its tables still to be made.
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
-    use TextureTarget as On;
     let uses = settings.textures;
-    let looked_up = |target| looked_up(settings, slot, target);
     // Textures of one value are multiplied in here.
-    let constant = |target| constant(settings, slot, target);
-    let factor = |target| constant(target).map_or(1.0, |[value, ..]| value);
-    let color = constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
-    let roughness =
-        constant(On::Roughness).map_or(settings.roughness, |[share, ..]| textured_roughness(settings, share));
+    let factor = |target| slot.constant(target).map_or(1.0, |[value, ..]| value);
+    let color = slot.constant(On::BaseColor).map_or(Vec3::splat(1.0), Vec3::from_f32);
+    let roughness = slot
+        .constant(On::Roughness)
+        .map_or(settings.roughness, |[share, ..]| textured_roughness(settings, share));
     let metalness = settings.metalness * factor(On::Metalness);
     let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
-    let emission_texture = looked_up(On::Emission);
     let mut mean_emission = emission;
-    if uses.emission {
+    if uses[On::Emission] {
         mean_emission = emission * Vec3::from_f32(slot.mean_emission);
     }
-    if emission_texture == NO_TEXTURE {
+    if slot.record(On::Emission) == NO_TEXTURE {
         emission = mean_emission;
     }
-    let has_box = |target: &TextureTarget| slot.on_box[*target as usize] && settings.uses_texture(*target);
-    let is_on_box = TextureTarget::ALL.iter().any(has_box);
+    let is_on_box = slot.on_box.contains(&true);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
         metalness,
@@ -115,26 +96,13 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
         light_luminance: mean_emission.luminance(),
-        textures: [
-            looked_up(On::BaseColor),
-            looked_up(On::Roughness),
-            looked_up(On::Normal),
-            emission_texture,
-        ],
-        opacity_texture: looked_up(On::Opacity),
-        alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
+        alpha_cutoff: if uses[On::Opacity] { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
         texture_roughness: roughness,
         flags: flags(settings, slot) | if is_on_box { HAS_BOX } else { 0 },
-        metalness_texture: looked_up(On::Metalness),
-        coat_texture: if settings.coat_weight > 0.0 {
-            looked_up(On::Coat)
-        } else {
-            NO_TEXTURE
-        },
         diffuse_roughness: settings.diffuse_roughness,
         fuzz_color: Vec3::from_f32(settings.fuzz_color)
-            * constant(On::FuzzColor).map_or(Vec3::splat(1.0), Vec3::from_f32),
+            * slot.constant(On::FuzzColor).map_or(Vec3::splat(1.0), Vec3::from_f32),
         fuzz_weight: settings.fuzz_weight * factor(On::Fuzz),
         fuzz_roughness: (settings.fuzz_roughness * factor(On::FuzzRoughness)).max(FUZZ_ROUGHNESS_MIN as f32),
         film_path: film_path(settings.film_thickness * factor(On::FilmThickness)),
@@ -144,25 +112,28 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         bare_ior: settings.ior,
         coated_ior: settings.ior,
         ggx_roughness: settings.ggx_roughness(roughness),
-        ..absent()
+        ..Material::default()
     };
-    if settings.has_film() && material.film_weight * material.film_path.x > 0.0 {
-        material.has_film = 1;
-        material.film_texture = looked_up(On::Film);
-        material.film_path_texture = looked_up(On::FilmThickness);
+    let has_film = settings.has_film() && material.film_weight * material.film_path.x > 0.0;
+    material.has_film = u32::from(has_film);
+    for &target in On::ALL {
+        let is_there = match target {
+            On::Coat | On::CoatRoughness | On::CoatColor | On::CoatNormal => material.coat_weight > 0.0,
+            On::Film | On::FilmThickness => has_film,
+            On::Fuzz | On::FuzzColor | On::FuzzRoughness => material.fuzz_weight > 0.0,
+            _ => true,
+        };
+        if is_there {
+            material.textures[target as usize] = slot.record(target);
+        }
     }
-    if material.fuzz_weight > 0.0 {
-        material.fuzz_texture = looked_up(On::Fuzz);
-        material.fuzz_color_texture = looked_up(On::FuzzColor);
-        material.fuzz_roughness_texture = looked_up(On::FuzzRoughness);
-    }
-    if material.textures[1] == NO_TEXTURE {
+    if !material.has_texture(&[On::Roughness]) {
         // Else it is brought into range where the texture has been looked up.
         material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
     }
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
-    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2]
-        || (material.has_film_texture() && material.least_metallic().metalness < 1.0);
+    let changes = material.has_texture(&[On::Roughness, On::Metalness])
+        || (material.has_texture(On::OF_FILM) && material.least_metallic().metalness < 1.0);
     material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
@@ -201,24 +172,20 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 
 /// What a coat has of its own, and what it does to what lies below it.
 fn put_coat(settings: &MaterialSettings, slot: SlotTextures, material: &mut Material<f32>) {
-    use TextureTarget as On;
-    material.coat_roughness_texture = looked_up(settings, slot, On::CoatRoughness);
-    material.coat_color_texture = looked_up(settings, slot, On::CoatColor);
-    material.coat_normal_texture = looked_up(settings, slot, On::CoatNormal);
     material.coat_normal_strength = settings.coat_normal_strength;
-    if let Some(color) = constant(settings, slot, On::CoatColor) {
+    if let Some(color) = slot.constant(On::CoatColor) {
         material.coat_color = material.coat_color * Vec3::from_f32(color);
     }
     // A texture's values are meant for GGX.
     let mut roughness = settings.coat_ggx_roughness();
-    if let Some([share, ..]) = constant(settings, slot, On::CoatRoughness) {
+    if let Some([share, ..]) = slot.constant(On::CoatRoughness) {
         roughness *= share;
         material.coat_roughness = match settings.coat_lobe {
             CoatLobe::Geometric => geometric_from_ggx(roughness),
             CoatLobe::Ggx => roughness,
         };
     }
-    let has_roughness_texture = material.coat_roughness_texture != NO_TEXTURE;
+    let has_roughness_texture = material.has_texture(&[On::CoatRoughness]);
     if has_roughness_texture {
         material.coat_roughness = roughness;
     }
@@ -232,7 +199,7 @@ fn put_coat(settings: &MaterialSettings, slot: SlotTextures, material: &mut Mate
         return;
     }
     material.flags |= COATS_BASE;
-    if material.coat_color != Vec3::splat(1.0) || material.coat_color_texture != NO_TEXTURE {
+    if material.coat_color != Vec3::splat(1.0) || material.has_texture(&[On::CoatColor]) {
         material.flags |= COAT_ABSORBS;
     }
     // Total reflection by a coat of greater index would not be there: light is refracted into the coat first.
@@ -267,7 +234,7 @@ fn loses_light(settings: &MaterialSettings, material: &Material<f32>) -> bool {
     let is_metal = material.metalness > 0.0 && (has_model_of_metal || material.has_specular());
     let transmits = material.least_metallic().transmits();
     let refracts = || transmits && !is_mirror(&material.transmission_shape(&[], false));
-    let is_rough = material.textures[1] != NO_TEXTURE || !is_mirror(&material.shape(&[])) || refracts();
+    let is_rough = material.has_texture(&[On::Roughness]) || !is_mirror(&material.shape(&[])) || refracts();
     settings.lobe.traits().loses_light && is_rough && (is_metal || transmits)
 }
 
@@ -275,9 +242,9 @@ fn loses_light(settings: &MaterialSettings, material: &Material<f32>) -> bool {
 fn flags(settings: &MaterialSettings, slot: SlotTextures) -> u32 {
     let uses = settings.textures;
     let vertex = [
-        (uses.color, VERTEX_BASE),
-        (uses.emission, VERTEX_EMISSION),
-        (uses.opacity, VERTEX_OPACITY),
+        (uses[On::BaseColor], VERTEX_BASE),
+        (uses[On::Emission], VERTEX_EMISSION),
+        (uses[On::Opacity], VERTEX_OPACITY),
     ];
     let looked_up = vertex.iter().filter(|(is_on, _)| *is_on).map(|(_, flag)| flag);
     let spares = if settings.specular_on_metal { 0 } else { SPARES_METAL };
@@ -294,6 +261,7 @@ fn textured_roughness(settings: &MaterialSettings, share: f32) -> f32 {
 }
 
 fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut Vec<f32>) -> Material<f32> {
+    let textures = textures.only(|target| settings.textures[target]);
     let mut material = without_tables(settings, textures);
     let anywhere = material.least_metallic();
     let mut curve_table = Vec::new();
@@ -324,7 +292,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     if anywhere.transmits() {
         material.inner_albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, true));
     }
-    let varies = material.textures[1] != NO_TEXTURE || material.has_varied_blur();
+    let varies = material.has_texture(&[On::Roughness]) || material.has_varied_blur();
     if varies && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
         material.texture_roughness = ggx_under_texture(material.texture_roughness);
@@ -352,7 +320,7 @@ fn coat_alone(material: &Material<f32>) -> Material<f32> {
         horizon: shape.horizon as u32,
         fresnel: Fresnel::Dielectric as u32,
         transmission_weight: 0.0,
-        has_rough_tables: u32::from(material.coat_roughness_texture != NO_TEXTURE),
+        has_rough_tables: u32::from(material.has_texture(&[On::CoatRoughness])),
         has_film: 0,
         ..*material
     }
@@ -448,7 +416,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
     let film = match material.has_film == 1 && (!is_rough || is_measured) {
         true => *material,
         // One over the roughness has no film in it, but for that on a measured metal.
-        false => absent(),
+        false => Material::default(),
     };
     let material = Material {
         specular_color: material.specular_color,
@@ -471,7 +439,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         // A dielectric without vertices.
         flags: material.flags & WEIGHS_INDEX,
         transmission_weight: if transmits { 1.0 } else { 0.0 },
-        ..absent()
+        ..Material::default()
     };
     TableKey {
         material,

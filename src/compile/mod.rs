@@ -1,6 +1,5 @@
 //! What a document compiles to: the materials as the integrators read them, and the job, of assets that are loaded once.
 
-mod absent;
 mod assets;
 mod error;
 mod job;

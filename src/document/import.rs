@@ -3,8 +3,6 @@
 
 use std::sync::LazyLock;
 
-use super::material::FILM_THICKNESS_MAX;
-use super::material::specular_color;
 use super::{CoatLobe, MaterialSettings};
 use crate::named::named;
 use crate::optics::lobe::{Lobe, Width};
@@ -84,54 +82,56 @@ impl MaterialSettings {
         let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
         let mut material = Self {
             name: slot.name.clone(),
-            base_color: slot.base_color.map(unit),
-            diffuse_roughness: unit(slot.diffuse_roughness),
-            metalness: unit(slot.metalness),
+            base_color: slot.base_color,
+            diffuse_roughness: slot.diffuse_roughness,
+            metalness: slot.metalness,
             roughness: unit(slot.roughness),
-            ior: slot.ior.clamp(1.0, 4.0),
-            specular_weight: unit(slot.specular),
+            ior: slot.ior,
+            specular_weight: slot.specular,
             specular_on_metal: false,
-            specular_color: slot.specular_color.map(specular_color),
-            anisotropy: slot.anisotropy.clamp(-1.0, 1.0),
-            rotation_deg: slot.anisotropy_rotation_rad.to_degrees(),
+            specular_color: slot.specular_color,
+            anisotropy: slot.anisotropy,
             extra: slot.kept.clone(),
             ..Self::default()
         };
         lobe.of_slot(slot).apply(&mut material);
         for &target in TextureTarget::ALL {
-            *material.uses_texture_mut(target) |= slot.texture(target).is_some();
+            material.textures[target] |= slot.texture(target).is_some();
         }
-        material.textures.color |= slot.has_vertex_colors && !slot.is_unlit;
-        material.textures.emission |= slot.has_vertex_colors && slot.is_unlit;
-        material.textures.opacity = slot.alpha_mode != AlphaMode::Opaque;
-        material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
+        material.textures[TextureTarget::BaseColor] |= slot.has_vertex_colors && !slot.is_unlit;
+        material.textures[TextureTarget::Emission] |= slot.has_vertex_colors && slot.is_unlit;
+        material.textures[TextureTarget::Opacity] = slot.alpha_mode != AlphaMode::Opaque;
+        material.normal_strength = slot.normal_scale;
         if slot.alpha_mode != AlphaMode::Opaque {
-            material.opacity = unit(slot.opacity);
+            material.opacity = slot.opacity;
         }
-        material.coat_weight = unit(slot.coat);
+        material.coat_weight = slot.coat;
         material.coat_ior = slot.coat_ior;
-        material.coat_normal_strength = slot.coat_normal_scale.clamp(-10.0, 10.0);
+        material.coat_normal_strength = slot.coat_normal_scale;
         if slot.coat > 0.0 {
             material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
             (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
             (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
         }
-        (material.fuzz_weight, material.fuzz_color) = (unit(slot.fuzz), slot.fuzz_color.map(unit));
-        material.fuzz_roughness = unit(slot.fuzz_roughness);
-        material.film_weight = unit(slot.film);
-        material.film_thickness = slot.film_thickness.clamp(0.0, FILM_THICKNESS_MAX);
-        material.film_ior = slot.film_ior.clamp(1.0, 3.0);
-        material.transmission_weight = unit(slot.transmission);
+        (material.fuzz_weight, material.fuzz_color) = (slot.fuzz, slot.fuzz_color);
+        material.fuzz_roughness = slot.fuzz_roughness;
+        material.film_weight = slot.film;
+        material.film_thickness = slot.film_thickness;
+        material.film_ior = slot.film_ior;
+        material.transmission_weight = slot.transmission;
         if slot.attenuation_distance.is_finite() {
-            material.transmission_color = slot.attenuation_color.map(unit);
-            material.transmission_depth = slot.attenuation_distance.clamp(0.0, 1000.0);
+            material.transmission_color = slot.attenuation_color;
+            material.transmission_depth = slot.attenuation_distance;
         } else if slot.transmission > 0.0 {
             material.transmission_color = material.base_color;
         }
         if strength > 0.0 {
-            material.emission_color = slot.emission.map(|x| unit(x / strength));
-            material.emission_strength = strength.min(1e6);
+            material.emission_color = slot.emission.map(|x| x / strength);
+            material.emission_strength = strength;
         }
+        material.bring_into_range();
+        // A turn may be several.
+        material.rotation_deg = slot.anisotropy_rotation_rad.to_degrees();
         material
     }
 }

@@ -1,5 +1,7 @@
 //! A material as it is edited.
 
+use std::ops::{Index, IndexMut};
+
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
@@ -9,6 +11,7 @@ use crate::named::named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::target::{TARGETS, TextureTarget};
 use crate::optics::thin_film::has_film;
 
 /// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
@@ -261,43 +264,32 @@ named! {
     }
 }
 
-/// A tint of the reflection brought into its range.
-pub fn specular_color(tint: f32) -> f32 {
-    tint.clamp(0.0, SPECULAR_COLOR_MAX)
-}
-
 /// Which textures a material looks up: its own, and else its slot's. None, unless the material comes with the model or was
 /// given one: another material that is put in its place is plain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct TextureUse {
-    /// The base colour is multiplied by its texture.
-    pub color: bool,
-    /// Roughness and metalness are multiplied by theirs.
-    pub roughness: bool,
-    /// The normal is bent by its texture.
-    pub normal: bool,
-    /// The emission is multiplied by its texture.
-    pub emission: bool,
-    /// The opacity is multiplied by the alpha of the base colour's texture, and cut off where the model says so.
-    pub opacity: bool,
-    /// The weight of the coat is multiplied by its texture.
-    pub coat: bool,
-    /// The roughness of the coat is multiplied by its texture.
-    pub coat_roughness: bool,
-    /// The colour of the coat is multiplied by its texture.
-    pub coat_color: bool,
-    /// The normal of the coat is bent by its texture.
-    pub coat_normal: bool,
-    /// The weight of the thin film is multiplied by its texture.
-    pub film: bool,
-    /// The thickness of the thin film is multiplied by its texture.
-    pub film_thickness: bool,
-    /// The weight of the fuzz is multiplied by its texture.
-    pub fuzz: bool,
-    /// The colour of the fuzz is multiplied by its texture.
-    pub fuzz_color: bool,
-    /// The roughness of the fuzz is multiplied by its texture.
-    pub fuzz_roughness: bool,
+pub struct TextureUse([bool; TARGETS]);
+
+impl TextureUse {
+    /// The place of a target's switch; roughness and metalness have one together.
+    fn place(target: TextureTarget) -> usize {
+        match target {
+            TextureTarget::Metalness => TextureTarget::Roughness as usize,
+            _ => target as usize,
+        }
+    }
+}
+
+impl Index<TextureTarget> for TextureUse {
+    type Output = bool;
+    fn index(&self, target: TextureTarget) -> &bool {
+        &self.0[Self::place(target)]
+    }
+}
+
+impl IndexMut<TextureTarget> for TextureUse {
+    fn index_mut(&mut self, target: TextureTarget) -> &mut bool {
+        &mut self.0[Self::place(target)]
+    }
 }
 
 /// Where the conductor's η and k come from.

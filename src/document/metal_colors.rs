@@ -4,6 +4,7 @@ use super::MaterialSettings;
 use super::material::Conductor;
 use crate::optics::fresnel::{Fresnel, fresnel_conductor, fresnel_schlick};
 use crate::optics::vector::Vec3;
+use crate::scene::texture::TextureTarget;
 
 /// The cosine at which the edge's colour is exact, about 82°.
 const EDGE: f64 = 1.0 / 7.0;
@@ -24,7 +25,7 @@ impl MaterialSettings {
             ..self.clone()
         };
         // η and k had no texture.
-        material.textures.color = false;
+        material.textures[TextureTarget::BaseColor] = false;
         material
     }
 

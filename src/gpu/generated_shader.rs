@@ -14,6 +14,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
 use crate::optics::material::{FIELDS, Field};
 use crate::optics::random::Sequence;
+use crate::optics::target::TextureTarget;
 use crate::scene::camera::PixelFilter;
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
 
@@ -58,7 +59,11 @@ fn material_structure() -> String {
         let of_type = match field.of_type {
             "T" => "f32",
             "Vec3<T>" => "vec3f",
-            "[u32; 4]" => "vec4u",
+            "[u32; TARGETS]" => {
+                let texture =
+                    |target: &TextureTarget| format!("    {}_texture: u32,\n", target.name().replace('-', "_"));
+                return TextureTarget::ALL.iter().map(texture).collect();
+            }
             same => same,
         };
         format!("    {}: {of_type},\n", field.name)

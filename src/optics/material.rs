@@ -6,11 +6,14 @@
 //! energy. A material that transmits has a second table for views from within, because the base's light is refracted into
 //! the solid and must get out again. Microfacet lobes refract at each facet the share that it does not reflect.
 
+use bytemuck::{Pod, Zeroable};
+
 use super::curve::Curve;
 use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{Fresnel, FresnelTerms, fresnel_f0};
 use super::lobe::{Horizon, Lobe, LobeShape};
 use super::real::{Mask, Real, Scalar};
+use super::target::{TARGETS, TextureTarget};
 use super::thin_film::FilmTerms;
 use super::vector::{Vec3, vec3};
 
@@ -71,7 +74,7 @@ impl<U> Cast<U> for u32 {
     }
 }
 
-impl<U> Cast<U> for [u32; 4] {
+impl<U, const N: usize> Cast<U> for [u32; N] {
     type Output = Self;
     fn cast(self) -> Self {
         self
@@ -92,7 +95,7 @@ pub struct Field {
 }
 
 macro_rules! material {
-    ($(#[$doc:meta])* Material { $($(#[$of_field:meta])* $field:ident: $type:ty,)* }) => {
+    ($(#[$doc:meta])* Material { $($(#[$of_field:meta])* $field:ident: $type:ty $(= $absent:expr)?,)* }) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[repr(C)]
@@ -117,6 +120,15 @@ macro_rules! material {
                 Material { $($field: Cast::<U>::cast(self.$field),)* }
             }
         }
+
+        /// A material without anything: what is not there is 0, or what its line in the table says.
+        impl Default for Material<f32> {
+            fn default() -> Self {
+                let mut material: Self = Zeroable::zeroed();
+                $($(material.$field = $absent;)?)*
+                material
+            }
+        }
     };
 }
 
@@ -129,13 +141,13 @@ material! {
         /// 0: dielectric over a diffuse base; 1: metal.
         metalness: T,
         /// Tint of the specular reflection, linear RGB.
-        specular_color: Vec3<T>,
+        specular_color: Vec3<T> = Vec3::splat(1.0),
         /// Share of the specular reflection that is kept, in [0, 1].
         specular_weight: T,
         /// Real part of the conductor's index of refraction.
         eta: Vec3<T>,
         /// The dielectric's index of refraction.
-        ior: T,
+        ior: T = 1.0,
         /// Imaginary part of the conductor's index of refraction.
         k: Vec3<T>,
         /// Roughness in [0, 1].
@@ -170,27 +182,25 @@ material! {
         /// Start of the albedo table for views from within.
         inner_albedo_table: u32,
         /// Factor of a metal's reflection near 82 degrees, linear RGB in [0, 1].
-        edge_tint: Vec3<T>,
+        edge_tint: Vec3<T> = Vec3::splat(1.0),
         /// Share of light that the surface stops, in [0, 1].
         opacity: T,
         /// Transmittance of a coat of weight 1 in and out, linear RGB in [0, 1].
-        coat_color: Vec3<T>,
+        coat_color: Vec3<T> = Vec3::splat(1.0),
         /// Share of the surface that has a coat, in [0, 1].
         coat_weight: T,
         /// Roughness of the coat in [0, 1].
         coat_roughness: T,
         /// Index of refraction of the coat.
-        coat_ior: T,
+        coat_ior: T = 1.0,
         /// Start of the coat's albedo table.
         coat_table: u32,
         /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
         light_luminance: T,
-        /// Textures of base colour, roughness, normal, emission, or [`NO_TEXTURE`].
-        textures: [u32; 4],
-        /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
-        opacity_texture: u32,
+        /// The texture of each [`TextureTarget`], or [`NO_TEXTURE`].
+        textures: [u32; TARGETS] = [NO_TEXTURE; TARGETS],
         /// Opacity cutoff of a masked material; negative for blended opacity.
-        alpha_cutoff: T,
+        alpha_cutoff: T = -1.0,
         /// Scales the slopes of the normal texture.
         normal_strength: T,
         /// 1 if the surface is partly metal or varies: then the albedo tables extend over roughness
@@ -199,38 +209,28 @@ material! {
         /// Roughness that the texture multiplies; GGX's roughness if there is a `roughness_table`.
         texture_roughness: T,
         /// Start of the table from GGX's roughness to the lobe's, or [`NO_TEXTURE`] if both are the same.
-        roughness_table: u32,
+        roughness_table: u32 = NO_TEXTURE,
         /// [`VERTEX_BASE`] and the others.
         flags: u32,
         /// Slope of a spot's ramp over the cosine to its axis ([`spot_share`](crate::scene::light::spot_share)); 0 for
         /// emission in all directions.
         spot_scale: T,
         /// Offset of a spot's ramp; 1 for emission in all directions.
-        spot_offset: T,
-        /// The texture of the metalness, or [`NO_TEXTURE`].
-        metalness_texture: u32,
-        /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
-        coat_texture: u32,
+        spot_offset: T = 1.0,
         /// Roughness of the diffuse base in [0, 1]; 0 is Lambert's.
         diffuse_roughness: T,
         /// Tint of the fuzz, linear RGB in [0, 1].
-        fuzz_color: Vec3<T>,
+        fuzz_color: Vec3<T> = Vec3::splat(1.0),
         /// Share of the surface that has fuzz, in [0, 1].
         fuzz_weight: T,
         /// Roughness of the fuzz in [0, 1].
         fuzz_roughness: T,
-        /// The texture that multiplies the weight of the fuzz, or [`NO_TEXTURE`].
-        fuzz_texture: u32,
-        /// The texture that multiplies the tint of the fuzz, or [`NO_TEXTURE`].
-        fuzz_color_texture: u32,
-        /// The texture that multiplies the roughness of the fuzz, or [`NO_TEXTURE`].
-        fuzz_roughness_texture: u32,
         /// The dielectric's index for what it reflects, seen from outside: relative to the coat over it.
-        reflecting_ior: T,
+        reflecting_ior: T = 1.0,
         /// The dielectric's index without a coat, and its weight not in it.
-        bare_ior: T,
+        bare_ior: T = 1.0,
         /// The same over or below that of a coat, at least 1.
-        coated_ior: T,
+        coated_ior: T = 1.0,
         /// What a coat of weight 1 adds to the fourth power of GGX's roughness below it.
         coat_blur: T,
         /// GGX's roughness of the specular lobe without a coat.
@@ -241,34 +241,24 @@ material! {
         coat_inner: T,
         /// Stretch of the coat's lobe in [−1, 1].
         coat_anisotropy: T,
-        /// The texture that multiplies the roughness of the coat, or [`NO_TEXTURE`].
-        coat_roughness_texture: u32,
-        /// The texture that multiplies the colour of the coat, or [`NO_TEXTURE`].
-        coat_color_texture: u32,
-        /// The texture of the coat's normals, or [`NO_TEXTURE`].
-        coat_normal_texture: u32,
         /// Scales the slopes of the coat's normal texture.
         coat_normal_strength: T,
+        /// Index of refraction of the thin film.
+        film_ior: T = 1.0,
+        /// 1 if there is a thin film ([`has_film`](super::thin_film::has_film)).
+        has_film: u32,
         /// Phase of a crossing of the thin film at normal incidence over its index, by channel
         /// ([`film_path`](super::thin_film::film_path)).
         film_path: Vec3<T>,
         /// Share of the surface that has a thin film, in [0, 1].
         film_weight: T,
-        /// Index of refraction of the thin film.
-        film_ior: T,
-        /// 1 if there is a thin film ([`has_film`](super::thin_film::has_film)).
-        has_film: u32,
-        /// The texture that multiplies the weight of the thin film, or [`NO_TEXTURE`].
-        film_texture: u32,
-        /// The texture that multiplies the thickness of the thin film, or [`NO_TEXTURE`].
-        film_path_texture: u32,
     }
 }
 
 // SAFETY: f32 and u32 fields without padding, which `has_no_padding` checks; any bit pattern is valid.
-unsafe impl bytemuck::Zeroable for Material<f32> {}
+unsafe impl Zeroable for Material<f32> {}
 // SAFETY: as above.
-unsafe impl bytemuck::Pod for Material<f32> {}
+unsafe impl Pod for Material<f32> {}
 
 /// The fields fill the structure, and the structure fills rows of 16 bytes.
 const fn has_no_padding() -> bool {
@@ -348,15 +338,18 @@ impl<T: Real> Material<T> {
     /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
     #[inline(always)]
     pub fn has_coated_table(&self) -> bool {
-        self.has_flag(COATS_BASE) && self.coat_texture != NO_TEXTURE
+        self.has_flag(COATS_BASE) && self.has_texture(&[TextureTarget::Coat])
     }
 
     /// True where textures change how the coat changes the roughness below it.
     #[inline(always)]
     pub fn has_varied_blur(&self) -> bool {
-        let varying = [self.textures[1], self.coat_texture, self.coat_roughness_texture];
-        let is_varied = varying != [NO_TEXTURE; 3];
-        is_varied && T::zero().less(self.coat_blur).any()
+        let varying = [
+            TextureTarget::Roughness,
+            TextureTarget::Coat,
+            TextureTarget::CoatRoughness,
+        ];
+        self.has_texture(&varying) && T::zero().less(self.coat_blur).any()
     }
 
     /// Terms of the Fresnel factor. From within, weight and tint have no effect: the interface is the bare dielectric, so
@@ -401,35 +394,27 @@ impl<T: Real> Material<T> {
 
     /// The material at the lowest metalness of its textures, which decides whether there is a base or transmission.
     pub fn least_metallic(&self) -> Self {
-        let is_fixed = self.metalness_texture == NO_TEXTURE;
-        let metalness = if is_fixed { self.metalness } else { T::zero() };
+        let is_varied = self.has_texture(&[TextureTarget::Metalness]);
+        let metalness = if is_varied { T::zero() } else { self.metalness };
         Self { metalness, ..*self }
     }
 
     /// True if textured.
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
-        let others = [self.opacity_texture, self.metalness_texture, self.coat_normal_texture];
-        let is_plain = others == [NO_TEXTURE; 3] && self.textures == [NO_TEXTURE; 4];
-        !is_plain || self.has_textured_coat() || self.has_film_texture() || self.has_fuzz_texture()
+        self.textures != [NO_TEXTURE; TARGETS]
     }
 
-    /// True if textures vary weight, roughness or colour of the coat.
+    /// The record of a target's texture, or [`NO_TEXTURE`].
     #[inline(always)]
-    pub fn has_textured_coat(&self) -> bool {
-        [self.coat_texture, self.coat_roughness_texture, self.coat_color_texture] != [NO_TEXTURE; 3]
+    pub fn texture(&self, target: TextureTarget) -> u32 {
+        self.textures[target as usize]
     }
 
-    /// True if a texture varies the thin film.
+    /// True if one of the targets has a texture.
     #[inline(always)]
-    pub fn has_film_texture(&self) -> bool {
-        [self.film_texture, self.film_path_texture] != [NO_TEXTURE; 2]
-    }
-
-    /// True if a texture varies the fuzz.
-    #[inline(always)]
-    pub fn has_fuzz_texture(&self) -> bool {
-        [self.fuzz_texture, self.fuzz_color_texture, self.fuzz_roughness_texture] != [NO_TEXTURE; 3]
+    pub fn has_texture(&self, targets: &[TextureTarget]) -> bool {
+        targets.iter().any(|target| self.texture(*target) != NO_TEXTURE)
     }
 
     /// True if some light may pass straight through the surface.
@@ -437,7 +422,7 @@ impl<T: Real> Material<T> {
     pub fn has_holes(&self) -> bool {
         let is_masked = self.opacity.less(self.alpha_cutoff);
         let is_clear = self.alpha_cutoff.less(T::zero()) & self.opacity.less(T::one());
-        let is_varied = self.opacity_texture != NO_TEXTURE || self.has_flag(VERTEX_OPACITY);
+        let is_varied = self.has_texture(&[TextureTarget::Opacity]) || self.has_flag(VERTEX_OPACITY);
         is_masked.any() || is_clear.any() || is_varied
     }
 
@@ -475,7 +460,8 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn has_specular(&self) -> T::Mask {
         let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
-        let may_be_metal = T::zero().less(self.metalness) | T::Mask::splat(self.metalness_texture != NO_TEXTURE);
+        let is_varied = self.has_texture(&[TextureTarget::Metalness]);
+        let may_be_metal = T::zero().less(self.metalness) | T::Mask::splat(is_varied);
         T::zero().less(self.specular_weight) | (is_spared & may_be_metal) | self.transmits()
     }
 }

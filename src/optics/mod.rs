@@ -28,6 +28,7 @@ pub mod rough_diffuse;
 mod scalar;
 pub mod scattering;
 pub mod table;
+pub mod target;
 pub mod thin_film;
 pub mod tone;
 pub mod vector;

@@ -223,9 +223,7 @@ pub fn light_sample<T: Scalar>(
         let uvs = uvs_at(geometry, triangle, weights, material.has_flag(HAS_BOX));
         let of_vertices = vertex_factors(geometry, material, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs, of_vertices);
-        if material.has_textured_coat() {
-            put_coat(&mut coated, emitters.textures, uvs);
-        }
+        put_coat(&mut coated, emitters.textures, uvs);
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));

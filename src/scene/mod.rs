@@ -30,7 +30,6 @@ mod stage;
 mod still_life;
 pub mod surface;
 mod tangents;
-mod target;
 pub mod teapot;
 pub mod texture;
 pub mod transform;

@@ -10,8 +10,8 @@ use super::mesh::{Mesh, MeshInstance};
 use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
-use super::target::TextureTarget;
 use super::{shapes, still_life, teapot};
+use crate::optics::target::TextureTarget;
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
 /// such a name is written with its folder (`./teapot`).

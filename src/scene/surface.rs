@@ -4,6 +4,7 @@ use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::material::{HAS_BOX, Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::target::TextureTarget;
 use crate::optics::vector::Vec3;
 
 use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors};
@@ -246,7 +247,7 @@ pub fn surfaces_at<T: Real>(
         let colors = at_corners(hits, |triangle| geometry.vertices(triangle).map(Vertex::rgb));
         vertex_color = between(&colors, &weights);
     }
-    let has_map = [of_lane.textures[2], of_lane.coat_normal_texture] != [NO_TEXTURE; 2];
+    let has_map = of_lane.has_texture(&[TextureTarget::Normal, TextureTarget::CoatNormal]);
     let stretches = [material.anisotropy, material.coat_anisotropy];
     let is_stretched = stretches.iter().any(|stretch| stretch.differs(T::zero()).any());
     let mut tangent = Vec3::zero();
@@ -282,8 +283,8 @@ pub fn surfaces_at<T: Real>(
             let bent = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
             lifted_normal(bent, normal, wo)
         };
-        shading = bent(of_lane.textures[2], of_lane.normal_strength);
-        coat_normal = bent(of_lane.coat_normal_texture, of_lane.coat_normal_strength);
+        shading = bent(of_lane.texture(TextureTarget::Normal), of_lane.normal_strength);
+        coat_normal = bent(of_lane.texture(TextureTarget::CoatNormal), of_lane.coat_normal_strength);
     }
     let frame = if is_stretched {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.

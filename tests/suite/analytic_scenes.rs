@@ -556,7 +556,7 @@ fn tilts() -> Vec<Case> {
         );
         case.model = Some(model.clone());
         case.document.model = ModelSource::File("tilted".into());
-        case.document.materials[0].textures.normal = true;
+        case.document.materials[0].textures[TextureTarget::Normal] = true;
         case.under(map.clone()).by(ALL, 4)
     };
     [0.0, 0.5, 1.0].map(case).into()

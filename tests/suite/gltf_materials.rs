@@ -59,7 +59,12 @@ fn material_extensions_reach_the_slots() {
     );
     // glTF's clearcoat leaves the base as it is.
     let uses = material.textures;
-    assert!(uses.coat && uses.coat_roughness && uses.coat_normal && !material.coat_on_base);
+    assert!(
+        uses[TextureTarget::Coat]
+            && uses[TextureTarget::CoatRoughness]
+            && uses[TextureTarget::CoatNormal]
+            && !material.coat_on_base
+    );
     assert_eq!(material.coat_darkening, 0.0);
     assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 4.0));
 }
@@ -203,7 +208,7 @@ fn textures_of_sheens_and_fuzz_are_looked_up() {
         );
         let material = materials_of(&model, ImportLobe::Geometric).remove(0);
         let uses = material.textures;
-        assert!(uses.fuzz && uses.fuzz_color && uses.fuzz_roughness);
+        assert!(uses[TextureTarget::Fuzz] && uses[TextureTarget::FuzzColor] && uses[TextureTarget::FuzzRoughness]);
         fuzz_at(material, &model)
     };
     let draft = json!({"fuzzFactor": 0.5, "fuzzTexture": texture, "fuzzColorFactor": [1, 0.5, 1],

@@ -5,7 +5,8 @@ use std::mem::offset_of;
 use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::scatter::Scatter;
 use glossmith::job::guides::GuideSums;
-use glossmith::optics::material::{FIELDS, Material};
+use glossmith::optics::material::{FIELDS, Field, Material};
+use glossmith::optics::target::TextureTarget;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 
@@ -16,7 +17,7 @@ struct Layout {
     name: &'static str,
     size: usize,
     /// Name, offset and size of each member.
-    members: Vec<(&'static str, usize, usize)>,
+    members: Vec<(String, usize, usize)>,
 }
 
 fn size_of_member<S, M>(_member: fn(&S) -> &M) -> usize {
@@ -29,12 +30,24 @@ macro_rules! layout {
             name: stringify!($name),
             size: size_of::<$type>(),
             members: vec![$((
-                stringify!($member),
+                stringify!($member).to_owned(),
                 offset_of!($type, $member),
                 size_of_member(|s: &$type| &s.$member),
             )),*],
         }
     };
+}
+
+/// A field of a material; the shaders have one for each texture.
+fn material_members(field: &Field) -> Vec<(String, usize, usize)> {
+    if field.name != "textures" {
+        return vec![(field.name.to_owned(), field.offset, field.size)];
+    }
+    let texture = |target: &TextureTarget| {
+        let name = format!("{}_texture", target.name().replace('-', "_"));
+        (name, field.offset + 4 * *target as usize, 4)
+    };
+    TextureTarget::ALL.iter().map(texture).collect()
 }
 
 fn rust_layouts() -> Vec<Layout> {
@@ -58,10 +71,7 @@ fn rust_layouts() -> Vec<Layout> {
         Layout {
             name: "Material",
             size: size_of::<Material<f32>>(),
-            members: FIELDS
-                .iter()
-                .map(|field| (field.name, field.offset, field.size))
-                .collect(),
+            members: FIELDS.iter().flat_map(material_members).collect(),
         },
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
@@ -95,7 +105,7 @@ fn members_lie_alike_in_rust_and_wgsl() {
             .iter()
             .map(|member| {
                 let size = module.types[member.ty].inner.size(module.to_ctx());
-                let name = member.name.as_deref().unwrap_or_default();
+                let name = member.name.clone().unwrap_or_default();
                 (name, member.offset as usize, size as usize)
             })
             .collect();

@@ -195,12 +195,15 @@ fn normals_turn_with_their_picture() {
     let bent = |texture: &UserTexture| {
         let textures = with(&square(), TextureTarget::Normal, texture, &tilted);
         let mut settings = glossmith::document::MaterialSettings::default();
-        settings.textures.normal = true;
+        settings.textures[TextureTarget::Normal] = true;
         let (materials, _) = compile_textured(&[settings], &textures.slots);
         let (x, z) = (Vec3::from_f64([1.0, 0.0, 0.0]), Vec3::from_f64([0.0, 0.0, 1.0]));
         mapped_normal::<f64>(
             &textures,
-            (materials[0].textures[2], materials[0].normal_strength.into()),
+            (
+                materials[0].texture(TextureTarget::Normal),
+                materials[0].normal_strength.into(),
+            ),
             [[0.5; 2]; 3],
             [z, x, z],
             1.0,

@@ -19,6 +19,7 @@ use glossmith::optics::material::{
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
+use glossmith::scene::texture::TextureTarget as On;
 use glossmith::store::PRESETS;
 
 use crate::fuzz_layer::fuzzy_on_a_box;
@@ -31,6 +32,13 @@ use crate::support::Random;
 use crate::terminator::coarse;
 use crate::textures::{all_at_once, coated_all_over};
 use crate::thin_film::filmed_on_a_box;
+
+/// Takes the textures off these targets.
+fn plain(material: &mut Material<f32>, targets: &[On]) {
+    for target in targets {
+        material.textures[*target as usize] = NO_TEXTURE;
+    }
+}
 
 /// Takes out of a job what the kernel does without whose constant for this effect has this value.
 fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [Material<f32>]) {
@@ -47,7 +55,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "fresnel" => |material, fresnel| material.fresnel = fresnel,
         "anisotropy" => |material, _| (material.anisotropy, material.coat_anisotropy) = (0.0, 0.0),
         "base" => |material, _| {
-            let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
+            let is_metal = material.metalness >= 1.0 && !material.has_texture(&[On::Metalness]);
             // A metal's colour is that of its reflection.
             if !is_metal && material.transmission_weight < 1.0 {
                 material.base_color = Vec3::zero();
@@ -73,33 +81,23 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "coat-darkening" => |material, _| material.coat_darkening = 0.0,
         "coat-absorption" => |material, _| material.flags &= !COAT_ABSORBS,
         "color-texture" => |material, _| {
-            material.textures[0] = NO_TEXTURE;
+            plain(material, &[On::BaseColor]);
             material.flags &= !VERTEX_BASE;
         },
-        "roughness-texture" => |material, _| {
-            (material.textures[1], material.metalness_texture) = (NO_TEXTURE, NO_TEXTURE);
-        },
-        "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
-        "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
+        "roughness-texture" => |material, _| plain(material, &[On::Roughness, On::Metalness]),
+        "normal-map" => |material, _| plain(material, &[On::Normal]),
+        "emission-texture" => |material, _| plain(material, &[On::Emission]),
         "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
-        "coat-texture" => |material, _| {
-            (material.coat_texture, material.coat_roughness_texture) = (NO_TEXTURE, NO_TEXTURE);
-            material.coat_color_texture = NO_TEXTURE;
-        },
-        "coat-normal-map" => |material, _| material.coat_normal_texture = NO_TEXTURE,
-        "film-texture" => |material, _| {
-            (material.film_texture, material.film_path_texture) = (NO_TEXTURE, NO_TEXTURE);
-        },
-        "fuzz-texture" => |material, _| {
-            (material.fuzz_texture, material.fuzz_color_texture) = (NO_TEXTURE, NO_TEXTURE);
-            material.fuzz_roughness_texture = NO_TEXTURE;
-        },
+        "coat-texture" => |material, _| plain(material, On::OF_COAT),
+        "coat-normal-map" => |material, _| plain(material, &[On::CoatNormal]),
+        "film-texture" => |material, _| plain(material, On::OF_FILM),
+        "fuzz-texture" => |material, _| plain(material, On::OF_FUZZ),
         "box-projection" => |material, _| material.flags &= !HAS_BOX,
         "diffuse-roughness" => |material, _| material.diffuse_roughness = 0.0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
-            material.opacity_texture = NO_TEXTURE;
+            plain(material, &[On::Opacity]);
             material.flags &= !VERTEX_OPACITY;
         },
         other => panic!("say here what a kernel reads that does without {other}"),

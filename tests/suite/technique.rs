@@ -3,6 +3,7 @@
 use glossmith::document::{Document, MaterialSettings, Strategy};
 use glossmith::job::plan::Plan;
 use glossmith::optics::fresnel::Fresnel;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::study::technique::{GROUPS, Technique, converged};
 
 #[test]
@@ -83,7 +84,7 @@ fn exact_and_approximate_fresnel_agree_along_the_normal() {
     }
     // A texture of the colour has no index.
     let mut textured = metal.clone();
-    textured.textures.color = true;
+    textured.textures[TextureTarget::BaseColor] = true;
     assert_eq!(apply("fresnel=exact", &textured), textured);
     let plain = apply(
         "fresnel=exact",

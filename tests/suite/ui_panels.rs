@@ -12,6 +12,7 @@ use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::TextureTarget;
 use serde_json::json;
 
 use super::cli_support::write_hdr;
@@ -59,7 +60,7 @@ fn textures_have_rows_that_switch_them() {
         switch(&mut harness);
         let uses = harness.state().document().materials[0].textures;
         assert_eq!(
-            (uses.color, uses.roughness),
+            (uses[TextureTarget::BaseColor], uses[TextureTarget::Roughness]),
             (label != "Base colour texture", label == "Base colour texture")
         );
         assert!(picture(&harness) != textured, "{label}");

@@ -9,7 +9,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::layer::material_is_mirror;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::{
-    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+    COAT_ABSORBS, COAT_IS_GGX, COMPENSATES, HAS_BOX, Material, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
 };
 use crate::optics::vector::Vec3;
 use crate::scene::texture::TextureTarget as On;
@@ -373,7 +373,7 @@ pub static EFFECTS: &[Effect] = &[
         label: "Colour textures",
         help: "Base colours from textures or vertex colours.",
         decide: |facts| {
-            let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_flag(VERTEX_BASE);
+            let is_colored = |m: &Material<f32>| m.has_texture(&[On::BaseColor]) || m.has_flag(VERTEX_BASE);
             facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
         },
         remove: Some(|document| without_textures(document, &[On::BaseColor])),
@@ -383,7 +383,7 @@ pub static EFFECTS: &[Effect] = &[
         label: "Roughness textures",
         help: "Roughness and metalness from textures.",
         decide: |facts| {
-            let is_looked_up = |m: &Material<f32>| [m.textures[1], m.metalness_texture] != [NO_TEXTURE; 2];
+            let is_looked_up = |m: &Material<f32>| m.has_texture(&[On::Roughness, On::Metalness]);
             facts.needed_by(is_looked_up, "takes its roughness from a texture")
         },
         remove: Some(|document| without_textures(document, &[On::Roughness])),
@@ -404,14 +404,14 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::NormalMap,
         label: "Normal maps",
         help: "Shading normals from normal maps.",
-        decide: |facts| facts.needed_by(|m| m.textures[2] != NO_TEXTURE, "has a normal map"),
+        decide: |facts| facts.needed_by(|m| m.has_texture(&[On::Normal]), "has a normal map"),
         remove: Some(|document| without_textures(document, &[On::Normal])),
     },
     Effect {
         id: EffectId::EmissionTexture,
         label: "Emission textures",
         help: "Emission from textures.",
-        decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
+        decide: |facts| facts.needed_by(|m| m.has_texture(&[On::Emission]), "takes its emission from a texture"),
         remove: Some(|document| without_textures(document, &[On::Emission])),
     },
     Effect {
@@ -430,35 +430,29 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::CoatTexture,
         label: "Coat textures",
         help: "Weight, roughness and colour of coats from textures.",
-        decide: |facts| facts.needed_by(Material::has_textured_coat, "has a texture of its coat"),
-        remove: Some(|document| {
-            let of_coat = [On::Coat, On::CoatRoughness, On::CoatColor];
-            without_textures(document, &of_coat);
-        }),
+        decide: |facts| facts.needed_by(|m| m.has_texture(On::OF_COAT), "has a texture of its coat"),
+        remove: Some(|document| without_textures(document, On::OF_COAT)),
     },
     Effect {
         id: EffectId::CoatNormalMap,
         label: "Coat normal maps",
         help: "Normals of coats bent by a texture of their own.",
-        decide: |facts| facts.needed_by(|m| m.coat_normal_texture != NO_TEXTURE, "bends the normals of its coat"),
+        decide: |facts| facts.needed_by(|m| m.has_texture(&[On::CoatNormal]), "bends the normals of its coat"),
         remove: Some(|document| without_textures(document, &[On::CoatNormal])),
     },
     Effect {
         id: EffectId::FilmTexture,
         label: "Thin film textures",
         help: "Weights and thicknesses of thin films from textures.",
-        decide: |facts| facts.needed_by(Material::has_film_texture, "takes its thin film from a texture"),
-        remove: Some(|document| without_textures(document, &[On::Film, On::FilmThickness])),
+        decide: |facts| facts.needed_by(|m| m.has_texture(On::OF_FILM), "takes its thin film from a texture"),
+        remove: Some(|document| without_textures(document, On::OF_FILM)),
     },
     Effect {
         id: EffectId::FuzzTexture,
         label: "Fuzz textures",
         help: "Weight, colour and roughness of fuzz from textures.",
-        decide: |facts| facts.needed_by(Material::has_fuzz_texture, "has a texture of its fuzz"),
-        remove: Some(|document| {
-            let of_fuzz = [On::Fuzz, On::FuzzColor, On::FuzzRoughness];
-            without_textures(document, &of_fuzz);
-        }),
+        decide: |facts| facts.needed_by(|m| m.has_texture(On::OF_FUZZ), "has a texture of its fuzz"),
+        remove: Some(|document| without_textures(document, On::OF_FUZZ)),
     },
     Effect {
         id: EffectId::BoxProjection,
@@ -482,7 +476,7 @@ pub static EFFECTS: &[Effect] = &[
         },
         remove: Some(|document| {
             for material in &mut document.materials {
-                material.textures.opacity = false;
+                material.textures[On::Opacity] = false;
                 material.opacity = 1.0;
             }
             for light in &mut document.lighting.area_lights {
@@ -586,7 +580,7 @@ fn each_material(document: &mut Document, change: impl FnMut(&mut MaterialSettin
 fn without_textures(document: &mut Document, targets: &[On]) {
     each_material(document, |material| {
         for target in targets {
-            *material.uses_texture_mut(*target) = false;
+            material.textures[*target] = false;
         }
     });
 }

@@ -279,6 +279,26 @@ pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), P
     parameter.set(material, parameter.parse(text)?)
 }
 
+impl MaterialSettings {
+    /// Brings numbers and colours into their ranges.
+    pub fn bring_into_range(&mut self) {
+        for parameter in PARAMETERS.iter() {
+            let value = match (&parameter.kind, parameter.get(self)) {
+                (
+                    Kind::Number {
+                        range: [least, most], ..
+                    },
+                    Value::Number(x),
+                ) => Value::Number(x.clamp(*least, *most)),
+                (Kind::Color, Value::Color(color)) => Value::Color(color.map(|x| x.clamp(0.0, 1.0))),
+                (Kind::Tint { most }, Value::Color(color)) => Value::Color(color.map(|x| x.clamp(0.0, *most))),
+                _ => continue,
+            };
+            parameter.put(self, value);
+        }
+    }
+}
+
 impl Document {
     /// Sets a setting of the document, or a parameter of all its materials, from `KEY=VALUE`; see [`Parameter::parse`].
     pub fn assign(&mut self, assignment: &str) -> Result<(), ParameterError> {
@@ -326,8 +346,13 @@ impl<T> Parameter<T> {
     /// [`ParameterError::Invalid`] where the value is of the wrong kind or out of range; nothing is changed then.
     pub fn set(&self, of: &mut T, value: Value) -> Result<(), ParameterError> {
         self.check(&value)?;
-        (self.set)(of, value);
+        self.put(of, value);
         Ok(())
+    }
+
+    /// Sets a value that may be out of range; one of another kind changes nothing.
+    pub(crate) fn put(&self, of: &mut T, value: Value) {
+        (self.set)(of, value);
     }
 
     /// Whether the parameter takes a value.

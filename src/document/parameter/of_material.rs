@@ -12,6 +12,7 @@ use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
+use crate::scene::texture::TextureTarget as On;
 
 type Accessors = super::Accessors<MaterialSettings>;
 
@@ -36,7 +37,7 @@ fn base() -> Vec<Parameter> {
         of("base.weight", "Weight", "Darkens the base: its colour is multiplied by it.", unit_number(), field!(Number base_weight)),
         of("base.color", "Colour", "Colour of the diffuse base; of a metal, its reflection seen head-on.", Kind::Color, field!(Color base_color))
             .idle(of_indices),
-        of("base.color_texture", "Colour texture", "Multiplies the colour by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures.color)),
+        of("base.color_texture", "Colour texture", "Multiplies the colour by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures[On::BaseColor])),
         of("base.diffuse_roughness", "Diffuse roughness", "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.", unit_number(), field!(Number diffuse_roughness))
             .applies(|material| material.metalness < 1.0),
         of("base.metalness", "Metalness", "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.", unit_number(), field!(Number metalness)),
@@ -55,7 +56,7 @@ fn specular_shape() -> Vec<Parameter> {
         of("specular.lobe", "Lobe", "The model of how reflected light is spread.", choices::<Lobe>(), choice!(lobe)),
         of("specular.roughness", "Roughness", "0 is a mirror; 1 is fully diffuse for the geometric lobe.", unit_number(), field!(Number roughness))
             .symbol("R").applies(|material| has_specular(material) && material.lobe.has_roughness()),
-        of("specular.roughness_texture", "Roughness texture", "Multiplies roughness and metalness by textures.", Kind::Toggle, field!(Toggle textures.roughness)),
+        of("specular.roughness_texture", "Roughness texture", "Multiplies roughness and metalness by textures.", Kind::Toggle, field!(Toggle textures[On::Roughness])),
         of("specular.multiple_scattering", "Multiple scattering", "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.", Kind::Toggle, field!(Toggle multiple_scattering))
             .applies(|material| has_specular(material) && material.lobe.traits().loses_light),
         of("specular.curve", "Curve", "The profile of the geometric lobe's highlight, from its middle to its edge.", choices::<Curve>(), choice!(curve))
@@ -95,12 +96,12 @@ fn fuzz() -> Vec<Parameter> {
     vec![
         of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
             .applies(|_| true),
-        of("fuzz.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.fuzz)),
+        of("fuzz.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures[On::Fuzz])),
         of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
-        of("fuzz.color_texture", "Colour texture", "Multiplies the colour by a texture.", Kind::Toggle, field!(Toggle textures.fuzz_color)),
+        of("fuzz.color_texture", "Colour texture", "Multiplies the colour by a texture.", Kind::Toggle, field!(Toggle textures[On::FuzzColor])),
         of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
             .symbol("R"),
-        of("fuzz.roughness_texture", "Roughness texture", "Multiplies the roughness by a texture.", Kind::Toggle, field!(Toggle textures.fuzz_roughness)),
+        of("fuzz.roughness_texture", "Roughness texture", "Multiplies the roughness by a texture.", Kind::Toggle, field!(Toggle textures[On::FuzzRoughness])),
     ]
 }
 
@@ -109,10 +110,10 @@ fn thin_film() -> Vec<Parameter> {
     vec![
         of("thin_film.weight", "Weight", "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours.", unit_number(), field!(Number film_weight))
             .applies(|material| has_specular(material) && material.fresnel_model() != Fresnel::None),
-        of("thin_film.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures.film)),
+        of("thin_film.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures[On::Film])),
         of("thin_film.thickness", "Thickness", "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.", number([0.0, FILM_THICKNESS_MAX], "µm"), field!(Number film_thickness))
             .symbol("d").bar(0.0, 1.0),
-        of("thin_film.thickness_texture", "Thickness texture", "Multiplies the thickness by a texture.", Kind::Toggle, field!(Toggle textures.film_thickness)),
+        of("thin_film.thickness_texture", "Thickness texture", "Multiplies the thickness by a texture.", Kind::Toggle, field!(Toggle textures[On::FilmThickness])),
         of("thin_film.ior", "Index of refraction", "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see.", number([1.0, 3.0], ""), field!(Number film_ior))
             .symbol("n").bar(1.0, 3.0),
     ]
@@ -136,7 +137,7 @@ fn emission() -> Vec<Parameter> {
     vec![
         of("emission.color", "Colour", "Colour of the light that the surface gives off.", Kind::Color, field!(Color emission_color))
             .applies(|material| material.emission_strength > 0.0),
-        of("emission.color_texture", "Colour texture", "Multiplies the emission by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures.emission)),
+        of("emission.color_texture", "Colour texture", "Multiplies the emission by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures[On::Emission])),
         of("emission.strength", "Strength", "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.", number([0.0, 1e6], ""), field!(Number emission_strength))
             .bar(0.0, 20.0).applies(|_| true),
     ]
@@ -146,10 +147,10 @@ fn emission() -> Vec<Parameter> {
 fn geometry() -> Vec<Parameter> {
     vec![
         of("geometry.opacity", "Opacity", "The share of light that the surface stops; the rest goes straight on, as if nothing were there.", unit_number(), field!(Number opacity)),
-        of("geometry.opacity_texture", "Opacity texture", "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.", Kind::Toggle, field!(Toggle textures.opacity)),
+        of("geometry.opacity_texture", "Opacity texture", "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.", Kind::Toggle, field!(Toggle textures[On::Opacity])),
         of("geometry.normal_strength", "Normal strength", "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.", number([-10.0, 10.0], ""), field!(Number normal_strength))
-            .bar(0.0, 2.0).applies(|material| material.textures.normal),
-        of("geometry.normal_texture", "Normal texture", "Bends the surface's normal by a texture.", Kind::Toggle, field!(Toggle textures.normal)),
+            .bar(0.0, 2.0).applies(|material| material.textures[On::Normal]),
+        of("geometry.normal_texture", "Normal texture", "Bends the surface's normal by a texture.", Kind::Toggle, field!(Toggle textures[On::Normal])),
     ]
 }
 

@@ -15,8 +15,9 @@ use crate::optics::curve::Curve;
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::fresnel::{fresnel, fresnel_dielectric, half_vector_cosine};
 use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape};
-use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, Material, NO_TEXTURE, Surface};
+use crate::optics::material::{COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, Material, Surface};
 use crate::optics::real::{Mask, Real};
+use crate::optics::target::TextureTarget;
 use crate::optics::vector::Vec3;
 
 /// Most of the light that a coat reflects back inside: at 1 nothing would get out.
@@ -112,7 +113,7 @@ pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
 /// Albedo of a coat of weight 1.
 #[inline(always)]
 fn coat_albedo<T: Real>(material: &Material<T>, tables: &[f32], cosine: T) -> T {
-    if material.coat_roughness_texture == NO_TEXTURE {
+    if !material.has_texture(&[TextureTarget::CoatRoughness]) {
         return albedo_lookup(tables, material.coat_table, cosine).x;
     }
     let [albedo, ..] = rough_albedo_lookup(tables, material.coat_table, cosine, material.coat_roughness);

@@ -24,9 +24,10 @@ use crate::optics::material::{
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
+use crate::optics::target::TextureTarget as On;
 use crate::optics::vector::{Vec3, vec3};
 
-pub use super::target::{TextureTarget, TextureValues};
+pub use crate::optics::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};
 pub use pack::{Pack, Pictures, SlotTextures, Textures, UserTextureFile, WORDS_MAX, slots_with_coordinates};
 pub use user::{TextureChannel, TextureProjection, TextureSpace, UserTexture};
@@ -89,6 +90,18 @@ pub fn texture_lookup<T: Scalar>(textures: &Textures, index: u32, uvs: Uvs<T>) -
     };
     let [scale, offset] = [record.scale, record.offset].map(|x| T::from_f64(f64::from(x)));
     (color * scale + Vec3::splat(offset), alpha * scale + offset)
+}
+
+/// Value of a target's texture at a surface point, if there is one.
+#[inline(always)]
+fn material_lookup<T: Scalar>(
+    textures: &Textures,
+    material: &Material<T>,
+    target: TextureTarget,
+    uvs: Uvs<T>,
+) -> Option<(Vec3<T>, T)> {
+    let index = material.texture(target);
+    (index != NO_TEXTURE).then(|| texture_lookup(textures, index, uvs))
 }
 
 /// Filtered texture map at a surface point: linear RGB and alpha.
@@ -245,23 +258,19 @@ pub fn textured_material<T: Scalar>(
     if material.has_flag(VERTEX_EMISSION) {
         at_point.emission = material.emission * vertex_color;
     }
-    let [base_color, roughness, _, emission] = material.textures;
-    if base_color != NO_TEXTURE {
-        let (color, _) = texture_lookup(textures, base_color, uvs);
+    let value = |target| material_lookup(textures, material, target, uvs);
+    if let Some((color, _)) = value(On::BaseColor) {
         at_point.base_color = at_point.base_color * color;
         at_point.transmission_tint = at_point.transmission_tint * color;
     }
-    if material.has_textured_coat() {
-        put_coat(&mut at_point, textures, uvs);
-    }
+    put_coat(&mut at_point, textures, uvs);
     // A map with both is looked up once.
-    let mut of_metalness = Vec3::splat(T::one());
+    let of_roughness = value(On::Roughness);
     let blurs = material.has_varied_blur();
-    if roughness != NO_TEXTURE || blurs {
+    if of_roughness.is_some() || blurs {
         at_point.ggx_roughness = material.texture_roughness;
-        if roughness != NO_TEXTURE {
-            (of_metalness, _) = texture_lookup(textures, roughness, uvs);
-            at_point.ggx_roughness = material.texture_roughness * of_metalness.y;
+        if let Some((values, _)) = of_roughness {
+            at_point.ggx_roughness = material.texture_roughness * values.y;
         }
         at_point.roughness = at_point.ggx_roughness;
         if blurs {
@@ -274,23 +283,28 @@ pub fn textured_material<T: Scalar>(
         let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
         at_point.transmission_roughness = rough.clamp(T::zero(), T::one());
     }
-    if material.metalness_texture != NO_TEXTURE {
-        if material.metalness_texture != roughness {
-            (of_metalness, _) = texture_lookup(textures, material.metalness_texture, uvs);
-        }
-        at_point.metalness = material.metalness * of_metalness.z;
+    let is_shared = material.texture(On::Metalness) == material.texture(On::Roughness);
+    let of_metalness = if is_shared { of_roughness } else { value(On::Metalness) };
+    if let Some((values, _)) = of_metalness {
+        at_point.metalness = material.metalness * values.z;
     }
-    if emission != NO_TEXTURE {
-        at_point.emission = at_point.emission * texture_lookup(textures, emission, uvs).0;
+    if let Some((color, _)) = value(On::Emission) {
+        at_point.emission = at_point.emission * color;
     }
-    if material.film_texture != NO_TEXTURE {
-        at_point.film_weight = material.film_weight * texture_lookup(textures, material.film_texture, uvs).0.x;
+    if let Some((weight, _)) = value(On::Film) {
+        at_point.film_weight = material.film_weight * weight.x;
     }
-    if material.film_path_texture != NO_TEXTURE {
-        at_point.film_path = material.film_path * texture_lookup(textures, material.film_path_texture, uvs).0.x;
+    if let Some((share, _)) = value(On::FilmThickness) {
+        at_point.film_path = material.film_path * share.x;
     }
-    if material.has_fuzz_texture() {
-        put_fuzz(&mut at_point, textures, uvs);
+    if let Some((weight, _)) = value(On::Fuzz) {
+        at_point.fuzz_weight = material.fuzz_weight * weight.x;
+    }
+    if let Some((color, _)) = value(On::FuzzColor) {
+        at_point.fuzz_color = material.fuzz_color * color;
+    }
+    if let Some((_, share)) = value(On::FuzzRoughness) {
+        at_point.fuzz_roughness = (material.fuzz_roughness * share).max(T::from_f64(FUZZ_ROUGHNESS_MIN));
     }
     at_point
 }
@@ -306,60 +320,49 @@ pub fn textured_materials<T: Real>(
 ) -> Material<T> {
     let colors = vertex_color.to_each();
     let at = T::each(|lane| {
-        let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
-        TexturedNumbers {
-            colors: [
-                at.base_color,
-                at.transmission_tint,
-                at.emission,
-                at.coat_color,
-                at.film_path,
-                at.fuzz_color,
-            ],
-            numbers: [
-                at.metalness,
-                at.roughness,
-                at.transmission_roughness,
-                at.coat_weight,
-                at.reflecting_ior,
-                at.ggx_roughness,
-                at.coat_roughness,
-                at.film_weight,
-                at.fuzz_weight,
-                at.fuzz_roughness,
-            ],
-        }
+        TexturedNumbers::of(textured_material(
+            textures,
+            tables,
+            of_lane,
+            uvs.as_ref()[lane],
+            colors.as_ref()[lane],
+        ))
     });
-    let at = at.as_ref();
-    Material {
-        base_color: Vec3::from_lanes(|lane| at[lane].colors[0]),
-        transmission_tint: Vec3::from_lanes(|lane| at[lane].colors[1]),
-        emission: Vec3::from_lanes(|lane| at[lane].colors[2]),
-        coat_color: Vec3::from_lanes(|lane| at[lane].colors[3]),
-        metalness: T::from_lanes(|lane| at[lane].numbers[0]),
-        roughness: T::from_lanes(|lane| at[lane].numbers[1]),
-        transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
-        coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
-        reflecting_ior: T::from_lanes(|lane| at[lane].numbers[4]),
-        ggx_roughness: T::from_lanes(|lane| at[lane].numbers[5]),
-        coat_roughness: T::from_lanes(|lane| at[lane].numbers[6]),
-        film_path: Vec3::from_lanes(|lane| at[lane].colors[4]),
-        film_weight: T::from_lanes(|lane| at[lane].numbers[7]),
-        fuzz_color: Vec3::from_lanes(|lane| at[lane].colors[5]),
-        fuzz_weight: T::from_lanes(|lane| at[lane].numbers[8]),
-        fuzz_roughness: T::from_lanes(|lane| at[lane].numbers[9]),
-        ..*material
-    }
+    TexturedNumbers::over(at.as_ref(), material)
 }
 
-/// Parameters that [`textured_material`] changes.
-#[derive(Clone, Copy, Default)]
-struct TexturedNumbers<T> {
-    /// Base colour, tint of the transmission, emission, colour of the coat, phase of the thin film, tint of the fuzz.
-    colors: [Vec3<T>; 6],
-    /// Metalness, roughness, roughness of the refraction, weight of the coat, index of what is reflected, roughness without
-    /// the coat, roughness of the coat, weight of the thin film, weight and roughness of the fuzz.
-    numbers: [T; 10],
+macro_rules! textured_numbers {
+    ($($color:ident)* ; $($number:ident)*) => {
+        /// Parameters that [`textured_material`] changes.
+        #[derive(Clone, Copy, Default)]
+        struct TexturedNumbers<T> {
+            $($color: Vec3<T>,)*
+            $($number: T,)*
+        }
+
+        impl<S: Scalar> TexturedNumbers<S> {
+            #[inline(always)]
+            fn of(at: Material<S>) -> Self {
+                Self { $($color: at.$color,)* $($number: at.$number,)* }
+            }
+
+            /// A material with those of each lane.
+            #[inline(always)]
+            fn over<T: Real<Scalar = S>>(at: &[Self], material: &Material<T>) -> Material<T> {
+                Material {
+                    $($color: Vec3::from_lanes(|lane| at[lane].$color),)*
+                    $($number: T::from_lanes(|lane| at[lane].$number),)*
+                    ..*material
+                }
+            }
+        }
+    };
+}
+
+textured_numbers! {
+    base_color transmission_tint emission coat_color film_path fuzz_color;
+    metalness roughness transmission_roughness coat_weight reflecting_ior ggx_roughness coat_roughness film_weight
+    fuzz_weight fuzz_roughness
 }
 
 /// Factors of emission and opacity that the vertices of a triangle give a place on it.
@@ -399,53 +402,36 @@ pub fn emission_at<T: Scalar>(
         T::one()
     };
     let radiance = material.emission * color * share;
-    let emission = material.textures[3];
-    if emission == NO_TEXTURE {
-        return radiance;
+    match material_lookup(textures, material, On::Emission, uvs) {
+        Some((emission, _)) => radiance * emission,
+        None => radiance,
     }
-    radiance * texture_lookup(textures, emission, uvs).0
 }
 
 /// Varies the coat of a material by its textures.
 pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
-    if material.coat_texture != NO_TEXTURE {
-        material.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
+    if let Some((weight, _)) = material_lookup(textures, material, On::Coat, uvs) {
+        material.coat_weight = material.coat_weight * weight.x;
         if material.has_flag(COATS_BASE) {
             material.reflecting_ior = material.ior_under_coat(material.coat_weight);
         }
     }
-    if material.coat_roughness_texture != NO_TEXTURE {
-        let (values, _) = texture_lookup(textures, material.coat_roughness_texture, uvs);
+    if let Some((values, _)) = material_lookup(textures, material, On::CoatRoughness, uvs) {
         material.coat_roughness = material.coat_roughness * values.y;
         if T::zero().less(material.coat_blur) {
             material.coat_blur = coat_blur(material.coat_roughness);
         }
     }
-    if material.coat_color_texture != NO_TEXTURE {
-        let (color, _) = texture_lookup(textures, material.coat_color_texture, uvs);
+    if let Some((color, _)) = material_lookup(textures, material, On::CoatColor, uvs) {
         material.coat_color = material.coat_color * color;
-    }
-}
-
-/// Varies the fuzz of a material by its textures.
-fn put_fuzz<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs: Uvs<T>) {
-    if material.fuzz_texture != NO_TEXTURE {
-        material.fuzz_weight = material.fuzz_weight * texture_lookup(textures, material.fuzz_texture, uvs).0.x;
-    }
-    if material.fuzz_color_texture != NO_TEXTURE {
-        material.fuzz_color = material.fuzz_color * texture_lookup(textures, material.fuzz_color_texture, uvs).0;
-    }
-    if material.fuzz_roughness_texture != NO_TEXTURE {
-        let (_, share) = texture_lookup(textures, material.fuzz_roughness_texture, uvs);
-        material.fuzz_roughness = (material.fuzz_roughness * share).max(T::from_f64(FUZZ_ROUGHNESS_MIN));
     }
 }
 
 /// The share of light that a surface point stops, in [0, 1]; `alpha` is that of the vertices.
 pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>, alpha: T) -> T {
     let mut opacity = material.opacity * alpha;
-    if material.opacity_texture != NO_TEXTURE {
-        opacity = opacity * texture_lookup(textures, material.opacity_texture, uvs).1;
+    if let Some((_, alpha)) = material_lookup(textures, material, On::Opacity, uvs) {
+        opacity = opacity * alpha;
     }
     stopped_share(material, opacity)
 }

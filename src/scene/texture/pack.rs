@@ -8,10 +8,10 @@ use super::scale::{fraction, halved};
 use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
+use crate::optics::target::{TextureTarget, TextureValues};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::{AlphaMode, Model, Slot, Texture};
-use crate::scene::target::{TextureTarget, TextureValues};
 
 /// Words before the first texel: the linear values of sRGB codes.
 const DECODED: usize = 256;
@@ -83,6 +83,15 @@ impl SlotTextures {
     /// Linear RGB of a target's map of one value; a number stands in all three.
     pub fn constant(&self, target: TextureTarget) -> Option<[f32; 3]> {
         self.constants[target as usize]
+    }
+
+    /// Without the textures of the other targets.
+    pub fn only(mut self, is_on: impl Fn(TextureTarget) -> bool) -> Self {
+        for target in TextureTarget::ALL.iter().filter(|target| !is_on(**target)) {
+            let index = *target as usize;
+            (self.records[index], self.constants[index], self.on_box[index]) = (NO_TEXTURE, None, false);
+        }
+        self
     }
 }
 

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::user::{TextureChannel, UserTexture};
-use crate::scene::target::TextureTarget;
+use crate::optics::target::TextureTarget;
 
 /// Meaning of a word in a file name.
 #[derive(Clone, Copy, PartialEq)]

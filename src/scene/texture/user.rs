@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::named::named;
-use crate::scene::target::TextureTarget;
+use crate::optics::target::TextureTarget;
 
 named! {
     /// Channel of a texel for a scalar parameter.

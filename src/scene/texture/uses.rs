@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use super::user::{TextureProjection, UserTexture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
 use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
+use crate::optics::target::TextureTarget;
 use crate::scene::model::{Filter, Slot, TextureRef, Wrap};
-use crate::scene::target::TextureTarget;
 
 /// A user's map assigned to a slot.
 #[derive(Clone, Debug, PartialEq)]

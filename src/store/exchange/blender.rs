@@ -12,12 +12,17 @@ pub struct Blender;
 
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
-    absorption: false,
-    coat_stretch: false,
-    coat_on_base: false,
-    film_weight: false,
-    scattering: true,
-    weighs_metal: false,
+    lacks: [
+        Takes::OPEN_PBR.lacks[0],
+        &[
+            "transmission.depth",
+            "coat.anisotropy",
+            "coat.on_base",
+            "coat.darkening",
+            "thin_film.weight",
+            "specular.on_metal",
+        ],
+    ],
     ..Takes::OPEN_PBR
 };
 

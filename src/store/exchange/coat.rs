@@ -13,24 +13,6 @@ impl Surface {
         1.0 / (stretch * stretch)
     }
 
-    /// Leaves of the coat what a program takes.
-    pub(super) fn take_coat(&mut self, takes: &Takes) {
-        if !takes.coat {
-            self.coat_weight = 0.0;
-        }
-        if !takes.coat_details {
-            (self.coat_ior, self.coat_color) = (1.5, [1.0; 3]);
-        }
-        if !takes.coat_stretch {
-            self.coat_anisotropy = 0.0;
-        }
-        if takes.coat_on_base {
-            self.counter_coat();
-        } else {
-            (self.coat_on_base, self.coat_darkening) = (false, 0.0);
-        }
-    }
-
     /// Sets index and roughness of the base so that a coat which changes both (OpenPBR 1.1, "Coat") leaves the look of one
     /// that does not.
     pub(super) fn counter_coat(&mut self) {
@@ -68,35 +50,24 @@ impl Surface {
         if material.coat_weight == 0.0 {
             return Vec::new();
         }
-        if !takes.coat {
+        if !takes.has("coat.weight") {
             return vec![Entry::dropped("coat", "the format has none")];
         }
         let mut entries = Vec::new();
-        let mut part = |is_used: bool, is_taken: bool, what: &str, detail: &str| {
-            if is_used && is_taken {
-                entries.push(Entry::exact(what));
-            } else if is_used {
-                entries.push(Entry::dropped(what, detail));
-            }
-        };
+        let mut part = |is_used, key, what, detail| entries.extend(takes.part(is_used, key, what, detail));
         let is_tinted = material.coat_ior != 1.5 || material.coat_color != [1.0; 3];
-        part(
-            is_tinted,
-            takes.coat_details,
-            "the coat's index and colour",
-            "1.5 and white",
-        );
+        part(is_tinted, "coat.ior", "the coat's index and colour", "1.5 and white");
         let is_stretched = material.coat_anisotropy != 0.0;
-        part(is_stretched, takes.coat_stretch, "the coat's anisotropy", "it is round");
+        part(is_stretched, "coat.anisotropy", "the coat's anisotropy", "it is round");
         let changes = material.coat_on_base || material.coat_darkening > 0.0;
         let detail = "what lies below keeps its reflection, roughness, brightness and emission";
-        part(changes, takes.coat_on_base, "what the coat changes below it", detail);
-        if takes.coat_on_base && !material.coat_on_base {
+        part(changes, "coat.on_base", "what the coat changes below it", detail);
+        if takes.has("coat.on_base") && !material.coat_on_base {
             let set = match self.countered_ior() {
                 Some(_) => "index and roughness are",
                 None => "roughness is",
             };
-            let dimmed = if self.emission == [0.0; 3] {
+            let dimmed = if self.emission() == [0.0; 3] {
                 ""
             } else {
                 "; emission is dimmed"

@@ -47,30 +47,37 @@ impl Kind {
         let is_principled = self == Self::Principled;
         Takes {
             law: if is_principled { Law::Schlick } else { Law::Exact },
-            eta_and_k: self == Self::Conductor,
-            diffuse_roughness: false,
-            fuzz: false,
-            film: false,
-            film_weight: false,
-            scattering: false,
-            weighs_index: false,
-            edge_tint: false,
-            specular: self == Self::Glass,
-            weighs_metal: false,
-            ior: true,
             widths: if is_principled {
                 Surface::disney_widths
             } else {
                 Surface::widths
             },
-            coat: is_principled,
-            coat_details: false,
-            coat_stretch: false,
-            coat_on_base: false,
-            transmission: true,
-            absorption: false,
-            textures: false,
-            own_textures: false,
+            lacks: [
+                &[
+                    "base.diffuse_roughness",
+                    "base.color_texture",
+                    "specular.multiple_scattering",
+                    "specular.weight_in_index",
+                    "specular.edge_tint",
+                    "specular.on_metal",
+                    "coat.ior",
+                    "coat.color",
+                    "coat.anisotropy",
+                    "coat.on_base",
+                    "coat.darkening",
+                    "fuzz.weight",
+                    "thin_film.weight",
+                    "thin_film.thickness",
+                    "transmission.depth",
+                    "transmission.roughness",
+                ],
+                match self {
+                    Self::Diffuse => &["specular.eta", "specular.weight", "specular.color", "coat.weight"],
+                    Self::Conductor => &["specular.weight", "specular.color", "coat.weight"],
+                    Self::Glass => &["specular.eta", "coat.weight"],
+                    Self::Principled => &["specular.eta", "specular.weight", "specular.color"],
+                },
+            ],
         }
     }
 }
@@ -97,7 +104,7 @@ impl Format for Mitsuba {
                 .child(float("opacity", surface.opacity))
                 .child(bsdf);
         }
-        let scene = scene(bsdf.with("id", name.clone()), &name, surface.emission);
+        let scene = scene(bsdf.with("id", name.clone()), &name, surface.emission());
         let text = scene.document(Some(&carried::comment(material)));
         Ok(Written::text(text, vec![report]))
     }

@@ -36,26 +36,8 @@ impl Takes {
     /// What OpenPBR has a place for.
     pub const OPEN_PBR: Self = Self {
         law: super::surface::Law::Exact,
-        eta_and_k: false,
-        diffuse_roughness: true,
-        edge_tint: true,
-        specular: true,
-        weighs_index: true,
-        weighs_metal: true,
-        ior: true,
         widths,
-        coat: true,
-        coat_details: true,
-        coat_stretch: true,
-        coat_on_base: true,
-        fuzz: true,
-        film: true,
-        film_weight: true,
-        scattering: true,
-        transmission: true,
-        absorption: true,
-        textures: false,
-        own_textures: false,
+        lacks: [&["specular.eta", "base.color_texture", "transmission.roughness"], &[]],
     };
 }
 

@@ -2,6 +2,7 @@
 
 use crate::document::{Conductor, MaterialSettings};
 use crate::optics::fresnel::{Fresnel, fresnel_conductor};
+use crate::scene::texture::TextureTarget;
 
 /// Largest reflectance along the normal of a metal: at 1 its index would be infinite.
 const F0_MAX: f64 = 0.999;
@@ -14,7 +15,7 @@ pub fn with_exact_fresnel(material: &mut MaterialSettings) {
         Fresnel::None | Fresnel::Schlick if material.metalness < 1.0 => material.fresnel = Fresnel::Dielectric,
         Fresnel::None | Fresnel::Schlick => {
             let textures = material.textures;
-            if textures.color || textures.roughness {
+            if textures[TextureTarget::BaseColor] || textures[TextureTarget::Roughness] {
                 return;
             }
             let of_channel = |channel: usize| {
@@ -37,8 +38,8 @@ pub fn with_schlick(material: &mut MaterialSettings) {
         material.base_color = [0, 1, 2].map(f0);
         material.base_weight = 1.0;
         material.metalness = 1.0;
-        material.textures.color = false;
-        material.textures.roughness = false;
+        material.textures[TextureTarget::BaseColor] = false;
+        material.textures[TextureTarget::Roughness] = false;
         material.conductor = Conductor::Custom;
     }
     material.fresnel = Fresnel::Schlick;

@@ -24,7 +24,7 @@ use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
-use glossmith::scene::texture::TextureTarget;
+use glossmith::scene::texture::TextureTarget as On;
 use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
 use glossmith::scene::{Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
@@ -106,18 +106,24 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                         NO_TEXTURE
                     }
                 };
-                material.textures = [(); 4].map(|()| texture());
-                material.opacity_texture = texture();
+                for target in [On::BaseColor, On::Roughness, On::Normal, On::Emission, On::Opacity] {
+                    material.textures[target as usize] = texture();
+                }
                 // Of the metalness that of the roughness, or any other.
-                let others = [material.textures[1], of_others.below(textures.records.len()) as u32];
-                material.metalness_texture = others[of_others.below(2)];
-                material.coat_texture = of_others.below(textures.records.len()) as u32;
-                material.coat_color_texture = of_others.below(textures.records.len()) as u32;
-                material.film_texture = of_others.below(textures.records.len()) as u32;
-                material.fuzz_texture = of_others.below(textures.records.len()) as u32;
-                material.fuzz_color_texture = of_others.below(textures.records.len()) as u32;
-                material.fuzz_roughness_texture = of_others.below(textures.records.len()) as u32;
-                material.film_path_texture = of_others.below(textures.records.len()) as u32;
+                let others = [
+                    material.texture(On::Roughness),
+                    of_others.below(textures.records.len()) as u32,
+                ];
+                material.textures[On::Metalness as usize] = others[of_others.below(2)];
+                for target in [
+                    &[On::Coat, On::CoatColor, On::Film][..],
+                    On::OF_FUZZ,
+                    &[On::FilmThickness],
+                ]
+                .concat()
+                {
+                    material.textures[target as usize] = of_others.below(textures.records.len()) as u32;
+                }
                 materials.push(material);
             }
         }
@@ -128,16 +134,21 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     materials[0].emission = vec3(0.7, 0.2, 0.4);
     materials[1].emission = vec3(0.001, 0.002, 0.003);
     // Linear pictures: the first with a normal texture, the second with one that shines.
-    materials[0].textures = [NO_TEXTURE, NO_TEXTURE, 1, NO_TEXTURE];
-    materials[1].textures = [NO_TEXTURE, NO_TEXTURE, NO_TEXTURE, 0];
-    materials[0].coat_normal_texture = 2;
+    for material in &mut materials[..2] {
+        for target in [On::BaseColor, On::Roughness, On::Normal, On::Emission, On::Opacity] {
+            material.textures[target as usize] = NO_TEXTURE;
+        }
+    }
+    materials[0].textures[On::Normal as usize] = 1;
+    materials[1].textures[On::Emission as usize] = 0;
+    materials[0].textures[On::CoatNormal as usize] = 2;
     // Never so steep that the tangent is along the normal.
     materials[0].normal_strength = 0.5;
     for material in &mut materials[..2] {
         material.light_luminance = material.emission.luminance();
         // Half the light within 60 degrees, none beyond 90.
         (material.spot_scale, material.spot_offset) = (1.4, 0.0);
-        (material.opacity_texture, material.alpha_cutoff) = (NO_TEXTURE, -1.0);
+        material.alpha_cutoff = -1.0;
     }
     for (number, material) in materials.iter_mut().enumerate() {
         material.has_rough_tables = u32::from(number % 4 == 3);
@@ -213,8 +224,8 @@ fn pictures(rng: &mut Rng) -> Model {
         };
         let mut slot = Slot::neutral("pictures");
         match number % 4 {
-            3 => *slot.texture_mut(TextureTarget::BaseColor) = Some(reference),
-            _ => *slot.texture_mut(TextureTarget::Normal) = Some(reference),
+            3 => *slot.texture_mut(On::BaseColor) = Some(reference),
+            _ => *slot.texture_mut(On::Normal) = Some(reference),
         }
         slot
     });
@@ -282,7 +293,6 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         ior,
         k,
         roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
-        emission: vec3(0.0, 0.0, 0.0),
         anisotropy: if rng.chance(0.5) { rng.range(-1.0, 1.0) } else { 0.0 },
         transmission_tint: tint,
         transmission_weight: match rng.below(4) {
@@ -290,35 +300,25 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
             1 => 1.0,
             _ => 0.0,
         },
-        absorption: vec3(0.0, 0.0, 0.0),
         transmission_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         rotation_rad: rng.range(-3.0, 3.0),
         lobe: lobe as u32,
         curve: curve as u32,
         horizon: Horizon::ALL[rng.below(Horizon::ALL.len())] as u32,
         fresnel: fresnel as u32,
-        lobe_table: 0,
-        albedo_table: 0,
-        inner_albedo_table: 0,
         edge_tint: if rng.chance(0.5) { tint } else { vec3(1.0, 1.0, 1.0) },
         opacity: rng.range(0.2, 1.0),
         coat_color: tint,
         coat_weight: if rng.chance(0.5) { rng.range(0.1, 1.0) } else { 0.0 },
         coat_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         coat_ior: rng.range(1.1, 2.0),
-        coat_table: 0,
         fuzz_color: tint,
         fuzz_weight: if rng.chance(0.3) { rng.range(0.1, 1.0) } else { 0.0 },
         fuzz_roughness,
-        fuzz_texture: NO_TEXTURE,
-        fuzz_color_texture: NO_TEXTURE,
-        fuzz_roughness_texture: NO_TEXTURE,
         film_path: film_path(film[0]),
         film_weight: film[1],
         film_ior: film[2],
         has_film: u32::from(film[1] > 0.0 && fresnel != Fresnel::None),
-        film_texture: NO_TEXTURE,
-        film_path_texture: NO_TEXTURE,
         reflecting_ior: if rng.chance(0.5) { rng.range(1.01, 2.5) } else { ior },
         bare_ior: ior,
         coated_ior: rng.range(1.01, 2.5),
@@ -327,24 +327,13 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         coat_darkening: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
         coat_inner: rng.range(0.0, 0.9),
         coat_anisotropy: if rng.chance(0.3) { rng.range(-1.0, 1.0) } else { 0.0 },
-        coat_roughness_texture: NO_TEXTURE,
-        coat_color_texture: NO_TEXTURE,
-        coat_normal_texture: NO_TEXTURE,
         coat_normal_strength: 0.5,
-        light_luminance: 0.0,
-        textures: [NO_TEXTURE; 4],
-        opacity_texture: NO_TEXTURE,
         alpha_cutoff: if rng.chance(0.5) { rng.range(0.1, 0.6) } else { -1.0 },
         normal_strength: rng.range(-1.0, 2.0),
-        has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
-        roughness_table: NO_TEXTURE,
         flags: rng.below(16) as u32 | (rng.below(8) as u32 * COATS_BASE),
-        spot_scale: 0.0,
-        spot_offset: 1.0,
-        metalness_texture: NO_TEXTURE,
-        coat_texture: NO_TEXTURE,
         diffuse_roughness: if rng.chance(0.5) { rng.range(0.0, 1.0) } else { 0.0 },
+        ..Material::default()
     }
 }
 

@@ -1,9 +1,11 @@
 //! Textures: every wrap mode, filter and set of coordinates, and what they do to a material.
 
-use glossmith::optics::material::{Material, NO_TEXTURE};
+use glossmith::optics::material::Material;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::Vec3;
-use glossmith::scene::texture::{Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
+use glossmith::scene::texture::{
+    TextureTarget, Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped,
+};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
@@ -128,19 +130,19 @@ fn textured_materials_agree() {
                     let frame = [row.vector(), row.vector(), row.vector()];
                     let sign = row.number();
                     let uvs = uvs(row);
-                    let map = (material.textures[2], material.normal_strength);
+                    let map = (material.texture(TextureTarget::Normal), material.normal_strength);
                     row.put_vector(mapped_normal(&SCENE.textures, map, uvs, frame, sign));
                 }),
             )
             .output(
-                "mapped_normal(material_at(material).textures.z, material_at(material).normal_strength, uvs, normal, \
+                "mapped_normal(material_at(material).normal_texture, material_at(material).normal_strength, uvs, normal, \
                  vec4f(tangent, sign), outward)",
                 Output::Vector(1.0),
             )
             .group("", |rng, _| {
                 let mapped: Vec<u32> = (0..)
                     .zip(&SCENE.materials)
-                    .filter(|(_, material)| material.textures[2] != NO_TEXTURE)
+                    .filter(|(_, material)| material.has_texture(&[TextureTarget::Normal]))
                     .map(|(number, _)| number)
                     .collect();
                 let start = inputs![

@@ -118,7 +118,7 @@ fn row(
     let is_own = material.user_textures.get(target).is_some();
     let mut asked = None;
     let response = widgets::row(ui, name, |ui| {
-        let mut is_on = material.uses_texture(target);
+        let mut is_on = material.textures[target];
         let response = match (switch, picture) {
             (Some(_), Some(picture)) => {
                 let response = ui.checkbox(&mut is_on, "");
@@ -138,7 +138,7 @@ fn row(
             }
         };
         if response.changed() {
-            *material.uses_texture_mut(target) = is_on;
+            material.textures[target] = is_on;
         }
         menu(ui, &of_target, is_own, &mut asked);
         response

@@ -26,15 +26,25 @@ impl Materials<'_> {
             let what = "a coat of the draft KHR_materials_coat, as OpenPBR has it";
             self.report.note(Fate::Approximated, what, &read.name);
         }
-        let place = |info: &Option<TextureInfo>| info.as_ref().map(TextureInfo::reference);
-        *read.texture_mut(TextureTarget::Coat) = self.texture(place(&coat.coat_texture), sets, &read.name);
-        *read.texture_mut(TextureTarget::CoatRoughness) =
-            self.texture(place(&coat.coat_roughness_texture), sets, &read.name);
-        *read.texture_mut(TextureTarget::CoatColor) = self.texture(place(&coat.coat_color_texture), sets, &read.name);
-        if let Some(normal) = &coat.coat_normal_texture {
-            *read.texture_mut(TextureTarget::CoatNormal) =
-                self.texture(Some(normal.info.reference()), sets, &read.name);
-            read.coat_normal_scale = normal.scale;
+        let normal = coat.coat_normal_texture.as_ref();
+        let textures = [
+            (TextureTarget::Coat, coat.coat_texture.as_ref()),
+            (TextureTarget::CoatRoughness, coat.coat_roughness_texture.as_ref()),
+            (TextureTarget::CoatColor, coat.coat_color_texture.as_ref()),
+            (TextureTarget::CoatNormal, normal.map(|normal| &normal.info)),
+        ];
+        self.put_textures(&textures, read, sets);
+        read.coat_normal_scale = normal.map_or(1.0, |normal| normal.scale);
+    }
+
+    fn put_textures(
+        &mut self,
+        textures: &[(TextureTarget, Option<&TextureInfo>)],
+        read: &mut Slot,
+        sets: &mut [Option<u32>; 2],
+    ) {
+        for (target, texture) in textures {
+            *read.texture_mut(*target) = self.texture(texture.map(TextureInfo::reference), sets, &read.name);
         }
     }
 
@@ -44,14 +54,12 @@ impl Materials<'_> {
             (read.fuzz, read.fuzz_roughness) = (unit(fuzz.fuzz_factor), unit(fuzz.fuzz_roughness_factor));
             read.fuzz_color = fuzz.fuzz_color_factor.map(unit);
             let textures = [
-                (TextureTarget::Fuzz, fuzz.fuzz_texture),
-                (TextureTarget::FuzzColor, fuzz.fuzz_color_texture),
-                (TextureTarget::FuzzRoughness, fuzz.fuzz_roughness_texture),
+                (TextureTarget::Fuzz, fuzz.fuzz_texture.as_ref()),
+                (TextureTarget::FuzzColor, fuzz.fuzz_color_texture.as_ref()),
+                (TextureTarget::FuzzRoughness, fuzz.fuzz_roughness_texture.as_ref()),
             ];
-            let is_there = read.fuzz > 0.0;
-            for (target, texture) in textures.into_iter().filter(|_| is_there) {
-                let place = texture.as_ref().map(TextureInfo::reference);
-                *read.texture_mut(target) = self.texture(place, sets, &read.name);
+            if read.fuzz > 0.0 {
+                self.put_textures(&textures, read, sets);
             }
         } else if let Some(sheen) = extension::<Sheen>(raw, "KHR_materials_sheen") {
             self.read_sheen(&sheen, slot, read, sets);
@@ -106,10 +114,14 @@ impl Materials<'_> {
         let thicknesses = [film.iridescence_thickness_minimum, film.iridescence_thickness_maximum];
         [read.film_thickness_min, read.film_thickness] = thicknesses.map(|nm| 1e-3 * not_negative(nm));
         if read.film > 0.0 {
-            let [weight, thickness] = [&film.iridescence_texture, &film.iridescence_thickness_texture]
-                .map(|texture| texture.as_ref().map(TextureInfo::reference));
-            *read.texture_mut(TextureTarget::Film) = self.texture(weight, sets, &read.name);
-            *read.texture_mut(TextureTarget::FilmThickness) = self.texture(thickness, sets, &read.name);
+            let textures = [
+                (TextureTarget::Film, film.iridescence_texture.as_ref()),
+                (
+                    TextureTarget::FilmThickness,
+                    film.iridescence_thickness_texture.as_ref(),
+                ),
+            ];
+            self.put_textures(&textures, read, sets);
         }
     }
 }

@@ -5,12 +5,16 @@ use serde_json::{Map, Value as Json, json};
 use crate::document::MaterialSettings;
 use crate::import::gltf_from_widths;
 use crate::optics::layer::fuzz::sheen_of_fuzz;
+use crate::optics::target::TARGETS;
+use crate::scene::texture::TextureTarget as On;
 use crate::scene::{AlphaMode, TextureRef};
 use crate::store::exchange::carried;
 use crate::store::exchange::surface::Surface;
 
 /// The extension of stretched highlights.
 pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
+/// The extension of coats.
+const CLEARCOAT: &str = "KHR_materials_clearcoat";
 /// The draft of OpenPBR's coat.
 const COAT: &str = "KHR_materials_coat";
 
@@ -25,19 +29,8 @@ const IRIDESCENCE: &str = "KHR_materials_iridescence";
 /// What a slot's material looks up, as references to textures.
 #[derive(Clone, Debug, Default)]
 pub struct SlotTextures {
-    pub base_color: Option<Json>,
-    pub metallic_roughness: Option<Json>,
-    pub normal: Option<Json>,
-    pub emissive: Option<Json>,
-    pub coat: Option<Json>,
-    pub coat_roughness: Option<Json>,
-    pub coat_normal: Option<Json>,
-    pub coat_color: Option<Json>,
-    pub film: Option<Json>,
-    pub film_thickness: Option<Json>,
-    pub fuzz: Option<Json>,
-    pub fuzz_color: Option<Json>,
-    pub fuzz_roughness: Option<Json>,
+    /// By target; that of the base colour has the opacity, that of the roughness the metalness.
+    pub of: [Option<Json>; TARGETS],
     /// The film's least thickness over its largest, where a texture varies it.
     pub thinnest: f32,
     /// The mean of the roughness that a texture varies.
@@ -46,6 +39,23 @@ pub struct SlotTextures {
     pub alpha: Option<(AlphaMode, f32)>,
     pub is_double_sided: bool,
 }
+
+/// Where the textures of extensions stand.
+const TEXTURES: &[(&str, &str, On)] = &[
+    (CLEARCOAT, "clearcoatTexture", On::Coat),
+    (CLEARCOAT, "clearcoatRoughnessTexture", On::CoatRoughness),
+    (CLEARCOAT, "clearcoatNormalTexture", On::CoatNormal),
+    (COAT, "coatTexture", On::Coat),
+    (COAT, "coatRoughnessTexture", On::CoatRoughness),
+    (COAT, "coatColorTexture", On::CoatColor),
+    (COAT, "coatNormalTexture", On::CoatNormal),
+    (FUZZ, "fuzzTexture", On::Fuzz),
+    (FUZZ, "fuzzColorTexture", On::FuzzColor),
+    (FUZZ, "fuzzRoughnessTexture", On::FuzzRoughness),
+    (SHEEN, "sheenColorTexture", On::FuzzColor),
+    (IRIDESCENCE, "iridescenceTexture", On::Film),
+    (IRIDESCENCE, "iridescenceThicknessTexture", On::FilmThickness),
+];
 
 /// A reference to a texture with the place that it has on the mesh.
 pub fn texture_info(index: usize, place: &TextureRef) -> Json {
@@ -85,18 +95,19 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
         "roughnessFactor": if surface.anisotropy == 0.0 { surface.roughness } else { widths.roughness / mean },
     });
     let mut json = json!({ "name": surface.name });
-    let put = |to: &mut Json, key: &str, texture: &Option<Json>| {
-        if let Some(texture) = texture {
+    let has = |target| textures.of[target as usize].is_some();
+    let put = |to: &mut Json, key: &str, target, strength: f32| {
+        if let Some(texture) = &textures.of[target as usize] {
             to[key] = texture.clone();
+            if strength != 1.0 {
+                to[key]["scale"] = strength.into();
+            }
         }
     };
-    put(&mut pbr, "baseColorTexture", &textures.base_color);
-    put(&mut pbr, "metallicRoughnessTexture", &textures.metallic_roughness);
-    put(&mut json, "normalTexture", &textures.normal);
-    if textures.normal.is_some() && material.normal_strength != 1.0 {
-        json["normalTexture"]["scale"] = material.normal_strength.into();
-    }
-    put(&mut json, "emissiveTexture", &textures.emissive);
+    put(&mut pbr, "baseColorTexture", On::BaseColor, 1.0);
+    put(&mut pbr, "metallicRoughnessTexture", On::Roughness, 1.0);
+    put(&mut json, "normalTexture", On::Normal, material.normal_strength);
+    put(&mut json, "emissiveTexture", On::Emission, 1.0);
     json["pbrMetallicRoughness"] = pbr;
     match textures.alpha {
         Some((AlphaMode::Mask, cutoff)) => {
@@ -111,41 +122,23 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
         json["doubleSided"] = true.into();
     }
     let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
-    if let Some(coat) = extensions.get_mut("KHR_materials_clearcoat") {
-        put(coat, "clearcoatTexture", &textures.coat);
-        put(coat, "clearcoatRoughnessTexture", &textures.coat_roughness);
-        put(coat, "clearcoatNormalTexture", &textures.coat_normal);
-        if textures.coat_normal.is_some() && material.coat_normal_strength != 1.0 {
-            coat["clearcoatNormalTexture"]["scale"] = material.coat_normal_strength.into();
-        }
-    }
-    if let Some(coat) = extensions.get_mut(COAT) {
-        put(coat, "coatTexture", &textures.coat);
-        put(coat, "coatRoughnessTexture", &textures.coat_roughness);
-        put(coat, "coatColorTexture", &textures.coat_color);
-        put(coat, "coatNormalTexture", &textures.coat_normal);
-        if textures.coat_normal.is_some() && material.coat_normal_strength != 1.0 {
-            coat["coatNormalTexture"]["scale"] = material.coat_normal_strength.into();
-        }
-    }
-    if let Some(fuzz) = extensions.get_mut(FUZZ) {
-        put(fuzz, "fuzzTexture", &textures.fuzz);
-        put(fuzz, "fuzzColorTexture", &textures.fuzz_color);
-        put(fuzz, "fuzzRoughnessTexture", &textures.fuzz_roughness);
-    }
-    if textures.fuzz.is_some() {
+    if has(On::Fuzz) {
         // A sheen has no texture of its weight: it would be everywhere.
         extensions.remove(SHEEN);
-    } else if let Some(sheen) = extensions.get_mut(SHEEN) {
-        put(sheen, "sheenColorTexture", &textures.fuzz_color);
     }
-    if let Some(film) = extensions.get_mut(IRIDESCENCE) {
-        put(film, "iridescenceTexture", &textures.film);
-        put(film, "iridescenceThicknessTexture", &textures.film_thickness);
-        if textures.film_thickness.is_some() {
-            let thinnest = 1e3 * surface.film_thickness * textures.thinnest;
-            film["iridescenceThicknessMinimum"] = thinnest.into();
+    for (extension, key, target) in TEXTURES {
+        let strength = if *target == On::CoatNormal {
+            material.coat_normal_strength
+        } else {
+            1.0
+        };
+        if let Some(to) = extensions.get_mut(*extension) {
+            put(to, key, *target, strength);
         }
+    }
+    if let Some(film) = extensions.get_mut(IRIDESCENCE).filter(|_| has(On::FilmThickness)) {
+        let thinnest = 1e3 * surface.film_thickness * textures.thinnest;
+        film["iridescenceThicknessMinimum"] = thinnest.into();
     }
     if surface.anisotropy != 0.0 {
         let (_, rotation_deg) = surface.ratio_and_rotation();
@@ -195,7 +188,7 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
             "clearcoatFactor": surface.coat_weight,
             "clearcoatRoughnessFactor": surface.coat_roughness,
         });
-        all.insert("KHR_materials_clearcoat".to_owned(), coat);
+        all.insert(CLEARCOAT.to_owned(), coat);
         if surface.coat_on_base {
             // Readers without the draft take the other.
             let widths = gltf_from_widths(surface.coat_roughness, surface.coat_anisotropy);

@@ -21,30 +21,6 @@ use crate::store::picture::png_bytes;
 /// `.glb` and `.gltf`.
 pub struct Gltf;
 
-const TAKES: Takes = Takes {
-    law: Law::Schlick,
-    eta_and_k: false,
-    diffuse_roughness: true,
-    fuzz: true,
-    film: true,
-    film_weight: true,
-    scattering: true,
-    edge_tint: false,
-    specular: true,
-    weighs_index: false,
-    weighs_metal: false,
-    ior: true,
-    widths: shown_widths,
-    coat: true,
-    coat_details: false,
-    coat_stretch: false,
-    coat_on_base: false,
-    transmission: true,
-    absorption: true,
-    textures: true,
-    own_textures: true,
-};
-
 /// α is 1 there at most.
 fn shown_widths(surface: &Surface) -> [f32; 2] {
     let exported = gltf_from_widths(surface.roughness, surface.anisotropy);
@@ -60,12 +36,28 @@ const INDICES: u32 = 34963;
 
 /// What it takes of a material: OpenPBR's coat by a draft.
 fn takes(material: &MaterialSettings) -> Takes {
-    let is_draft = material.coat_on_base;
     Takes {
-        coat_details: is_draft,
-        coat_stretch: is_draft,
-        coat_on_base: is_draft,
-        ..TAKES
+        law: Law::Schlick,
+        widths: shown_widths,
+        lacks: [
+            &[
+                "specular.eta",
+                "specular.edge_tint",
+                "specular.weight_in_index",
+                "specular.on_metal",
+                "transmission.roughness",
+            ],
+            match material.coat_on_base {
+                true => &[],
+                false => &[
+                    "coat.ior",
+                    "coat.color",
+                    "coat.anisotropy",
+                    "coat.on_base",
+                    "coat.darkening",
+                ],
+            },
+        ],
     }
 }
 
@@ -148,7 +140,10 @@ impl Format for Gltf {
                 &SlotTextures::default(),
                 radius_of(&model),
             );
-            if let (true, Some(extensions)) = (exact.textures.roughness, shows["extensions"].as_object_mut()) {
+            if let (true, Some(extensions)) = (
+                exact.textures[TextureTarget::Roughness],
+                shows["extensions"].as_object_mut(),
+            ) {
                 // It depends on the texture.
                 extensions.remove(ANISOTROPY);
                 shows["pbrMetallicRoughness"]["roughnessFactor"] =
@@ -301,30 +296,22 @@ impl Builder {
         };
         // In the place of one's own texture there is none of the model's.
         let uses = material.uses_of_model();
-        let mut texture = |is_used: bool, target| {
-            let place = slot.texture(target).filter(|_| is_used)?;
-            let index = self.texture(model, &place)?;
-            Some(material::texture_info(index, &place))
-        };
-        SlotTextures {
-            base_color: texture(uses.color || uses.opacity, TextureTarget::BaseColor),
-            roughness_mean: uses.roughness.then(|| mean_of_roughness(model, slot)).flatten(),
-            metallic_roughness: texture(uses.roughness, TextureTarget::Roughness),
-            normal: texture(uses.normal, TextureTarget::Normal),
-            emissive: texture(uses.emission, TextureTarget::Emission),
-            coat: texture(uses.coat, TextureTarget::Coat),
-            coat_roughness: texture(uses.coat_roughness, TextureTarget::CoatRoughness),
-            coat_normal: texture(uses.coat_normal, TextureTarget::CoatNormal),
-            coat_color: texture(uses.coat_color, TextureTarget::CoatColor),
-            film: texture(uses.film, TextureTarget::Film),
-            film_thickness: texture(uses.film_thickness, TextureTarget::FilmThickness),
-            fuzz: texture(uses.fuzz, TextureTarget::Fuzz),
-            fuzz_color: texture(uses.fuzz_color, TextureTarget::FuzzColor),
-            fuzz_roughness: texture(uses.fuzz_roughness, TextureTarget::FuzzRoughness),
+        let has_roughness = uses[TextureTarget::Roughness];
+        let has_opacity = uses[TextureTarget::Opacity];
+        let mut textures = SlotTextures {
+            roughness_mean: has_roughness.then(|| mean_of_roughness(model, slot)).flatten(),
             thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),
-            alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
+            alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| has_opacity),
             is_double_sided: slot.double_sided,
+            ..SlotTextures::default()
+        };
+        for &target in TextureTarget::ALL.iter().filter(|target| target.home() == **target) {
+            let is_used = uses[target] || (target == TextureTarget::BaseColor && has_opacity);
+            let place = slot.texture(target).filter(|_| is_used);
+            let info = |place| Some(material::texture_info(self.texture(model, &place)?, &place));
+            textures.of[target as usize] = place.and_then(info);
         }
+        textures
     }
 
     fn texture(&mut self, model: &Model, place: &crate::scene::TextureRef) -> Option<usize> {

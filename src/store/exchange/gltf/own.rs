@@ -16,11 +16,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
     // An image for each target that can be had and said.
     let mut pictures: Vec<(TextureTarget, UserTexture, Texture)> = Vec::new();
     for &target in TextureTarget::ALL {
-        let Some(texture) = material
-            .user_textures
-            .get(target)
-            .filter(|_| material.uses_texture(target))
-        else {
+        let Some(texture) = material.user_textures.get(target).filter(|_| material.textures[target]) else {
             continue;
         };
         match picture(model, slot, (target, texture), budget) {
@@ -46,7 +42,9 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             }
         }
         (None, None) => {}
-        _ if model.slots[slot].texture(TextureTarget::Roughness).is_some() && material.textures.roughness => {
+        _ if model.slots[slot].texture(TextureTarget::Roughness).is_some()
+            && material.textures[TextureTarget::Roughness] =>
+        {
             let why = "the format has one texture for roughness and metalness, and one of them is the model's";
             pictures.retain(|(target, ..)| {
                 let is_half = [TextureTarget::Roughness, TextureTarget::Metalness].contains(target);

@@ -2,8 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use crate::document::{Value, parameter};
 use crate::import::{FileParameter, Goes};
 use crate::store::exchange::report::Entry;
+use crate::store::exchange::surface::{Surface, plain};
 
 /// The inputs of a surface that a file sets, and what is lost of them.
 pub(in crate::store::exchange) struct Inputs {
@@ -44,6 +46,21 @@ impl Inputs {
     /// An input as a number.
     pub fn number(&self, name: &str) -> f32 {
         self.color(name)[0]
+    }
+
+    /// A surface with the parameters that inputs are as they are.
+    pub fn direct(&self) -> Surface {
+        let mut surface = plain();
+        for row in self.rows.iter().filter(|row| !row.default.is_empty()) {
+            if let Goes::To(key) = row.goes
+                && let Ok(parameter) = parameter(key)
+            {
+                let value = self.color(row.place);
+                parameter.put(&mut surface, Value::Color(value));
+                parameter.put(&mut surface, Value::Number(value[0]));
+            }
+        }
+        surface
     }
 
     /// Brings what is set into its range, and reports that and what goes nowhere.

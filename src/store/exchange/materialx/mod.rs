@@ -33,13 +33,18 @@ pub struct MaterialX {
 /// The attribute of a material that has the exact parameters.
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
-    fuzz: false,
-    film_weight: false,
-    coat_on_base: false,
-    scattering: true,
-    weighs_index: false,
     widths: standard_widths,
-    weighs_metal: false,
+    lacks: [
+        Takes::OPEN_PBR.lacks[0],
+        &[
+            "fuzz.weight",
+            "thin_film.weight",
+            "coat.on_base",
+            "coat.darkening",
+            "specular.weight_in_index",
+            "specular.on_metal",
+        ],
+    ],
     ..Takes::OPEN_PBR
 };
 

@@ -12,7 +12,7 @@ use super::include::whole_text;
 use super::inputs::Inputs;
 use super::surfaces::SurfaceKind;
 use super::{CARRIER, MaterialX};
-use crate::document::MaterialSettings;
+use crate::document::{MaterialSettings, PARAMETERS, Parameter, Value};
 use crate::import::Goes;
 use crate::optics::fresnel::Fresnel;
 use crate::scene::Loading;
@@ -110,44 +110,13 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
 
 /// Whether two surfaces are the same but for the digits that other programs write.
 fn is_near(a: &Surface, b: &Surface) -> bool {
-    let numbers = |s: &Surface| {
-        let mut all = vec![
-            s.diffuse_roughness,
-            s.metalness,
-            s.specular_weight,
-            s.ior,
-            s.roughness,
-            s.anisotropy,
-            s.rotation_deg,
-            s.transmission_weight,
-            s.transmission_depth,
-            s.coat_weight,
-            s.coat_roughness,
-            s.coat_ior,
-            s.coat_anisotropy,
-            s.coat_darkening,
-            f32::from(u8::from(s.coat_on_base)),
-            s.fuzz_weight,
-            s.fuzz_roughness,
-            s.film_weight,
-            s.film_thickness,
-            s.film_ior,
-            s.opacity,
-        ];
-        let colors = [
-            s.base_color,
-            s.specular_color,
-            s.edge_tint,
-            s.transmission_color,
-            s.coat_color,
-            s.fuzz_color,
-            s.emission,
-        ];
-        all.extend(colors.into_iter().flatten());
-        all
+    let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs());
+    let are_near = |parameter: &Parameter| match (parameter.get(a), parameter.get(b)) {
+        (Value::Number(a), Value::Number(b)) => near(a, b),
+        (Value::Color(a), Value::Color(b)) => (0..3).all(|i| near(a[i], b[i])),
+        _ => true,
     };
-    let near = |(a, b): (f32, f32)| (a - b).abs() <= 1e-4 * (1.0 + a.abs());
-    numbers(a).into_iter().zip(numbers(b)).all(near)
+    a.coat_on_base == b.coat_on_base && PARAMETERS.iter().all(are_near)
 }
 
 fn read_surface(

@@ -73,39 +73,23 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         .map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.999));
     Surface {
         base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
-        diffuse_roughness: inputs.number("base_diffuse_roughness"),
-        metalness,
-        specular_weight: inputs.number("specular_weight"),
-        weight_in_index: inputs.number("specular_weight") != 1.0,
+        specular_in_index: inputs.number("specular_weight") != 1.0,
         specular_color: tint,
         // The weight is a metal's too, the tint is not: where both are, neither.
         specular_on_metal: tint == [1.0; 3],
         edge_tint,
-        ior: inputs.number("specular_ior"),
         roughness: inputs.number("specular_roughness") / widening(ratio),
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
-        transmission_weight: inputs.number("transmission_weight"),
-        transmission_color: inputs.color("transmission_color"),
-        transmission_depth: inputs.number("transmission_depth"),
-        coat_weight: inputs.number("coat_weight"),
         coat_roughness: inputs.number("coat_roughness") / widening(coat_ratio),
-        coat_ior: inputs.number("coat_ior"),
-        coat_color: inputs.color("coat_color"),
         coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
         coat_on_base: true,
-        coat_darkening: inputs.number("coat_darkening"),
-        fuzz_weight: inputs.number("fuzz_weight"),
-        fuzz_color: inputs.color("fuzz_color"),
-        fuzz_roughness: inputs.number("fuzz_roughness"),
-        film_weight: inputs.number("thin_film_weight"),
-        film_thickness: inputs.number("thin_film_thickness"),
-        film_ior: inputs.number("thin_film_ior"),
-        emission: weighted(
+        emission_strength: 1.0,
+        emission_color: weighted(
             inputs.color("emission_color"),
             inputs.number("emission_luminance") / NITS,
         ),
         opacity: luminance(inputs.color("geometry_opacity")),
-        ..Surface::default()
+        ..inputs.direct()
     }
 }
 
@@ -127,22 +111,11 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
     };
     Surface {
         base_color,
-        diffuse_roughness: inputs.number("diffuse_roughness"),
-        metalness,
         specular_weight,
         specular_color,
         edge_tint,
-        ior: inputs.number("specular_IOR"),
-        roughness: inputs.number("specular_roughness"),
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
         rotation_deg: 360.0 * inputs.number("specular_rotation"),
-        transmission_weight: inputs.number("transmission"),
-        transmission_color: inputs.color("transmission_color"),
-        transmission_depth: inputs.number("transmission_depth"),
-        coat_weight: inputs.number("coat"),
-        coat_roughness: inputs.number("coat_roughness"),
-        coat_ior: inputs.number("coat_IOR"),
-        coat_color: inputs.color("coat_color"),
         coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
         fuzz_weight,
         fuzz_color,
@@ -150,10 +123,10 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         // Every thickness but 0 is a film.
         film_weight: f32::from(inputs.number("thin_film_thickness") > 0.0),
         film_thickness: 1e-3 * inputs.number("thin_film_thickness"),
-        film_ior: inputs.number("thin_film_IOR"),
-        emission: weighted(inputs.color("emission_color"), inputs.number("emission")),
+        emission_strength: 1.0,
+        emission_color: weighted(inputs.color("emission_color"), inputs.number("emission")),
         opacity: luminance(inputs.color("opacity")),
-        ..Surface::default()
+        ..inputs.direct()
     }
 }
 
@@ -189,28 +162,20 @@ fn gltf_pbr(inputs: &mut Inputs) -> Surface {
             .push(Entry::approximated("anisotropy_strength", detail, None));
     }
     Surface {
-        base_color: color,
-        metalness: inputs.number("metallic"),
         specular_weight: inputs.number("specular"),
         specular_color: inputs.color("specular_color"),
-        ior: inputs.number("ior"),
         roughness: widths.roughness,
         anisotropy: widths.stretch,
         rotation_deg: inputs.number("anisotropy_rotation").to_degrees(),
-        transmission_weight: inputs.number("transmission"),
         transmission_color: if distance > 0.0 { inside } else { color },
-        transmission_depth: distance,
-        coat_weight: inputs.number("clearcoat"),
-        coat_roughness: inputs.number("clearcoat_roughness"),
         fuzz_weight,
         fuzz_color,
         fuzz_roughness,
-        film_weight: inputs.number("iridescence"),
         film_thickness: 1e-3 * inputs.number("iridescence_thickness"),
-        film_ior: inputs.number("iridescence_ior"),
-        emission: weighted(inputs.color("emissive"), inputs.number("emissive_strength")),
+        emission_strength: 1.0,
+        emission_color: weighted(inputs.color("emissive"), inputs.number("emissive_strength")),
         opacity: gltf_opacity(inputs),
-        ..Surface::default()
+        ..inputs.direct()
     }
 }
 
@@ -234,22 +199,16 @@ fn disney_principled(inputs: &mut Inputs) -> Surface {
     // MaterialX has the anisotropy of Standard Surface there.
     let ratio = 1.0 - inputs.number("anisotropic").clamp(0.0, 0.98);
     Surface {
-        base_color,
-        metalness: inputs.number("metallic"),
         // 0.5 leaves the reflectance of the index as it is.
         specular_weight: 2.0 * specular,
-        weight_in_index: specular != 0.5,
-        ior: inputs.number("ior"),
-        roughness: inputs.number("roughness"),
+        specular_in_index: specular != 0.5,
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
-        transmission_weight: inputs.number("specTrans"),
         transmission_color: base_color,
-        coat_weight: inputs.number("clearcoat"),
         coat_roughness: 1.0 - inputs.number("clearcoatGloss"),
         fuzz_weight,
         fuzz_color,
         fuzz_roughness,
-        ..Surface::default()
+        ..inputs.direct()
     }
 }
 
@@ -272,17 +231,13 @@ fn usd_preview_surface(inputs: &mut Inputs) -> Surface {
         ),
     };
     Surface {
-        base_color: inputs.color("diffuseColor"),
         metalness,
         specular_color,
-        ior,
-        roughness: inputs.number("roughness"),
-        coat_weight: inputs.number("clearcoat"),
-        coat_roughness: inputs.number("clearcoatRoughness"),
-        emission: inputs.color("emissiveColor"),
+        emission_strength: 1.0,
+        emission_color: inputs.color("emissiveColor"),
         transmission_weight,
         opacity: presence,
-        ..Surface::default()
+        ..inputs.direct()
     }
 }
 
@@ -290,8 +245,8 @@ fn surface_unlit(inputs: &mut Inputs) -> Surface {
     Surface {
         base_color: [0.0; 3],
         specular_weight: 0.0,
-        emission: weighted(inputs.color("emission_color"), inputs.number("emission")),
-        opacity: inputs.number("opacity"),
-        ..Surface::default()
+        emission_strength: 1.0,
+        emission_color: weighted(inputs.color("emission_color"), inputs.number("emission")),
+        ..inputs.direct()
     }
 }

@@ -146,7 +146,7 @@ fn preview(surface: &Surface) -> Vec<(&'static str, String)> {
     let opacity = surface.opacity * (1.0 - surface.transmission_weight * (1.0 - surface.metalness));
     vec![
         ("color3f diffuseColor", color(surface.base_color)),
-        ("color3f emissiveColor", color(surface.emission)),
+        ("color3f emissiveColor", color(surface.emission())),
         ("int useSpecularWorkflow", "0".to_owned()),
         ("float metallic", surface.metalness.to_string()),
         ("float roughness", surface.roughness.to_string()),

@@ -23,6 +23,9 @@ macro_rules! targets {
             }
         }
 
+        /// How many there are.
+        pub const TARGETS: usize = TextureTarget::ALL.len();
+
         /// Values and home of each target.
         const TRAITS: &[(TextureValues, TextureTarget)] = &[$(($values, TextureTarget::$home)),*];
     };
@@ -49,6 +52,13 @@ targets! {
 }
 
 impl TextureTarget {
+    /// Those of the coat, but for its normal.
+    pub const OF_COAT: &[Self] = &[Self::Coat, Self::CoatRoughness, Self::CoatColor];
+    /// Those of the thin film.
+    pub const OF_FILM: &[Self] = &[Self::Film, Self::FilmThickness];
+    /// Those of the fuzz.
+    pub const OF_FUZZ: &[Self] = &[Self::Fuzz, Self::FuzzColor, Self::FuzzRoughness];
+
     /// What the texture's values are.
     pub const fn values(self) -> TextureValues {
         TRAITS[self as usize].0
