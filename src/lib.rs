@@ -25,3 +25,8 @@ pub mod study;
 #[cfg(feature = "window")]
 pub mod app;
 pub mod cli;
+
+/// What an error says.
+pub(crate) fn in_words(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

@@ -8,7 +8,6 @@ use crate::app::kit::keys;
 use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
-use crate::app::services::snapshots::PinChange;
 use crate::app::services::workspaces;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::shown::Shown;
@@ -60,7 +59,7 @@ pub enum Action {
     /// Changes the user's folder of materials.
     ChangeLibrary(Change),
     /// Changes the pinned states.
-    ChangeSnapshots(PinChange),
+    ChangeSnapshots(Change),
     /// Brings the pinned state of a file back as the document.
     UseSnapshot(PathBuf),
     /// Compares the document with something.
@@ -221,7 +220,7 @@ commands! {
 
 /// The command whose keys were pressed, removed from the input. Keys without modifiers belong to what has the focus,
 /// unless that is the viewport.
-pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
+pub fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
     let focused = ctx.memory(|memory| memory.focused());
     let is_typing = match focused {
         Some(_) if focused != viewport => true,
@@ -244,7 +243,7 @@ fn is_function(key: Key) -> bool {
 }
 
 /// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.
-pub(super) fn do_and_close(ui: &egui::Ui, actions: &mut Vec<Action>, action: Action) {
+pub fn do_and_close(ui: &egui::Ui, actions: &mut Vec<Action>, action: Action) {
     actions.push(action);
     ui.close();
 }

@@ -8,15 +8,15 @@ pub type Pages = &'static [(&'static str, &'static str)];
 pub const CONTENTS: &str = "SUMMARY.md";
 /// Addresses of what the sheets over the window are about: a page with an anchor or without.
 pub const OF_SHEETS: [&str; 6] = [KEYS, UNSAVED, EXPLAIN, EXPORT, MODEL_FILE, TURNTABLE];
-pub(in crate::app) const KEYS: &str = "reference/window.md#keyboard-and-files";
-pub(in crate::app) const UNSAVED: &str = "reference/window.md#unsaved-work";
-pub(in crate::app) const EXPLAIN: &str = "how-to/explain.md";
-pub(in crate::app) const EXPORT: &str = "how-to/export.md";
-pub(in crate::app) const MODEL_FILE: &str = "FORMATS.md#models";
-pub(in crate::app) const TURNTABLE: &str = "how-to/turntable.md";
+pub const KEYS: &str = "reference/window.md#keyboard-and-files";
+pub const UNSAVED: &str = "reference/window.md#unsaved-work";
+pub const EXPLAIN: &str = "how-to/explain.md";
+pub const EXPORT: &str = "how-to/export.md";
+pub const MODEL_FILE: &str = "FORMATS.md#models";
+pub const TURNTABLE: &str = "how-to/turntable.md";
 
 /// Scheme of links from page to page, as [`sections`] writes them.
-pub(in crate::app) const SCHEME: &str = "book:";
+pub const SCHEME: &str = "book:";
 
 /// A heading with the text below it, up to the next heading.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,8 +1,11 @@
 //! What the parts of the window work on: the document, the renderer's state, a queue of actions, and what they share.
 
+use std::path::Path;
+
 use egui::{Response, Ui};
 
 use crate::app::actions::{Action, Command};
+use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::app::services::compare::Compare;
@@ -26,58 +29,90 @@ use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
 
 /// What panels work on.
-pub(super) struct Desk<'a> {
-    pub(super) document: &'a mut Document,
-    pub(super) snapshot: &'a Snapshot,
-    pub(super) edits: &'a mut Edits,
-    pub(super) actions: &'a mut Vec<Action>,
-    pub(super) shared: &'a mut Shared,
+pub struct Desk<'a> {
+    pub document: &'a mut Document,
+    pub snapshot: &'a Snapshot,
+    pub edits: &'a mut Edits,
+    pub actions: &'a mut Vec<Action>,
+    pub shared: &'a mut Shared,
 }
 
 /// What the parts of the window share that is no part of the document: what is selected and shown, and the services.
-pub(super) struct Shared {
+pub struct Shared {
     /// What is edited, chosen and lit up.
-    pub(super) selection: Selection,
+    pub selection: Selection,
     /// What was said, oldest first.
-    pub(super) messages: Vec<Entry>,
-    pub(super) environments: Environments,
+    pub messages: Vec<Entry>,
+    pub environments: Environments,
     /// The files opened and saved last.
-    pub(super) recent: Recent,
+    pub recent: Recent,
     /// The lobe of the materials of models that are opened.
-    pub(super) import_lobe: ImportLobe,
+    pub import_lobe: ImportLobe,
     /// The engine, and when it rests.
-    pub(super) rendering: Rendering,
+    pub rendering: Rendering,
     /// How the viewport shows the render.
-    pub(super) viewing: Viewing,
+    pub viewing: Viewing,
     /// The pixel that is looked at closely.
-    pub(super) look: Look,
+    pub look: Look,
     /// The window may offer to download what it lacks.
-    pub(super) offers_downloads: bool,
+    pub offers_downloads: bool,
     /// What the plots of lobes share.
-    pub(super) lobe_plots: LobePlots,
+    pub lobe_plots: LobePlots,
     /// The materials to choose from.
-    pub(super) library: Library,
+    pub library: Library,
     /// What the browser keeps, and the folders that it watches.
-    pub(super) shelves: Shelves,
-    pub(super) snapshots: Snapshots,
+    pub shelves: Shelves,
+    pub snapshots: Snapshots,
     /// The comparison of the document with something else.
-    pub(super) compare: Compare,
+    pub compare: Compare,
     /// Renders that go on beside the window.
-    pub(super) queue: Queue,
+    pub queue: Queue,
     /// What is shown beside the render.
-    pub(super) reference: ReferenceImage,
+    pub reference: ReferenceImage,
 }
 
 /// The group of the settings that only count where the viewport has the image's size.
-pub(super) const PICTURE_SIZE: &str = "Image size";
+pub const PICTURE_SIZE: &str = "Image size";
 
 impl Desk<'_> {
-    pub(super) fn act(&mut self, command: Command) {
+    pub fn act(&mut self, command: Command) {
         self.actions.push(Action::Do(command));
     }
 
+    pub fn button(&mut self, ui: &mut Ui, command: Command) {
+        if widgets::pressed(ui, command.label(), command.help()) {
+            self.act(command);
+        }
+    }
+
+    /// The row of a file: its name with a button that takes it away, whether that was pressed; else a button to choose one.
+    pub fn file_row(
+        &mut self,
+        ui: &mut Ui,
+        name: Name<'_>,
+        file: Option<&Path>,
+        choose: Action,
+        (remove, help): (&str, &str),
+    ) -> bool {
+        let mut is_removed = false;
+        widgets::row(ui, name, |ui| {
+            let Some(file) = file else {
+                let button = ui.button("Choose…");
+                if button.clicked() {
+                    self.actions.push(choose);
+                }
+                return button;
+            };
+            is_removed = icons::button(ui, Icon::Close, remove, help).clicked();
+            let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+            ui.add(egui::Label::new(name).truncate())
+                .on_hover_text(file.display().to_string())
+        });
+        is_removed
+    }
+
     /// A button that says what the next click in the viewport is for, until it is pressed again.
-    pub(super) fn pick_toggle(&mut self, ui: &mut Ui, pick: Pick, text: &str, help: &str) -> Response {
+    pub fn pick_toggle(&mut self, ui: &mut Ui, pick: Pick, text: &str, help: &str) -> Response {
         let is_on = self.shared.viewing.picks == Some(pick);
         let response = ui.add(egui::Button::new(text).selected(is_on)).on_hover_text(help);
         if response.clicked() {
@@ -87,7 +122,7 @@ impl Desk<'_> {
     }
 
     /// Asks for the images of the environments that a part of the window shows, and takes those that are there.
-    pub(super) fn make_environment_pictures(
+    pub fn make_environment_pictures(
         &mut self,
         ctx: &egui::Context,
         shown_by: &'static str,
@@ -99,7 +134,7 @@ impl Desk<'_> {
     }
 
     /// The scene being rendered, where it is of the document's model.
-    pub(super) fn scene(&self) -> Option<&Scene> {
+    pub fn scene(&self) -> Option<&Scene> {
         self.snapshot
             .scene
             .as_deref()
@@ -107,18 +142,18 @@ impl Desk<'_> {
     }
 
     /// What an object of the model is called.
-    pub(super) fn object_name(&self, object: usize) -> Option<String> {
+    pub fn object_name(&self, object: usize) -> Option<String> {
         let own = self.document.object_names.get(&object).cloned();
         own.or_else(|| Some(self.scene()?.model.objects.get(object)?.name.clone()))
     }
 
     /// The material of the selected slot.
-    pub(super) fn material(&self) -> MaterialSettings {
+    pub fn material(&self) -> MaterialSettings {
         self.document.material(self.shared.selection.slot)
     }
 
     /// The slots of the model whose materials are as asked for.
-    pub(super) fn slots_where(&self, is_wanted: impl Fn(&MaterialSettings) -> bool) -> Vec<usize> {
+    pub fn slots_where(&self, is_wanted: impl Fn(&MaterialSettings) -> bool) -> Vec<usize> {
         let count = self.scene().map_or(0, |scene| scene.model.slots.len());
         (0..count)
             .filter(|slot| is_wanted(&self.document.material(*slot)))
@@ -127,7 +162,7 @@ impl Desk<'_> {
 
     /// Replaces the material of the selected slot; slots before it keep what they show. What is another in it becomes the
     /// same in the materials that are chosen beside it.
-    pub(super) fn set_material(&mut self, material: MaterialSettings) {
+    pub fn set_material(&mut self, material: MaterialSettings) {
         let before = self.material();
         for slot in self.shared.selection.slots().into_iter().skip(1) {
             let other = self.document.material_mut(slot);
@@ -151,7 +186,7 @@ impl Desk<'_> {
     }
 
     /// The rows of a group of settings, those that have an effect.
-    pub(super) fn settings(&mut self, ui: &mut Ui, group: &str) {
+    pub fn settings(&mut self, ui: &mut Ui, group: &str) {
         for setting in SETTINGS.iter().filter(|setting| setting.group == group) {
             widgets::comes_and_goes(ui, |ui| {
                 if parameter_row::has_row(setting) && (setting.applies)(self.document) {
@@ -170,7 +205,7 @@ impl Desk<'_> {
     }
 
     /// The control of the setting of this key without its row, under a name of its own; a double click resets it.
-    pub(super) fn setting_control(&mut self, ui: &mut Ui, key: &str, name: &str) {
+    pub fn setting_control(&mut self, ui: &mut Ui, key: &str, name: &str) {
         let Some(setting) = setting(key) else { return };
         let mut value = setting.get(self.document);
         let response = parameter_row::control(ui, setting, name, &mut value);
@@ -185,7 +220,7 @@ impl Desk<'_> {
     }
 
     /// Notes an edit of a setting, and resets it where that was asked for.
-    pub(super) fn edited<T: PartialEq + Clone>(
+    pub fn edited<T: PartialEq + Clone>(
         &mut self,
         response: RowResponse,
         label: &'static str,
@@ -201,7 +236,7 @@ impl Desk<'_> {
     }
 
     /// The row of the angle that the plots of lobes and their samples share.
-    pub(super) fn view_angle_row(&mut self, ui: &mut Ui) {
+    pub fn view_angle_row(&mut self, ui: &mut Ui) {
         let style = NumberStyle::plain(0.0..=89.9, "°", 0.5, 1).with_bar([0.0, 89.9]);
         let name = Name {
             full: "Samples view angle",
@@ -216,7 +251,7 @@ impl Desk<'_> {
     }
 
     /// What A and B are called.
-    pub(super) fn compared_names(&self) -> [String; 2] {
+    pub fn compared_names(&self) -> [String; 2] {
         let material = self.material();
         let name = format!(
             "{}, {} R {:.3}",

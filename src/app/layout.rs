@@ -38,7 +38,7 @@ const LOOK_PANES: [Pane; 8] = [
 ];
 
 /// The layout of *Look*: presets over light and camera on the left, the image, the material on the right.
-pub(super) fn to_look() -> Tree<Pane> {
+pub fn to_look() -> Tree<Pane> {
     let mut tree = all_docked();
     let place = |tree: &Tree<Pane>, pane| tree.tiles.find_pane(&pane);
     let beside = |tree: &Tree<Pane>| tree.tiles.parent_of(place(tree, Pane::Material)?);
@@ -55,7 +55,7 @@ pub(super) fn to_look() -> Tree<Pane> {
 }
 
 /// The layout of *Measure*: every panel, effects and convergence in front.
-pub(super) fn to_measure() -> Tree<Pane> {
+pub fn to_measure() -> Tree<Pane> {
     let mut tree = all_docked();
     for pane in [Pane::Effects, Pane::Convergence] {
         reveal(&mut tree, pane);
@@ -92,7 +92,7 @@ fn panes_of(home: Home) -> impl Iterator<Item = Pane> {
 
 /// Puts the panels that a layout lacks beside those that they are docked with at first: one that was read from disk may
 /// be of a version that did not have them yet. `None` where the image is missing.
-pub(super) fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
+pub fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
     viewport_tile(&tree)?;
     for pane in Pane::ALL {
         if tree.tiles.find_pane(&pane).is_some() {
@@ -110,19 +110,19 @@ pub(super) fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
 }
 
 /// Brings a panel to the front, opened where it was closed.
-pub(super) fn reveal(tree: &mut Tree<Pane>, pane: Pane) {
+pub fn reveal(tree: &mut Tree<Pane>, pane: Pane) {
     set_open(&mut tree.tiles, pane, true);
     tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(of) if *of == pane));
 }
 
 /// Whether a panel has not been closed.
-pub(super) fn is_open(tree: &Tree<Pane>, pane: Pane) -> bool {
+pub fn is_open(tree: &Tree<Pane>, pane: Pane) -> bool {
     tree.tiles
         .find_pane(&pane)
         .is_some_and(|tile| tree.tiles.is_visible(tile))
 }
 
-pub(super) fn close(tree: &mut Tree<Pane>, pane: Pane) {
+pub fn close(tree: &mut Tree<Pane>, pane: Pane) {
     set_open(&mut tree.tiles, pane, false);
 }
 
@@ -160,7 +160,7 @@ fn tab_text(ui: &Ui, tiles: &Tiles<Pane>, tile: TileId) -> std::sync::Arc<egui::
 
 /// The tabs for which there is no room: behind the others they would be cut off in the middle of a word, and stand in a
 /// menu instead. The tab in front always has room.
-pub(super) fn hidden_tabs(ui: &Ui, tree: &Tree<Pane>) -> Vec<TileId> {
+pub fn hidden_tabs(ui: &Ui, tree: &Tree<Pane>) -> Vec<TileId> {
     let tiles = &tree.tiles;
     let of_bar = |(bar, tile): (&TileId, &Tile<Pane>)| {
         let Tile::Container(Container::Tabs(tabs)) = tile else {
@@ -202,12 +202,12 @@ fn first_pane(tiles: &Tiles<Pane>, tile: TileId) -> Option<Pane> {
 }
 
 /// Shows panes.
-pub(super) struct Panes<'a, 'd> {
-    pub(super) desk: &'a mut Desk<'d>,
-    pub(super) panels: &'a mut Panels,
-    pub(super) viewport: &'a mut Viewport,
+pub struct Panes<'a, 'd> {
+    pub desk: &'a mut Desk<'d>,
+    pub panels: &'a mut Panels,
+    pub viewport: &'a mut Viewport,
     /// See [`hidden_tabs`].
-    pub(super) hidden: Vec<TileId>,
+    pub hidden: Vec<TileId>,
 }
 
 impl Panes<'_, '_> {
@@ -356,12 +356,12 @@ impl Behavior<Pane> for Panes<'_, '_> {
 }
 
 /// The tile that holds the image.
-pub(super) fn viewport_tile(tree: &Tree<Pane>) -> Option<TileId> {
+pub fn viewport_tile(tree: &Tree<Pane>) -> Option<TileId> {
     tree.tiles.find_pane(&Pane::Viewport)
 }
 
 /// The panel that is seen at a point of the window.
-pub(super) fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
+pub fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
     let is_there = |tile: TileId| tree.tiles.rect(tile).is_some_and(|rect| rect.contains(at));
     let panes = Pane::ALL.into_iter().filter(|pane| is_open(tree, *pane));
     panes
@@ -370,7 +370,7 @@ pub(super) fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
 }
 
 /// Hides all panels but the image, or shows them.
-pub(super) fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
+pub fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
     let Some(root) = tree.root() else { return };
     let viewport = viewport_tile(tree);
     let others: Vec<TileId> = match tree.tiles.get_container(root) {

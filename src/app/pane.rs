@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// Where a panel is docked at first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Home {
+pub enum Home {
     UpperLeft,
     LowerLeft,
     UpperRight,
@@ -46,7 +46,7 @@ macro_rules! list {
         }
     };
 }
-pub(super) use list;
+pub(crate) use list;
 
 macro_rules! panes {
     ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident, $manual:literal;)*) => {
@@ -77,7 +77,7 @@ macro_rules! panes {
             }
 
             /// Where it is docked at first; `None` for the viewport, which has the middle.
-            pub(super) fn home(self) -> Option<Home> {
+            pub fn home(self) -> Option<Home> {
                 match self {
                     Self::Viewport => None,
                     $(Self::$name => Some(Home::$home),)*
@@ -91,7 +91,7 @@ list!(panes);
 
 impl Pane {
     /// What bringing it to the front is called.
-    pub(super) fn command(self) -> String {
+    pub fn command(self) -> String {
         format!("Show {}", self.title().to_lowercase())
     }
 }

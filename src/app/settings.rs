@@ -19,7 +19,7 @@ use crate::render::{EngineChoice, RayQueries};
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
 
-pub(super) fn native_options() -> eframe::NativeOptions {
+pub fn native_options() -> eframe::NativeOptions {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id(app_id())
         .with_icon(icon())
@@ -56,7 +56,7 @@ const FITTED_FRAMES: u64 = 30;
 
 /// Fills the screen with a window that was opened as large as it or larger: what is around a window would push its last
 /// bar beyond the screen.
-pub(super) fn fit_to_screen(ctx: &egui::Context) {
+pub fn fit_to_screen(ctx: &egui::Context) {
     if ctx.cumulative_frame_nr() > FITTED_FRAMES {
         return;
     }
@@ -98,7 +98,7 @@ fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static>
 }
 
 /// The folder for what belongs to the user, where the system has one.
-pub(super) fn data_folder() -> Option<PathBuf> {
+pub fn data_folder() -> Option<PathBuf> {
     Some(
         directories::ProjectDirs::from("", "", "glossmith")?
             .data_local_dir()
@@ -107,7 +107,7 @@ pub(super) fn data_folder() -> Option<PathBuf> {
 }
 
 /// The folder for what can be made again, where the system has one.
-pub(super) fn cache_folder() -> Option<PathBuf> {
+pub fn cache_folder() -> Option<PathBuf> {
     Some(
         directories::ProjectDirs::from("", "", "glossmith")?
             .cache_dir()
@@ -118,28 +118,28 @@ pub(super) fn cache_folder() -> Option<PathBuf> {
 /// What is remembered.
 #[derive(Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct KeptSettings {
-    pub(super) theme: ThemePreference,
+pub struct KeptSettings {
+    pub theme: ThemePreference,
     /// The arrangement of versions without workspaces: read, not written any more.
     #[serde(skip_serializing)]
-    pub(super) layout: Option<Tree<Pane>>,
+    pub layout: Option<Tree<Pane>>,
     /// The workspaces, with their arrangements of the panels.
-    pub(super) workspaces: workspaces::KeptWorkspaces,
-    pub(super) resolution: Resolution,
-    pub(super) import_lobe: ImportLobe,
+    pub workspaces: workspaces::KeptWorkspaces,
+    pub resolution: Resolution,
+    pub import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
-    pub(super) engine: EngineChoice,
+    pub engine: EngineChoice,
     /// Whether the GPU's engine uses ray queries, as it was chosen by hand.
-    pub(super) ray_queries: RayQueries,
+    pub ray_queries: RayQueries,
     /// How images were denoised last: new documents begin with that.
     #[serde(default = "first_denoise")]
-    pub(super) denoise: Denoise,
+    pub denoise: Denoise,
     /// Files opened and saved, the latest first.
-    pub(super) recent: Vec<PathBuf>,
+    pub recent: Vec<PathBuf>,
     /// What the browser remembers.
-    pub(super) shelves: KeptShelves,
+    pub shelves: KeptShelves,
     /// Files that others may name, wherever they lie.
-    pub(super) allowed: Vec<PathBuf>,
+    pub allowed: Vec<PathBuf>,
 }
 
 impl Default for KeptSettings {
@@ -162,7 +162,7 @@ impl Default for KeptSettings {
 
 impl KeptSettings {
     /// What the last start left; the defaults where that can't be read any more, or nothing is kept.
-    pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
+    pub fn load(creation: &eframe::CreationContext<'_>) -> Self {
         let first = || Self {
             denoise: first_denoise(),
             ..Self::default()
@@ -176,7 +176,7 @@ impl KeptSettings {
     }
 
     /// Leaves it for the next start.
-    pub(super) fn save(&self, storage: &mut dyn eframe::Storage) {
+    pub fn save(&self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, KEY, self);
     }
 }

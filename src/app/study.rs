@@ -33,7 +33,7 @@ enum Status<R> {
 }
 
 /// A study and its thread.
-pub(super) struct StudyWorker<R> {
+pub struct StudyWorker<R> {
     worker: Option<Background<Work<R>, Status<R>>>,
     stop: Arc<AtomicBool>,
     /// When it was started, where its end has not been noticed.
@@ -64,7 +64,7 @@ impl<R> Default for StudyWorker<R> {
 
 impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     /// Whether it runs, as far as the window is concerned.
-    pub(super) fn is_running(&self) -> bool {
+    pub fn is_running(&self) -> bool {
         self.is_at_work() && !self.is_stopped
     }
 
@@ -75,7 +75,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
 
     /// Notices that the study has ended, and has the viewport's renderer go on where it was stopped for it. To be called
     /// in each frame, whether its panel is seen or not.
-    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+    pub fn tick(&mut self, desk: &mut Desk<'_>) {
         if self.begun.is_none() || self.is_running() {
             return;
         }
@@ -87,14 +87,14 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// Starts the study when its controls are shown next, unless it runs.
-    pub(super) fn request(&mut self) {
+    pub fn request(&mut self) {
         self.is_requested = true;
     }
 
     /// A button that starts the study with what it will take, and while it runs what it does, what is left of it, and a
     /// button that stops it. The viewport's renderer rests meanwhile: it would take part of the time that is measured.
     /// `takes` says how long the study takes, as far as that is known; `begin` makes the work.
-    pub(super) fn controls(
+    pub fn controls(
         &mut self,
         ui: &mut Ui,
         desk: &mut Desk<'_>,
@@ -166,13 +166,13 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// Whether the document is another one by now than what was asked about.
-    pub(super) fn is_stale(&self, desk: &Desk<'_>) -> bool {
+    pub fn is_stale(&self, desk: &Desk<'_>) -> bool {
         let is_it = |asked: &Document| !Change::between(asked, desk.document).restarts();
         !self.asked.iter().any(is_it)
     }
 
     /// Takes note of what the outcome made of the document: it holds for that, too.
-    pub(super) fn holds_for(&mut self, document: &Document) {
+    pub fn holds_for(&mut self, document: &Document) {
         self.asked.push(document.clone());
     }
 
@@ -200,7 +200,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
     }
 
     /// What was found last.
-    pub(super) fn found(&self) -> Option<Arc<R>> {
+    pub fn found(&self) -> Option<Arc<R>> {
         match self.worker.as_ref()?.latest()? {
             Status::Done(found) => Some(found),
             _ => None,
@@ -209,13 +209,13 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
 }
 
 /// The engine that the viewport renders with.
-pub(super) fn engine(desk: &Desk<'_>) -> EngineChoice {
+pub fn engine(desk: &Desk<'_>) -> EngineChoice {
     let engine = desk.snapshot.engine.as_ref();
     engine.map_or(EngineChoice::Cpu, |engine| engine.kind.into())
 }
 
 /// The document as it is rendered, so small that a race is short.
-pub(super) fn small_document(desk: &Desk<'_>, side_max: u32) -> Document {
+pub fn small_document(desk: &Desk<'_>, side_max: u32) -> Document {
     let mut document = desk.document.clone();
     let size = desk.snapshot.scene.as_ref().map(|scene| scene.job.settings.image_size);
     let [width, height] = size.unwrap_or([document.render.width, document.render.height]);

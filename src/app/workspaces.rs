@@ -22,14 +22,14 @@ struct Workspace {
 /// What is kept of them from one start to the next.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub(super) struct KeptWorkspaces {
+pub struct KeptWorkspaces {
     current: String,
     all: Vec<Workspace>,
 }
 
 /// The workspaces but for the arrangement of the current one, which the editor shows.
 #[derive(Debug)]
-pub(super) struct Workspaces {
+pub struct Workspaces {
     current: String,
     all: Vec<Workspace>,
 }
@@ -37,11 +37,7 @@ pub(super) struct Workspaces {
 impl Workspaces {
     /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
     /// name, which earlier versions kept.
-    pub(super) fn new(
-        kept: KeptWorkspaces,
-        former: Option<Tree<Pane>>,
-        requested: Option<String>,
-    ) -> (Self, Tree<Pane>) {
+    pub fn new(kept: KeptWorkspaces, former: Option<Tree<Pane>>, requested: Option<String>) -> (Self, Tree<Pane>) {
         let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
         let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
         for (name, layout) in kept.all.into_iter().filter_map(whole) {
@@ -62,17 +58,17 @@ impl Workspaces {
     }
 
     /// The name of the current one.
-    pub(super) fn current(&self) -> &str {
+    pub fn current(&self) -> &str {
         &self.current
     }
 
     /// The names of all, the program's own first.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub fn names(&self) -> impl Iterator<Item = &str> {
         self.all.iter().map(|workspace| workspace.name.as_str())
     }
 
     /// What is kept for the next start.
-    pub(super) fn kept(&self, layout: Tree<Pane>) -> KeptWorkspaces {
+    pub fn kept(&self, layout: Tree<Pane>) -> KeptWorkspaces {
         let mut all = self.all.clone();
         put(&mut all, &self.current, layout);
         let current = self.current.clone();
@@ -80,7 +76,7 @@ impl Workspaces {
     }
 
     /// Makes a change; `layout` is the arrangement of the current one.
-    pub(super) fn change(&mut self, change: Change, layout: &mut Tree<Pane>) {
+    pub fn change(&mut self, change: Change, layout: &mut Tree<Pane>) {
         match change {
             Change::Use(name) => self.show(&name, layout),
             Change::Save(name) => {
@@ -112,7 +108,7 @@ impl Workspaces {
     }
 
     /// The arrangement that the current one has at first.
-    pub(super) fn at_first(&self) -> Tree<Pane> {
+    pub fn at_first(&self) -> Tree<Pane> {
         built_in(&self.current).layout
     }
 }

@@ -106,7 +106,7 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
             "triangle" => light.shape = AreaLightShape::Triangle,
             "disc" => light.shape = AreaLightShape::Disc,
             "sphere" => light.shape = AreaLightShape::Sphere,
-            color if color.starts_with('#') => light.color = parse_color(color).map_err(|error| error.to_string())?,
+            color if color.starts_with('#') => light.color = parse_color(color).map_err(crate::in_words)?,
             color if color.ends_with('K') => light.color = color_of_temperature(color)?,
             other => return Err(format!("{other}: {}", expected(light))),
         }
@@ -123,8 +123,8 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
         _ => {
             let parameter = words_of(light).find(|parameter| parameter.word() == word);
             let parameter = parameter.ok_or_else(|| format!("{word}: {}", expected(light)))?;
-            let value = parameter.parse(value).map_err(|error| error.to_string())?;
-            parameter.set(light, value).map_err(|error| error.to_string())?;
+            let value = parameter.parse(value).map_err(crate::in_words)?;
+            parameter.set(light, value).map_err(crate::in_words)?;
         }
     }
     Ok(())
@@ -171,7 +171,7 @@ pub(super) fn light_mix(text: &str) -> Result<LightMix, String> {
     let color = match color {
         "" => [1.0; 3],
         temperature if temperature.ends_with('K') => color_of_temperature(temperature)?,
-        color => parse_color(color).map_err(|error| error.to_string())?,
+        color => parse_color(color).map_err(crate::in_words)?,
     };
     let factor = number_in(range::LIGHT_MIX)(factor).map_err(|expected| format!("{factor}: {expected}"))?;
     Ok(LightMix {

@@ -17,11 +17,11 @@ pub use crate::instructions::instruction_set;
 use crate::job::Job;
 use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};
+use crate::optics::elementary::Single;
 use crate::optics::lanes::{InLanes, in_lanes};
-use crate::optics::real::Real;
 use crate::panics::lock;
 use crate::parallel;
-use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
+use integrator::{Integrator, PATHS, Tile, WAVE_SAMPLES, Wave};
 use tile_sums::TileSums;
 
 /// The CPU engine. Its threads render one tile each at a time.
@@ -63,26 +63,15 @@ impl CpuEngine {
         struct Step<'a>(&'a mut CpuEngine, Duration, &'a [u32]);
         impl InLanes for Step<'_> {
             type Output = ();
-            fn run<T: Real<Scalar = f32>>(self) {
+            fn run<T: Single>(self) {
                 self.0.step_towards_in::<T>(self.1, self.2);
             }
         }
         in_lanes(instructions::level(), Step(self, budget, goals));
     }
 
-    /// Renders as [`CpuEngine::step`] with shading in f64; intersection stays in f32.
-    pub fn step_double(&mut self, budget: Duration, samples: u32) {
-        let goals = vec![samples; self.schedule.grid().tiles()];
-        self.step_double_towards(budget, &goals);
-    }
-
-    /// Renders as [`CpuEngine::step_towards`] with shading in f64.
-    pub fn step_double_towards(&mut self, budget: Duration, goals: &[u32]) {
-        self.step_towards_in::<f64>(budget, goals);
-    }
-
     /// Renders up to a number of samples per pixel for each tile with shading in `T`.
-    fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
+    fn step_towards_in<T: Single>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
         let mut waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| None).collect();
@@ -128,10 +117,10 @@ impl CpuEngine {
     /// use, and takes the next tile when it is done with one. Background tiles take a fifth of the time of others, so the
     /// number cannot be planned. Each tile is copied out of the film and back, so that no two threads write to the same
     /// memory; that costs a thousandth of the time.
-    fn render<T: Real>(
+    fn render<T: Single>(
         &mut self,
         integrator: &Integrator<'_, T>,
-        waves: &mut [Option<Wave<T>>],
+        waves: &mut [Option<Wave>],
         works: &[Work],
         time: Duration,
     ) -> usize {
@@ -141,7 +130,7 @@ impl CpuEngine {
         let (start, taken) = (Instant::now(), AtomicUsize::new(0));
         parallel::for_rows(waves, 1, |_, wave| {
             while let Some(work) = works.get(taken.fetch_add(1, Ordering::Relaxed)) {
-                let wave = wave[0].get_or_insert_with(|| Wave::new(integrator.sequence()));
+                let wave = wave[0].get_or_insert_with(|| Wave::new(PATHS, T::LANES, integrator.sequence()));
                 let origin = grid.origin(work.tile);
                 let mut sums = film().part(origin, grid.size(work.tile));
                 render_tile(integrator, wave, origin, work, &mut sums);
@@ -180,9 +169,9 @@ impl CpuEngine {
 }
 
 /// Adds a tile's samples to its sums.
-fn render_tile<T: Real>(
+fn render_tile<T: Single>(
     integrator: &Integrator<'_, T>,
-    wave: &mut Wave<T>,
+    wave: &mut Wave,
     origin: [u32; 2],
     work: &Work,
     sums: &mut Film,

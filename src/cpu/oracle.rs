@@ -3,11 +3,11 @@
 
 use fearless_simd::Level;
 
-use super::integrator::{Integrator, PathResult, Tile, Wave};
+use super::integrator::{Integrator, PATHS, PathResult, Tile, Wave};
 use super::recorder::Event;
 use crate::job::Job;
+use crate::optics::elementary::Single;
 use crate::optics::lanes::{InLanes, in_lanes};
-use crate::optics::real::Real;
 
 /// A path tracer that follows one path at a time, in f32.
 pub struct PathTracer<'a>(Integrator<'a, f32>);
@@ -19,12 +19,12 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The result of one path.
-    pub fn trace(&self, pixel: [u32; 2], sample: u32) -> PathResult<f32> {
+    pub fn trace(&self, pixel: [u32; 2], sample: u32) -> PathResult {
         self.record(pixel, sample, &mut Vec::new())
     }
 
     /// The result of one path, whose events are appended to a list.
-    pub fn record(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult<f32> {
+    pub fn record(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
         self.0.record_path(pixel, sample, events)
     }
 }
@@ -41,7 +41,7 @@ pub struct TileSamples {
 }
 
 /// Results of a tile's paths as the engine renders it with an instruction set: pixels row by row, for each sample.
-pub fn trace_tile(job: &Job, level: Level, tile: TileSamples) -> Vec<PathResult<f32>> {
+pub fn trace_tile(job: &Job, level: Level, tile: TileSamples) -> Vec<PathResult> {
     in_lanes(level, TraceTile { job, tile })
 }
 
@@ -52,14 +52,14 @@ struct TraceTile<'a> {
 }
 
 impl InLanes for TraceTile<'_> {
-    type Output = Vec<PathResult<f32>>;
-    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
+    type Output = Vec<PathResult>;
+    fn run<T: Single>(self) -> Self::Output {
         let TileSamples { origin, size, samples } = self.tile;
         let pixels = (size[0] * size[1]) as usize;
         let mut results_of = vec![PathResult::default(); pixels * samples[1] as usize];
         let tile = Tile::new(origin, size);
         let integrator = Integrator::<T>::new(self.job);
-        let mut wave = Wave::new(integrator.sequence());
+        let mut wave = Wave::new(PATHS, T::LANES, integrator.sequence());
         integrator.trace_tile(&tile, &mut wave, samples, |[first, count], results| {
             for sample in 0..count {
                 let row = (first + sample - samples[0]) as usize * pixels;

@@ -4,26 +4,17 @@
 use serde::Serialize;
 
 use crate::optics::layer::Layer;
-use crate::optics::real::Scalar;
 
 /// A receiver of a path's events, in order.
-pub trait Recorder {
+pub trait Recorder: Default {
     /// Whether events are kept.
     const KEEPS: bool;
     /// Records an event. The closure is only called if events are kept, because making one costs time.
     fn record(&mut self, event: impl FnOnce() -> Event);
 }
 
-impl<R: Recorder> Recorder for &mut R {
-    const KEEPS: bool = R::KEEPS;
-    #[inline(always)]
-    fn record(&mut self, event: impl FnOnce() -> Event) {
-        (**self).record(event);
-    }
-}
-
 /// Discards all events.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct Unrecorded;
 
 impl Recorder for Unrecorded {
@@ -238,9 +229,4 @@ pub enum Event {
     Ended {
         why: End,
     },
-}
-
-/// A number as f32: exact if the path is traced in f32.
-pub(super) fn single<S: Scalar>(value: S) -> f32 {
-    value.to_f64() as f32
 }

@@ -4,7 +4,8 @@
 use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
 use crate::job::film::{Film, HalfSums};
 use crate::job::guides::GUIDE_SAMPLES;
-use crate::optics::real::{Real, Scalar};
+use crate::optics::elementary::Single;
+use crate::optics::real::Scalar;
 use crate::optics::vector::vec3;
 
 /// A tile's sums and its part of the film.
@@ -42,7 +43,7 @@ impl<'a> TileSums<'a> {
     }
 
     /// Adds `count` samples of each pixel, from sample `first` on.
-    pub fn add<T: Real>(&mut self, [first, count]: [u32; 2], results: &Results<T::Scalar>) {
+    pub fn add<T: Single>(&mut self, [first, count]: [u32; 2], results: &Results) {
         let (tile, halves) = (self.tile, &mut self.halves);
         let costs = &mut self.film.costs[0];
         costs.rays += results.rays() as f64;
@@ -68,7 +69,7 @@ impl<'a> TileSums<'a> {
     }
 
     /// Adds the optional sums: coverage, guides, light groups and clamped luminance.
-    fn add_more<S: Scalar>(&mut self, [first, count]: [u32; 2], results: &Results<S>) {
+    fn add_more(&mut self, [first, count]: [u32; 2], results: &Results) {
         let extras = self.film.extras();
         if !extras.coverage && extras.light_groups == 0 && !results.has_extras() {
             return;

@@ -1,7 +1,6 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
 use super::array::TEXEL_ROW_BITS;
-use super::generated_layers::layer_registry;
 use super::layout::{BACKGROUNDS, TILE_COLUMNS};
 use super::material_array::FEW_MATERIALS;
 use crate::job::Strategy;
@@ -25,7 +24,6 @@ pub type Generated = (&'static str, fn() -> String);
 pub const GENERATED: &[Generated] = &[
     ("optics/lobe/registry", lobe_registry),
     ("optics/curve/registry", curve_registry),
-    ("optics/layer/registry", layer_registry),
     ("optics/choices", optics_choices),
     ("scene/material", material_structure),
     ("scene/choices", scene_choices),

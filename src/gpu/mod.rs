@@ -6,7 +6,6 @@ pub mod budget;
 mod compute;
 pub mod device;
 mod engine;
-mod generated_layers;
 mod generated_shader;
 pub mod geometry_arrays;
 mod kernel_cache;

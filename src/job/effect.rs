@@ -101,8 +101,6 @@ effects! {
     DepthOfField "depth-of-field" flag "PLAN_LENS";
     FireflyClamp "firefly-clamp" flag "PLAN_FIREFLY_CLAMP";
     AdaptiveSampling "adaptive-sampling";
-    Variance "variance";
-    PictureLayers "picture-layers";
     Guides "guides" flag "PLAN_GUIDES";
     LightGroups "light-groups" flag "PLAN_LIGHT_GROUPS";
     Denoising "denoising";
@@ -119,8 +117,6 @@ impl EffectId {
                 | Self::Horizon
                 | Self::Fresnel
                 | Self::RoughTables
-                | Self::Variance
-                | Self::PictureLayers
                 | Self::Guides
         )
     }

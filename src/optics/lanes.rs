@@ -17,7 +17,7 @@ pub trait InLanes {
     /// Result type.
     type Output;
     /// Runs the computation with `T` as lanes.
-    fn run<T: Real<Scalar = f32>>(self) -> Self::Output;
+    fn run<T: Single>(self) -> Self::Output;
 }
 
 /// Does something with numbers in lanes, computed by the instruction set of `level`.

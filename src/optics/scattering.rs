@@ -9,6 +9,7 @@
 use super::albedo::{
     ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup, view_at,
 };
+use super::elementary::Single;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
 use super::lanes::{InLanes, in_lanes};
 use super::lobe::ggx::visible_normal;
@@ -203,7 +204,7 @@ struct Kept<'a> {
 impl InLanes for Kept<'_> {
     type Output = [Vec3<f64>; 3];
 
-    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
+    fn run<T: Single>(self) -> Self::Output {
         T::vectorize(
             #[inline(always)]
             || self.means::<T>(),
@@ -213,7 +214,7 @@ impl InLanes for Kept<'_> {
 
 impl Kept<'_> {
     #[inline(always)]
-    fn means<T: Real<Scalar = f32>>(&self) -> [Vec3<f64>; 3] {
+    fn means<T: Single>(&self) -> [Vec3<f64>; 3] {
         let Points([across, up, azimuths]) = self.points;
         let count = across.len();
         let alpha = cast::<T>(self.alpha);
@@ -269,7 +270,7 @@ fn cast<T: Real>(alpha: Alpha<f64>) -> Alpha<T> {
 
 /// Adds lanes one by one in f64: what is summed does not depend on their number.
 #[inline(always)]
-fn add<T: Real<Scalar = f32>>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
+fn add<T: Single>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
     let [r, g, b] = [energy.x.to_each(), energy.y.to_each(), energy.z.to_each()];
     for lane in 0..T::LANES {
         *sum += Vec3::from_f32([r.as_ref()[lane], g.as_ref()[lane], b.as_ref()[lane]]);

@@ -1,10 +1,11 @@
 //! Charts of studies: points with names, and bars.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Figure, Outcome, PALETTE, Style, TITLE, font, number, px, round_step, stroke, titled};
+use super::figure::{
+    Area, Backend, Figure, Outcome, PALETTE, Style, TITLE, font, number, px, round_step, stroke, titled,
+};
 use super::lines::{LETTER, framed};
 use crate::plot::lobe_view::Axis;
 
@@ -58,10 +59,7 @@ impl Figure for PointPlot {
         POINTS_SIZE
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let longest = self.points.iter().map(|point| point.name.chars().count()).max();
         let names_width = NAME_MARGIN + LETTER * longest.unwrap_or(0) as f64;
         let mut chart = framed(root, &self.title, [&self.x, &self.y], [76.0, names_width], style)?;
@@ -92,16 +90,13 @@ impl NamedPoint {
 
 impl PointPlot {
     /// The names in a column beside the plot, each joined to its point: points may lie on top of each other.
-    fn draw_names<DB: DrawingBackend>(
+    fn draw_names<DB: Backend>(
         &self,
-        root: &DrawingArea<DB, Shift>,
+        root: &Area<DB>,
         places: &[(i32, i32)],
         [right, bottom]: [i32; 2],
         style: Style,
-    ) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    ) -> Outcome {
         let mut order: Vec<usize> = (0..places.len()).collect();
         // Of points at the same height the leftmost has its name on top, so that no two lines cross.
         order.sort_by_key(|&index| (places[index].1, places[index].0));
@@ -158,10 +153,7 @@ impl Figure for BarPlot {
         (BARS_WIDTH, TITLE + self.bottom() as u32 + 40)
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let area = titled(root, &self.title, 22.0, TITLE, style)?;
         let [low, high] = self.reach();
         let width = f64::from(BARS_WIDTH) - NAMES_WIDTH - NUMBERS_WIDTH;
@@ -245,10 +237,7 @@ impl Figure for PictureSheet {
         )
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let area = titled(root, &self.title, 20.0, TITLE, style)?;
         let (width, height) = self.cell();
         for (index, (name, picture)) in (0..).zip(&self.pictures) {

@@ -4,11 +4,17 @@ use std::error::Error;
 use std::io::Cursor;
 use std::path::Path;
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{PlotError, register_fonts};
+
+/// What figures are drawn on.
+pub(super) trait Backend: DrawingBackend<ErrorType: 'static> {}
+
+impl<DB: DrawingBackend<ErrorType: 'static>> Backend for DB {}
+
+pub(super) type Area<DB> = DrawingArea<DB, plotters::coord::Shift>;
 
 /// What drawing may fail with.
 pub(super) type Outcome = Result<(), Box<dyn Error>>;
@@ -74,9 +80,7 @@ pub(super) trait Figure {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
     /// Draws it, every length `style.scale` times as large.
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static;
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome;
 }
 
 /// The contents of a figure's file: .svg, or else .png.
@@ -132,7 +136,7 @@ pub(super) fn picture(figure: &impl Figure, style: Style) -> Result<image::RgbIm
 /// What is drawn on so many columns and rows of black.
 pub(super) fn drawn(
     size: (u32, u32),
-    draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, Shift>) -> Outcome,
+    draw: impl FnOnce(&Area<BitMapBackend<'_>>) -> Outcome,
 ) -> Result<image::RgbImage, Box<dyn Error>> {
     let mut picture = image::RgbImage::new(size.0, size.1);
     let root = BitMapBackend::with_buffer(&mut picture, size).into_drawing_area();
@@ -141,10 +145,7 @@ pub(super) fn drawn(
     Ok(picture)
 }
 
-fn draw_on_paper<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, figure: &impl Figure, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_on_paper<DB: Backend>(root: &Area<DB>, figure: &impl Figure, style: Style) -> Outcome {
     root.fill(&style.paper)?;
     figure.draw(root, style)?;
     Ok(root.present()?)
@@ -168,16 +169,13 @@ pub(super) fn stroke(color: RGBColor, width: f64, style: Style) -> ShapeStyle {
 }
 
 /// Writes a title of a size over an area, centred in `height`, and returns what is left below. Lengths in pixels.
-pub(super) fn titled<DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
+pub(super) fn titled<DB: Backend>(
+    area: &Area<DB>,
     title: &str,
     size: f64,
     height: u32,
     style: Style,
-) -> Result<DrawingArea<DB, Shift>, Box<dyn Error>>
-where
-    DB::ErrorType: 'static,
-{
+) -> Result<Area<DB>, Box<dyn Error>> {
     let (top, rest) = area.split_vertically(px(f64::from(height), style));
     let (width, height) = top.dim_in_pixel();
     let centred = font(size, style).pos(Pos::new(HPos::Center, VPos::Center));

@@ -1,10 +1,9 @@
 //! Line plots, over an axis or around a point.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Figure, Outcome, PALETTE, Style, font, number, px, round_step, stroke};
+use super::figure::{Area, Backend, Figure, Outcome, PALETTE, Style, font, number, px, round_step, stroke};
 use super::scale::Scale;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 
@@ -23,10 +22,7 @@ impl Figure for LinePlot {
         (SIZE.0 + legend_width(self), if self.is_polar { 530 } else { SIZE.1 })
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let (area, legend) = root.split_horizontally(px(f64::from(SIZE.0), style));
         if self.is_polar {
             draw_polar(self, &area, style)?;
@@ -53,16 +49,13 @@ fn title(plot: &LinePlot) -> String {
 }
 
 /// A chart with its title and axes; beside it there is room for the labels of the vertical axis, and at the right.
-pub(super) fn framed<'a, DB: DrawingBackend>(
-    root: &DrawingArea<DB, Shift>,
+pub(super) fn framed<'a, DB: Backend>(
+    root: &Area<DB>,
     title: &str,
     axes: [&'a Axis; 2],
     [labels_width, margin_right]: [f64; 2],
     style: Style,
-) -> Result<Chart<'a, DB>, DrawingAreaErrorKind<DB::ErrorType>>
-where
-    DB::ErrorType: 'static,
-{
+) -> Result<Chart<'a, DB>, DrawingAreaErrorKind<DB::ErrorType>> {
     let mut chart = ChartBuilder::on(root)
         .caption(title, font(22.0, style))
         .margin(px(16.0, style))
@@ -84,10 +77,7 @@ where
     Ok(chart)
 }
 
-fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_cartesian<DB: Backend>(plot: &LinePlot, root: &Area<DB>, style: Style) -> Outcome {
     let mut chart = framed(root, &title(plot), [&plot.x, &plot.y], [66.0, 16.0], style)?;
     for (series, rank) in ranked(&plot.series) {
         let points = series.points.iter().map(|[x, y]| (*x, *y));
@@ -109,16 +99,13 @@ fn line_style(series: &Series, style: Style) -> ShapeStyle {
 }
 
 /// A line; those after the first of a group dashed.
-fn draw_series<DB: DrawingBackend>(
+fn draw_series<DB: Backend>(
     chart: &mut Chart<'_, DB>,
     series: &Series,
     rank: usize,
     points: impl Iterator<Item = (f64, f64)>,
     style: Style,
-) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+) -> Outcome {
     let line = line_style(series, style);
     if rank == 0 {
         chart.draw_series(LineSeries::new(points, line))?;
@@ -130,10 +117,7 @@ where
 }
 
 /// The names beside the plot.
-fn draw_legend<DB: DrawingBackend>(plot: &LinePlot, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_legend<DB: Backend>(plot: &LinePlot, area: &Area<DB>, style: Style) -> Outcome {
     for ((series, rank), row) in ranked(&plot.series).zip(0..) {
         let y = 64.0 + ENTRY_HEIGHT * f64::from(row);
         let at = |x: f64| (px(x, style), px(y, style));
@@ -151,10 +135,7 @@ where
     Ok(())
 }
 
-fn draw_polar<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_polar<DB: Backend>(plot: &LinePlot, root: &Area<DB>, style: Style) -> Outcome {
     let reach = plot.y.range[1].max(1e-9);
     // Room for the angles outside the outermost circle; both axes have the same scale.
     let outer = 1.09 * reach;
@@ -181,10 +162,7 @@ where
 }
 
 /// Circles of equal value and rays of equal angle.
-fn draw_polar_net<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, reach: f64, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_polar_net<DB: Backend>(chart: &mut Chart<'_, DB>, reach: f64, style: Style) -> Outcome {
     let ray = |angle_deg: f64, radius: f64| {
         (
             radius * angle_deg.to_radians().sin(),
@@ -219,10 +197,7 @@ where
 }
 
 /// Where the view comes from, as a dashed ray.
-fn draw_view<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, angle_deg: f64, reach: f64, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_view<DB: Backend>(chart: &mut Chart<'_, DB>, angle_deg: f64, reach: f64, style: Style) -> Outcome {
     let angle_rad = angle_deg.to_radians();
     let end = (-0.98 * reach * angle_rad.sin(), 0.98 * reach * angle_rad.cos());
     let line = stroke(style.ink, 1.2, style);

@@ -1,10 +1,9 @@
 //! Colour maps of the hemisphere.
 
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Figure, NAME, Outcome, Style, TITLE, font, number, panel_grid, px, stroke, titled};
+use super::figure::{Area, Backend, Figure, NAME, Outcome, Style, TITLE, font, number, panel_grid, px, stroke, titled};
 use crate::plot::lobe_view::{DiscMap, MapPlot};
 
 /// Side of a panel without its name and width of the scale's strip, pixels.
@@ -45,10 +44,7 @@ impl Figure for MapPlot {
         (columns as u32 * PANEL + STRIP, rows as u32 * (PANEL + NAME) + TITLE)
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let (rows, columns) = panel_grid(self.maps.len());
         let rest = titled(root, &format!("{} in 1/sr", self.title), 22.0, TITLE, style)?;
         let (panels, strip) = rest.split_horizontally(px(f64::from(columns as u32 * PANEL), style));
@@ -68,10 +64,7 @@ impl MapPlot {
     }
 }
 
-fn draw_map<DB: DrawingBackend>(plot: &MapPlot, map: &DiscMap, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_map<DB: Backend>(plot: &MapPlot, map: &DiscMap, area: &Area<DB>, style: Style) -> Outcome {
     let name = format!("{}, view {}°", map.lobe, map.view_angle_deg);
     let disc = titled(area, &name, 16.0, NAME, style)?;
     let mut chart = ChartBuilder::on(&disc)
@@ -136,10 +129,7 @@ fn runs(plot: &MapPlot, map: &DiscMap, row: usize) -> Vec<Rectangle<(f64, f64)>>
 }
 
 /// The scale: a strip of its colours with a number at each decade; what the marks mean.
-fn draw_strip<DB: DrawingBackend>(plot: &MapPlot, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_strip<DB: Backend>(plot: &MapPlot, area: &Area<DB>, style: Style) -> Outcome {
     let height = f64::from(area.dim_in_pixel().1) / style.scale;
     let (top, bottom) = (24.0, height - 90.0);
     let at = |x: f64, y: f64| (px(x, style), px(y, style));

@@ -1,10 +1,11 @@
 //! Lobes as bodies, shaded, seen from the side and a little from above.
 
-use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::figure::{Figure, NAME, Outcome, PALETTE, Style, TITLE, font, number, panel_grid, px, stroke, titled};
+use super::figure::{
+    Area, Backend, Figure, NAME, Outcome, PALETTE, Style, TITLE, font, number, panel_grid, px, stroke, titled,
+};
 use crate::optics::vector::{Vec3, vec3};
 use crate::plot::lobe_view::{Solid, SolidPlot};
 
@@ -59,10 +60,7 @@ impl Figure for SolidPlot {
         (columns as u32 * PANEL.0, rows as u32 * (PANEL.1 + NAME) + TITLE)
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
-    where
-        DB::ErrorType: 'static,
-    {
+    fn draw<DB: Backend>(&self, root: &Area<DB>, style: Style) -> Outcome {
         let (rows, columns) = panel_grid(self.solids.len());
         let rest = titled(root, &self.title, 22.0, TITLE, style)?;
         for (i, (solid, area)) in self.solids.iter().zip(rest.split_evenly((rows, columns))).enumerate() {
@@ -72,15 +70,7 @@ impl Figure for SolidPlot {
     }
 }
 
-fn draw_solid<DB: DrawingBackend>(
-    solid: &Solid,
-    color: RGBColor,
-    area: &DrawingArea<DB, Shift>,
-    style: Style,
-) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_solid<DB: Backend>(solid: &Solid, color: RGBColor, area: &Area<DB>, style: Style) -> Outcome {
     let eye = Eye::new();
     let top = solid.largest().max(1e-12);
     let name = format!(
@@ -125,10 +115,7 @@ fn three_digits(value: f64) -> f64 {
 }
 
 /// The surface: a disc with circles at a third and two thirds of the largest value.
-fn draw_surface<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, eye: &Eye, style: Style) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+fn draw_surface<DB: Backend>(chart: &mut Chart<'_, DB>, eye: &Eye, style: Style) -> Outcome {
     let circle = |radius: f64| {
         (0..=120)
             .map(move |i| (f64::from(i) * 3.0_f64).to_radians())
@@ -144,16 +131,13 @@ where
 }
 
 /// A direction from the surface point, named at its end.
-fn draw_direction<DB: DrawingBackend>(
+fn draw_direction<DB: Backend>(
     chart: &mut Chart<'_, DB>,
     eye: &Eye,
     direction: Vec3<f64>,
     name: &str,
     style: Style,
-) -> Outcome
-where
-    DB::ErrorType: 'static,
-{
+) -> Outcome {
     let end = eye.project(direction);
     let line = DashedLineSeries::new(
         [(0.0, 0.0), end],

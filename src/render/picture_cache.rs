@@ -41,9 +41,9 @@ pub(super) fn write(path: &Path, [width, height]: [u32; 2], pixels: &[u8]) -> Re
     let mut bytes = Cursor::new(Vec::new());
     picture
         .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(|error| error.to_string())?;
+        .map_err(crate::in_words)?;
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
-    save_atomically(path, bytes.get_ref()).map_err(|error| error.to_string())
+    save_atomically(path, bytes.get_ref()).map_err(crate::in_words)
 }

@@ -92,11 +92,11 @@ pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWo
 fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> Result<SampleReport, String> {
     let opened = match sampler.take() {
         Some((choice, opened)) if choice == query.engine => opened,
-        _ => Sampler::open(query.engine).map_err(|error| error.to_string())?,
+        _ => Sampler::open(query.engine).map_err(crate::in_words)?,
     };
     let (_, opened) = sampler.insert((query.engine, opened));
     let request = &query.request;
-    let cloud = opened.draw(request).map_err(|error| error.to_string())?;
+    let cloud = opened.draw(request).map_err(crate::in_words)?;
     let free = ScatterRequest {
         model: LobeModel {
             horizon: Horizon::None,
@@ -105,7 +105,7 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
         count: BELOW_COUNT,
         ..request.clone()
     };
-    let raw = opened.draw(&free).map_err(|error| error.to_string())?;
+    let raw = opened.draw(&free).map_err(crate::in_words)?;
     let mirror = request.middle();
     let side = mirror.z.signum() as f32;
     let below = raw.samples.iter().filter(|[_, _, z, _]| *z * side < 0.0).count();

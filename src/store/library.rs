@@ -36,9 +36,7 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
     let paths = files.flatten().flat_map(|file| materials_at(&file.path()));
     let mut entries: Vec<Entry> = paths
         .map(|path| Entry {
-            material: load_material(&path)
-                .map(|loaded| loaded.value)
-                .map_err(|error| error.to_string()),
+            material: load_material(&path).map(|loaded| loaded.value).map_err(crate::in_words),
             path,
         })
         .collect();

@@ -48,7 +48,7 @@ pub fn png_bytes([width, height]: [u32; 2], rgba: &[u8], document_text: Option<&
         writer.finish()?;
         Ok(bytes.into_inner())
     };
-    write().map_err(|error| error.to_string())
+    write().map_err(crate::in_words)
 }
 
 /// The document in an image.

@@ -110,7 +110,7 @@ fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
         only.insert(part.clone(), json.clone());
         serde_json::from_value::<Document>(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
     }
-    serde_json::from_value(Json::Object(object.clone())).map_err(|error| error.to_string())
+    serde_json::from_value(Json::Object(object.clone())).map_err(crate::in_words)
 }
 
 /// Saves a document, replacing the file at once.
@@ -164,8 +164,8 @@ fn document_object(path: &Path, document: &Document) -> Result<Map<String, Json>
 
 /// The document as JSON, `extra` left out. By way of text, so that an f32 is written with no more digits than it has.
 fn known_part(document: &Document) -> Result<Map<String, Json>, String> {
-    let text = serde_json::to_string(document).map_err(|error| error.to_string())?;
-    serde_json::from_str(&text).map_err(|error| error.to_string())
+    let text = serde_json::to_string(document).map_err(crate::in_words)?;
+    serde_json::from_str(&text).map_err(crate::in_words)
 }
 
 /// What `object` has that `known` lacks, objects inside it searched too. Materials keep what they do not know themselves.

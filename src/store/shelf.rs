@@ -136,15 +136,13 @@ fn material(path: &Path) -> Option<ItemKind> {
     let read = if holds_materials(path) {
         match exchange::find(&path.to_string_lossy(), ReadOptions::default()) {
             Err(ExchangeError::NothingCarried { .. }) => return None,
-            opened => opened.map(|loaded| loaded.value).map_err(|error| error.to_string()),
+            opened => opened.map(|loaded| loaded.value).map_err(crate::in_words),
         }
     } else {
         let bytes = fs::read(path).ok()?;
         let json: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
         json.get("material")?;
-        load_material(path)
-            .map(|loaded| loaded.value)
-            .map_err(|error| error.to_string())
+        load_material(path).map(|loaded| loaded.value).map_err(crate::in_words)
     };
     Some(ItemKind::Material(read.map(Box::new)))
 }

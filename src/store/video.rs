@@ -103,7 +103,7 @@ impl Video {
     pub fn finish(self) -> Result<(), VideoError> {
         let bytes = match self.frames {
             Frames::Mp4(mp4) => mp4.bytes(),
-            Frames::Gif(gif) => gif.encoder.into_inner().map_err(|error| error.to_string()),
+            Frames::Gif(gif) => gif.encoder.into_inner().map_err(crate::in_words),
         };
         let bytes = bytes.map_err(|why| refused(&self.path, self.size, why))?;
         Ok(save_atomically(&self.path, &bytes)?)
@@ -132,10 +132,8 @@ impl Gif {
         let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
             return Err("a GIF's sides are at most 65535 pixels".to_owned());
         };
-        let mut encoder = gif::Encoder::new(Vec::new(), width, height, &[]).map_err(|error| error.to_string())?;
-        encoder
-            .set_repeat(gif::Repeat::Infinite)
-            .map_err(|error| error.to_string())?;
+        let mut encoder = gif::Encoder::new(Vec::new(), width, height, &[]).map_err(crate::in_words)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(crate::in_words)?;
         Ok(Self {
             encoder,
             size: [width, height],
@@ -159,6 +157,6 @@ impl Gif {
         frame.delay = (until(self.count + 1) - until(self.count)) as u16;
         frame.dispose = gif::DisposalMethod::Background;
         self.count += 1;
-        self.encoder.write_frame(&frame).map_err(|error| error.to_string())
+        self.encoder.write_frame(&frame).map_err(crate::in_words)
     }
 }

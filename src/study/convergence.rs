@@ -8,7 +8,7 @@ use super::references::{Effort, reference};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::render::{EngineChoice, Precision, Session, StepDenoiser, StopReason};
+use crate::render::{EngineChoice, Session, StepDenoiser, StopReason};
 
 /// Precision of the reference relative to the render, if time permits.
 const REFERENCE_GAIN: f64 = 4.0;
@@ -113,7 +113,7 @@ pub fn convergence(
     };
     let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
     let mut on_progress = |share: f64| steps.report("Reference", share);
-    let reference = reference(&mut other, document, Precision::Single, effort, &mut on_progress)?;
+    let reference = reference(&mut other, document, effort, &mut on_progress)?;
     Ok(ConvergenceReport {
         machine: Machine::of(session.engine()),
         width: document.render.width,

@@ -187,7 +187,7 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
 fn rivals(document: &Document, plan: &Plan) -> Vec<Rival> {
     let mut rivals = Vec::new();
     for (effect, decision) in plan.table() {
-        if !decision.is_on || Effect::of(effect).remove.is_none() {
+        if !decision.is_on || effect.is_needed() {
             continue;
         }
         let mut changed = document.clone();

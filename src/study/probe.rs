@@ -1,5 +1,7 @@
 //! Questions to single functions of an engine.
 
+use bytemuck::Pod;
+
 use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;
@@ -31,26 +33,27 @@ impl Prober {
     ///
     /// If the GPU fails; so do all later calls.
     pub fn lobes(&self, scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Result<Vec<LobeAnswer>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_lobe(scene, questions)),
-            Self::Gpu(probe) => probe.ask("probe_lobe", scene, questions),
-        }
+        self.answers(scene, questions, cpu::probe_lobe, "probe_lobe")
     }
 
     /// The shares that boundaries reflect.
     pub fn fresnel(&self, questions: &[FresnelQuestion]) -> Result<Vec<f32>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_fresnel(questions)),
-            Self::Gpu(probe) => probe.ask("probe_fresnel", &ProbeScene::default(), questions),
-        }
+        self.answers(
+            &ProbeScene::default(),
+            questions,
+            |_, questions| cpu::probe_fresnel(questions),
+            "probe_fresnel",
+        )
     }
 
     /// The bits of pairs of random numbers.
     pub fn random(&self, questions: &[RandomQuestion]) -> Result<Vec<[u32; 2]>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_random(questions)),
-            Self::Gpu(probe) => probe.ask("probe_random", &ProbeScene::default(), questions),
-        }
+        self.answers(
+            &ProbeScene::default(),
+            questions,
+            |_, questions| cpu::probe_random(questions),
+            "probe_random",
+        )
     }
 
     /// Materials' values, linear RGB.
@@ -59,42 +62,41 @@ impl Prober {
         scene: &ProbeScene<'_>,
         questions: &[MaterialQuestion],
     ) -> Result<Vec<Vec3<f32>>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_materials(scene, questions)),
-            Self::Gpu(probe) => probe.ask("probe_material", scene, questions),
-        }
+        self.answers(scene, questions, cpu::probe_materials, "probe_material")
     }
 
     /// Densities with which materials draw directions, per steradian.
     pub fn densities(&self, scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Result<Vec<f32>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_density(scene, questions)),
-            Self::Gpu(probe) => probe.ask("probe_density", scene, questions),
-        }
+        self.answers(scene, questions, cpu::probe_density, "probe_density")
     }
 
     /// Directions drawn from materials.
     pub fn draws(&self, scene: &ProbeScene<'_>, questions: &[DrawQuestion]) -> Result<Vec<DrawAnswer>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_draw::<f32>(scene, questions)),
-            Self::Gpu(probe) => probe.ask("probe_draw", scene, questions),
-        }
+        self.answers(scene, questions, cpu::probe_draw::<f32>, "probe_draw")
     }
 
     /// Hits of rays.
     pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
-        match self {
-            Self::Cpu => Ok(cpu::probe_ray(scene, questions)),
-            Self::Gpu(probe) => {
-                let mut answers: Vec<RayAnswer> = probe.ask("probe_ray", scene, questions)?;
-                let is_hit = |answer: &&mut RayAnswer| answer.triangle != NO_HIT;
-                if let Some(geometry) = scene.geometry {
-                    for answer in answers.iter_mut().filter(is_hit) {
-                        answer.triangle = geometry.triangle_at(answer.triangle);
-                    }
-                }
-                Ok(answers)
+        let mut answers = self.answers(scene, questions, cpu::probe_ray, "probe_ray")?;
+        if let (Self::Gpu(_), Some(geometry)) = (self, scene.geometry) {
+            for answer in answers.iter_mut().filter(|answer| answer.triangle != NO_HIT) {
+                answer.triangle = geometry.triangle_at(answer.triangle);
             }
+        }
+        Ok(answers)
+    }
+
+    /// Answers of the CPU's function, or of a shader's entry point.
+    fn answers<Q: Pod, A: Pod>(
+        &self,
+        scene: &ProbeScene<'_>,
+        questions: &[Q],
+        of_cpu: impl Fn(&ProbeScene<'_>, &[Q]) -> Vec<A>,
+        entry_point: &'static str,
+    ) -> Result<Vec<A>, GpuError> {
+        match self {
+            Self::Cpu => Ok(of_cpu(scene, questions)),
+            Self::Gpu(probe) => probe.ask(entry_point, scene, questions),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::job::film::Image;
 use crate::render::denoise::Denoised;
-use crate::render::{Assets, EngineChoice, EngineKind, Precision, Session, StepDenoiser};
+use crate::render::{Assets, EngineChoice, Session, StepDenoiser};
 use crate::study::technique::{Technique, converged, most_accurate};
 
 /// Precision of references relative to the target noise, if time permits.
@@ -208,18 +208,12 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     let mut lanes: Vec<Lane> = Vec::new();
     for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
         let changed = without_target(&technique.apply(document));
-        let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
-        if lanes.iter().any(is_there) {
+        if lanes.iter().any(|lane| lane.document == changed) {
             continue;
         }
-        let mut session = Session::open_with(engine, assets.clone())?;
+        let session = Session::open_with(engine, assets.clone())?;
         // All on the same engine.
         engine = session.engine().kind.into();
-        if technique.is_double() && session.engine().kind == EngineKind::Gpu {
-            log::warn!("{technique}: the GPU shades in f32 only; left out");
-            continue;
-        }
-        session.set_precision(precision(technique));
         lanes.push(Lane {
             technique: technique.clone(),
             step_denoiser: StepDenoiser::new(&changed),
@@ -230,19 +224,10 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     Ok(lanes)
 }
 
-fn precision(technique: &Technique) -> Precision {
-    if technique.is_double() {
-        Precision::Double
-    } else {
-        Precision::Single
-    }
-}
-
 /// Limits of several documents.
 struct Converged {
     reference: Reference,
     document: Document,
-    precision: Precision,
 }
 
 /// Limits of all techniques, and of the most accurate setting.
@@ -262,48 +247,31 @@ fn references_of(
         seconds: options.reference_seconds,
     };
     let mut made: Vec<Arc<Converged>> = Vec::new();
-    let mut make = |session: &mut Session, document: &Document, precision: Precision, what: &str| {
+    let mut make = |session: &mut Session, document: &Document, what: &str| {
         let key = converged(document);
-        let known = made
-            .iter()
-            .find(|known| known.document == key && known.precision == precision);
-        if let Some(known) = known {
+        if let Some(known) = made.iter().find(|known| known.document == key) {
             steps.finish(2.0);
             return Ok::<_, StudyError>(known.clone());
         }
         let what = format!("Reference: {what}");
         let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
         on_progress(0.0)?;
-        let reference = reference(session, document, precision, effort, &mut on_progress)?;
+        let reference = reference(session, document, effort, &mut on_progress)?;
         steps.finish(2.0);
         let converged = Arc::new(Converged {
             reference,
             document: key,
-            precision,
         });
         made.push(converged.clone());
         Ok(converged)
     };
-    // In f64 if any technique uses it.
-    let is_double = lanes.iter().any(|lane| lane.technique.is_double());
-    let best_precision = if is_double {
-        Precision::Double
-    } else {
-        Precision::Single
-    };
     let Some(first) = lanes.first_mut() else {
         return Err(StudyError::Stopped);
     };
-    let best = make(
-        &mut first.session,
-        &most_accurate(document),
-        best_precision,
-        "most accurate",
-    )?;
+    let best = make(&mut first.session, &most_accurate(document), "most accurate")?;
     let mut own = Vec::new();
     for lane in lanes {
-        let (precision, label) = (precision(&lane.technique), lane.technique.label());
-        own.push(make(&mut lane.session, &lane.document, precision, &label)?);
+        own.push(make(&mut lane.session, &lane.document, &lane.technique.label())?);
     }
     Ok(Exact { best, own })
 }
@@ -312,7 +280,6 @@ fn references_of(
 fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
     for lane in lanes.iter_mut() {
         steps.report(format!("Preparing: {}", lane.technique.label()), 0.0)?;
-        lane.session.set_precision(precision(&lane.technique));
         warmed(&mut lane.session, &lane.document)?;
     }
     let count = lanes.len();

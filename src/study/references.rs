@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{StudyError, UNLIMITED};
 use crate::analysis::halves::Halves;
 use crate::document::Document;
-use crate::render::{Precision, Session};
+use crate::render::Session;
 use crate::study::technique::converged;
 
 /// Changes the random numbers of a reference: no technique's own are these.
@@ -37,7 +37,6 @@ pub(super) struct Effort {
 pub(super) fn reference(
     session: &mut Session,
     document: &Document,
-    precision: Precision,
     effort: Effort,
     on_progress: &mut dyn FnMut(f64) -> Result<(), StudyError>,
 ) -> Result<Reference, StudyError> {
@@ -47,7 +46,7 @@ pub(super) fn reference(
     document.render.noise = Some(effort.noise);
     document.render.time_s = Some(effort.seconds);
     document.render.adaptive = Some(false);
-    session.set_precision(precision);
+    session.reset();
     session.submit(&document)?;
     loop {
         let progress = session.step(STEP)?;
@@ -66,7 +65,10 @@ pub(super) fn reference(
     let film = session.film()?;
     let halves = Halves::of(film);
     let is_lit = halves.mean_luminance() > 1e-9;
-    let reference = Reference { halves, noise };
-    session.set_precision(Precision::Single);
-    if is_lit { Ok(reference) } else { Err(StudyError::Black) }
+    session.reset();
+    if is_lit {
+        Ok(Reference { halves, noise })
+    } else {
+        Err(StudyError::Black)
+    }
 }

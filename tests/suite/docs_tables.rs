@@ -92,7 +92,7 @@ fn effects() -> String {
                 .id
                 .constant()
                 .map_or_else(String::new, |constant| format!("`{}`", constant.name)),
-            if effect.remove.is_some() { "yes" } else { "no" }.to_owned(),
+            if effect.id.is_needed() { "no" } else { "yes" }.to_owned(),
         ]
     };
     table(

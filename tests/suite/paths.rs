@@ -270,7 +270,7 @@ fn no_number_of_a_path_is_drawn_twice() {
 }
 
 /// All numbers of a path, as bits.
-fn bits(path: &PathResult<f32>) -> Vec<u32> {
+fn bits(path: &PathResult) -> Vec<u32> {
     let guides = &path.guides;
     let numbers = [path.alpha, path.clamped, guides.hits, guides.depth];
     let colors = [path.radiance.to_f32(), guides.albedo, guides.normal];

@@ -11,7 +11,7 @@ use glossmith::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NOD
 use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
 use glossmith::optics::layer::base::BASE_EDGE;
 use glossmith::optics::layer::coat::INNER_MAX;
-use glossmith::optics::layer::fuzz;
+use glossmith::optics::layer::{Layer, fuzz};
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::rough_diffuse;
@@ -170,8 +170,12 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     for lobe in Lobe::ALL {
         number(upper("LOBE", lobe.module()), f64::from(*lobe as u32));
     }
+    for layer in Layer::ALL {
+        number(upper("LAYER", layer.name()), f64::from(*layer as u32));
+    }
     let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
     for (name, value) in [
+        ("LAYERS", Layer::ALL.len() as f64),
         ("PI", std::f64::consts::PI),
         ("INV_PI", std::f64::consts::FRAC_1_PI),
         ("ALPHA_MIN", ALPHA_MIN),

@@ -56,14 +56,17 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "is a part of a layer whose share in Rust is a default of the layers' trait (src/optics/layer)",
+        &["cover_choose", "material_scatter", "material_steps", "no_lobe"],
+    ),
+    (
+        "finds layers by number; Rust walks over their types (src/optics/layer/mod.rs)",
         &[
-            "base_seen_albedo",
-            "cover_choose",
-            "material_scatter",
-            "material_steps",
-            "no_lobe",
-            "specular_chance",
-            "transmission_seen_albedo",
+            "is_layer",
+            "last_layer",
+            "layer_choice",
+            "layer_share",
+            "planned_layer",
+            "planned_layers",
         ],
     ),
 ];

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::library::Change;
 use glossmith::app::workspaces::LOOK;
-use glossmith::app::{Options, snapshots::PinChange};
 
 use super::ui::{Editor, editor_of, options, request, see, see_label, settle};
 use super::ui_hands::{press, type_path};
@@ -75,7 +75,7 @@ fn each_save_is_reported_over_the_viewport() {
     request(&mut harness, Action::Do(Command::CopyPicture));
     see_label(&mut harness, "Copied the image: 3 samples");
     close(&mut harness);
-    request(&mut harness, Action::ChangeSnapshots(PinChange::Add));
+    request(&mut harness, Action::ChangeSnapshots(Change::Add));
     see(&mut harness, "the snapshot", |harness| has(harness, "Pinned "));
     close(&mut harness);
     request(&mut harness, Action::ChangeLibrary(Change::Add));

@@ -19,12 +19,12 @@ fn base_shape() -> LobeShape {
     return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
 }
 
-fn base_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+fn base_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
     var reflected = material.base_color * (left * (1.0 - material.metalness));
     if PLAN_TRANSMISSION == 1u {
         reflected *= 1.0 - material.transmission_weight;
     }
-    return LayerAlbedo(reflected, vec3f(1.0));
+    return reflected;
 }
 
 fn base_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
@@ -37,18 +37,10 @@ fn base_toward(material: Material, layers: Layers, surface: Surface, shape: Lobe
     return LayerToward(color, layers.base.probability);
 }
 
-fn base_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
-    return luminance((*layers).base.albedo) + below;
-}
-
 fn base_chance(layers: Layers) -> f32 {
     let base = layers.base.probability;
     let through = layers.transmission.probability;
     return select(1.0, base / max(base + through, 1e-20), through > 0.0);
-}
-
-fn base_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
-    return share.albedo;
 }
 
 fn base_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {

@@ -26,7 +26,7 @@ fn coat_shape(material: Material) -> LobeShape {
     );
 }
 
-fn coat_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+fn coat_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     let cosine = dot(surface.coat_normal, surface.wo);
     var share = material.coat_weight;
     if PLAN_COAT_TEXTURES == 1u && material.coat_roughness_texture != NO_TEXTURE {

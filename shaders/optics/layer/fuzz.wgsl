@@ -11,7 +11,7 @@ fn fuzz_lobe(material: Material, surface: Surface) -> LayerLobe {
     return LayerLobe(base_shape(), surface.frame);
 }
 
-fn fuzz_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+fn fuzz_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     let share = material.fuzz_weight * fuzz_reflectance(material, dot(surface.frame.normal, surface.wo));
     return LayerAlbedo(material.fuzz_color * share, vec3f(1.0 - share));
 }

@@ -18,7 +18,7 @@ fn specular_lobe(material: Material, surface: Surface) -> LayerLobe {
     return LayerLobe(material_shape(material), surface.frame);
 }
 
-fn specular_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+fn specular_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     var albedos = SpecularAlbedos(vec3f(0.0), vec3f(0.0));
     if has_more(material) {
         albedos = specular_albedos(material, surface);
@@ -48,20 +48,12 @@ fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32
     return select(select(0.0, 1.0, material_has_specular(material)), specular + below, has_more(material));
 }
 
-fn specular_chance(layers: Layers) -> f32 {
-    return layers.specular.probability;
-}
-
 fn specular_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
     if !material_has_specular(material) || has_more(material) {
         return share.albedo;
     }
     let cosine = dot(surface.frame.normal, surface.wo);
     return fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
-}
-
-fn specular_decides_by_facet(material: Material) -> bool {
-    return decides_by_facet(material);
 }
 
 fn specular_pass_on(material: Material, layers: ptr<function, Layers>, weight: f32, probability: f32) -> bool {

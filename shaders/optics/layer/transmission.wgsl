@@ -12,9 +12,9 @@ fn transmission_lobe(material: Material, surface: Surface) -> LayerLobe {
     return LayerLobe(material_transmission_shape(material, surface.is_inside), surface.frame);
 }
 
-fn transmission_albedo(material: Material, surface: Surface, left: vec3f) -> LayerAlbedo {
+fn transmission_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
     let left_by_metal = left * (1.0 - material.metalness);
-    return LayerAlbedo(material.transmission_tint * left_by_metal * material.transmission_weight, vec3f(1.0));
+    return material.transmission_tint * left_by_metal * material.transmission_weight;
 }
 
 fn transmission_toward(
@@ -33,16 +33,4 @@ fn transmission_toward(
     }
     toward.color *= interface_gain(material, surface, shape);
     return toward;
-}
-
-fn transmission_choose(material: Material, layers: ptr<function, Layers>, below: f32) -> f32 {
-    return luminance((*layers).transmission.albedo);
-}
-
-fn transmission_chance(layers: Layers) -> f32 {
-    return 1.0;
-}
-
-fn transmission_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
-    return share.albedo;
 }

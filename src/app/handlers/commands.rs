@@ -4,8 +4,8 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::PICTURE_SIZE;
 use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
+use crate::app::services::library;
 use crate::app::services::viewing::Resolution;
-use crate::app::services::{library, snapshots};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::{book, palette};
@@ -22,7 +22,7 @@ use crate::study::explain::explain;
 const MAGNIFICATION: f32 = 2.0;
 
 impl App {
-    pub(in crate::app) fn apply(&mut self, ctx: &egui::Context, action: Action) {
+    pub fn apply(&mut self, ctx: &egui::Context, action: Action) {
         self.autosave.witness.note(format!("{action:?}"));
         match action {
             Action::Do(command) => self.command(ctx, command),
@@ -246,7 +246,7 @@ impl App {
             Command::SwapCompared => self.swap_compared(),
             Command::TakeCompared => self.take_compared(),
             Command::Pin => {
-                self.change_snapshots(snapshots::PinChange::Add);
+                self.change_snapshots(library::Change::Add);
                 // The panels stay hidden where they are.
                 layout::reveal(&mut self.layout, Pane::Snapshots);
             }
@@ -311,7 +311,7 @@ impl App {
         self.document = document;
     }
 
-    pub(in crate::app) fn use_material(&mut self, material: MaterialSettings) {
+    pub fn use_material(&mut self, material: MaterialSettings) {
         let label = format!("Use {}", material.name);
         for slot in self.shared.selection.slots() {
             *self.document.material_mut(slot) = material.clone();

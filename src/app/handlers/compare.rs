@@ -19,7 +19,7 @@ impl App {
         Some(self.shared.compare.compared()?.rms)
     }
 
-    pub(in crate::app) fn compare_with(&mut self, rival: Rival) {
+    pub fn compare_with(&mut self, rival: Rival) {
         let compare = &mut self.shared.compare;
         compare.rival = rival;
         (compare.is_on, compare.is_chosen) = (true, true);
@@ -27,7 +27,7 @@ impl App {
 
     /// Starts or ends the comparison. Where nothing was chosen for it, it is with the materials before the last change, else
     /// with the other of the two lobes that matter most.
-    pub(in crate::app) fn toggle_compare(&mut self) {
+    pub fn toggle_compare(&mut self) {
         let material = self.desk_material();
         let before = self.edits.materials_before(&self.document);
         let compare = &mut self.shared.compare;
@@ -48,7 +48,7 @@ impl App {
     }
 
     /// B becomes the document, and what the document was becomes B.
-    pub(in crate::app) fn swap_compared(&mut self) {
+    pub fn swap_compared(&mut self) {
         if !self.shared.compare.is_on {
             return;
         }
@@ -61,7 +61,7 @@ impl App {
     }
 
     /// B becomes the document, and nothing is left to compare.
-    pub(in crate::app) fn take_compared(&mut self) {
+    pub fn take_compared(&mut self) {
         if self.shared.compare.is_on {
             self.take_rival("Take B");
             self.shared.compare.is_on = false;
@@ -75,7 +75,7 @@ impl App {
     }
 
     /// Keeps B's renderer on what A's was given.
-    pub(in crate::app) fn keep_up_rival(&mut self, ctx: &egui::Context, wanted: &Document, pace: Pace) {
+    pub fn keep_up_rival(&mut self, ctx: &egui::Context, wanted: &Document, pace: Pace) {
         let snapshot = self.worker.snapshot();
         let material = self.desk_material();
         let slot = self.shared.selection.slot;
@@ -139,7 +139,7 @@ impl App {
     }
 
     /// Restarts B's render, as A's.
-    pub(in crate::app) fn restart_rival(&self) {
+    pub fn restart_rival(&self) {
         if let Some(renderer) = &self.shared.compare.renderer {
             renderer.worker.restart();
         }

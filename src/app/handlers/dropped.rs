@@ -13,7 +13,7 @@ use crate::scene::{Model, ModelOptions, ModelSource};
 use crate::store::file_kind::{FileKind, may_hold_document};
 
 /// What was dropped on the window in this frame and, where text may be taken, pasted.
-pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<Action> {
+pub fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<Action> {
     ctx.input(|input| {
         let dropped: Vec<_> = input
             .raw
@@ -42,7 +42,7 @@ fn name(path: &Path) -> String {
 }
 
 /// The images in a folder, where their names say that they belong on a material.
-pub(in crate::app) fn textures_in(path: &Path) -> Vec<PathBuf> {
+pub fn textures_in(path: &Path) -> Vec<PathBuf> {
     if !path.is_dir() || holds_model(path) {
         return Vec::new();
     }
@@ -94,7 +94,7 @@ impl Sorted {
 impl App {
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
     /// too. Images are for the selected material; one may have a document in it.
-    pub(in crate::app) fn drop_files(&mut self, paths: Vec<PathBuf>) {
+    pub fn drop_files(&mut self, paths: Vec<PathBuf>) {
         if let Some(address) = paths
             .iter()
             .find_map(|path| path.to_str().filter(|text| is_address(text)))
@@ -136,7 +136,7 @@ impl App {
     }
 
     /// Opens files given at the start, models among them together; how many there are to be waited for.
-    pub(in crate::app) fn open_all(&mut self, mut paths: Vec<PathBuf>) -> usize {
+    pub fn open_all(&mut self, mut paths: Vec<PathBuf>) -> usize {
         let models: Vec<PathBuf> = paths.extract_if(.., |path| is_model(path)).collect();
         let mut awaited = 0;
         if let [first, rest @ ..] = models.as_slice() {
@@ -180,7 +180,7 @@ impl App {
     }
 
     /// What was dropped with a model and is not part of it: images that say what they are for are assigned to its first material.
-    pub(in crate::app) fn use_dropped_with(&mut self, model: &Model) {
+    pub fn use_dropped_with(&mut self, model: &Model) {
         let names: Vec<String> = model.files.iter().map(|path| name(path)).collect();
         let mut left = std::mem::take(&mut self.files.dropped_with);
         left.retain(|path| !names.iter().any(|known| known.eq_ignore_ascii_case(&name(path))));
@@ -201,7 +201,7 @@ impl App {
     }
 
     /// Opens the files whose names were pasted, one a line.
-    pub(in crate::app) fn paste(&mut self, text: &str) {
+    pub fn paste(&mut self, text: &str) {
         let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
         if let Some(address) = lines.clone().find(|line| is_address(line)) {
             self.refuse_address(address);

@@ -16,7 +16,7 @@ use crate::store::preset;
 
 impl App {
     /// Asks for the file that a preset is exported to, or the selected material.
-    pub(in crate::app) fn ask_export(&mut self, ctx: &egui::Context, preset: Option<MaterialSettings>) {
+    pub fn ask_export(&mut self, ctx: &egui::Context, preset: Option<MaterialSettings>) {
         let material = preset.clone().unwrap_or_else(|| self.desk_material());
         let name = format!("{}.mtlx", preset::command_line_name(&material.name));
         self.files.exported = preset;
@@ -25,7 +25,7 @@ impl App {
 
     /// Makes the file beside the window, to be shown before it is written: of a format that takes a model all of it, else
     /// the selected material; or the preset that was chosen.
-    pub(in crate::app) fn prepare_export(&mut self, path: PathBuf) {
+    pub fn prepare_export(&mut self, path: PathBuf) {
         let format = match exchange::by_ending(&path) {
             Ok(format) => format,
             Err(error) => return self.report(Level::Error, error.to_string()),
@@ -51,7 +51,7 @@ impl App {
     }
 
     /// Makes the text of a material in a format beside the window, for the clipboard.
-    pub(in crate::app) fn copy_as(&mut self, material: MaterialSettings, format: &str) {
+    pub fn copy_as(&mut self, material: MaterialSettings, format: &str) {
         let Some(format) = exchange::by_name(format) else {
             return;
         };
@@ -61,7 +61,7 @@ impl App {
     }
 
     /// Puts a text that is ready on the clipboard.
-    pub(in crate::app) fn take_copied(&mut self, ctx: &egui::Context, copied: Result<(String, Success), String>) {
+    pub fn take_copied(&mut self, ctx: &egui::Context, copied: Result<(String, Success), String>) {
         match copied {
             Ok((text, done)) => {
                 ctx.copy_text(text);
@@ -72,20 +72,20 @@ impl App {
     }
 
     /// Shows what is lost, and writes where that was agreed to.
-    pub(in crate::app) fn show_export(&mut self, ctx: &egui::Context) {
+    pub fn show_export(&mut self, ctx: &egui::Context) {
         let Some(answer) = self.export.show(ctx) else { return };
         let prepared = self.export.take();
         let Some(prepared) = prepared.filter(|_| answer == Answer::Write) else {
             return;
         };
         self.files.disk.write(move || {
-            let saved = prepared.save().map_err(|error| error.to_string());
+            let saved = prepared.save().map_err(crate::in_words);
             Done::Wrote(saved.map(|()| Success::with_file("Exported", &prepared.report.output, "")))
         });
     }
 
     /// Takes a file that is ready.
-    pub(in crate::app) fn take_prepared(&mut self, ctx: &egui::Context, ready: Result<Ready, String>) {
+    pub fn take_prepared(&mut self, ctx: &egui::Context, ready: Result<Ready, String>) {
         match ready {
             Ok(ready) => self.export.ask(ctx, ready),
             Err(error) => self.report(Level::Error, error),
@@ -97,8 +97,7 @@ impl App {
 fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, Success), String> {
     let name = material.name.clone();
     let path = PathBuf::from(&name).with_extension(format.extensions[0]);
-    let prepared =
-        exchange::prepare(&Subject::of(material), &name, &path, format).map_err(|error| error.to_string())?;
+    let prepared = exchange::prepare(&Subject::of(material), &name, &path, format).map_err(crate::in_words)?;
     let count = |outcome: Outcome| prepared.report.count(outcome);
     let words = match [count(Outcome::Approximated), count(Outcome::Dropped)] {
         [0, 0] => format!("Copied {name}: {}, nothing is lost", format.label),

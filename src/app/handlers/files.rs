@@ -29,23 +29,23 @@ use crate::store::{FileError, Loaded, lut, preset, save_document, save_material}
 const KIND: &str = ".glossmith";
 
 /// The project's file, and the thread that reads and writes.
-pub(in crate::app) struct Files {
-    pub(in crate::app) disk: Disk,
-    pub(in crate::app) project: Option<PathBuf>,
+pub struct Files {
+    pub disk: Disk,
+    pub project: Option<PathBuf>,
     /// An image that was dropped on the window and may hold a document.
-    pub(in crate::app) dropped: Option<PathBuf>,
+    pub dropped: Option<PathBuf>,
     /// Images and buffers that were dropped together with a model that is still being opened.
-    pub(in crate::app) dropped_with: Vec<PathBuf>,
+    pub dropped_with: Vec<PathBuf>,
     /// The files that are shown, looked at for changes.
-    pub(in crate::app) watched: Watched,
+    pub watched: Watched,
     /// Where the next whole image goes.
-    pub(in crate::app) wanted_pictures: Vec<Destination>,
+    pub wanted_pictures: Vec<Destination>,
     /// The preset that is exported; the document's materials where there is none.
-    pub(in crate::app) exported: Option<MaterialSettings>,
+    pub exported: Option<MaterialSettings>,
 }
 
 impl Files {
-    pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+    pub fn new(ctx: egui::Context) -> std::io::Result<Self> {
         let repaint = ctx.clone();
         Ok(Self {
             watched: Watched::new(watched::INTERVAL, move || repaint.request_repaint())?,
@@ -59,19 +59,19 @@ impl Files {
     }
 
     /// What to call the project.
-    pub(in crate::app) fn project_name(&self) -> String {
+    pub fn project_name(&self) -> String {
         let stem = self.project.as_ref().and_then(|path| path.file_stem());
         let name = stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned());
         name.strip_suffix(KIND).map_or(name.clone(), str::to_owned)
     }
 
     /// Whether something is still to be written.
-    pub(in crate::app) fn is_saving(&self) -> bool {
+    pub fn is_saving(&self) -> bool {
         self.disk.is_writing() || !self.wanted_pictures.is_empty()
     }
 
     /// Whether a material or a project that was opened has not been read yet.
-    pub(in crate::app) fn is_reading(&self) -> bool {
+    pub fn is_reading(&self) -> bool {
         self.disk.is_reading()
     }
 }
@@ -103,7 +103,7 @@ fn opening(path: &Path) -> Opening {
 
 impl App {
     /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
-    pub(in crate::app) fn open(&mut self, path: PathBuf) -> bool {
+    pub fn open(&mut self, path: PathBuf) -> bool {
         match opening(&path) {
             Opening::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
             Opening::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
@@ -140,7 +140,7 @@ impl App {
     }
 
     /// Takes what has been read and written.
-    pub(in crate::app) fn take_files(&mut self, ctx: &egui::Context) {
+    pub fn take_files(&mut self, ctx: &egui::Context) {
         let mut has_failed = false;
         for done in self.files.disk.take_done() {
             match done {
@@ -157,7 +157,7 @@ impl App {
                         self.shared.recent.add(&path);
                         self.files.project = Some(path.clone());
                     }
-                    let saved = saved.map_err(|error| error.to_string());
+                    let saved = saved.map_err(crate::in_words);
                     self.report_outcome(saved.map(|()| Success::with_file("Saved", &path, "")));
                 }
                 Done::Listed(listed) => self.take_library(listed),
@@ -226,7 +226,7 @@ impl App {
 
     /// Files given at the start are where editing begins, not edits that could be lost or undone; a project's changes
     /// are.
-    pub(in crate::app) fn count_as_start(&mut self, is_start: bool) {
+    pub fn count_as_start(&mut self, is_start: bool) {
         self.edits.record(&self.document, false);
         if is_start && self.files.project.is_none() {
             self.edits = Edits::new(self.document.clone());
@@ -234,7 +234,7 @@ impl App {
     }
 
     /// Goes on with a project that has been read.
-    pub(in crate::app) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
+    pub fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
         self.report_all(loaded.warnings);
         self.shared.recent.add(&path);
         self.document = loaded.value;
@@ -256,7 +256,7 @@ impl App {
     }
 
     /// Goes on with the document of the start.
-    pub(in crate::app) fn start_anew(&mut self) {
+    pub fn start_anew(&mut self) {
         self.document = new_document(self.document.view.denoise, false);
         self.shared.selection.slot = 0;
         self.files.project = None;
@@ -265,29 +265,20 @@ impl App {
         self.edits.mark_saved();
     }
 
-    fn report_all(&mut self, warnings: Vec<String>) {
+    pub fn report_all(&mut self, warnings: Vec<String>) {
         for warning in warnings {
             self.report(Level::Warning, warning);
         }
     }
 
     /// The commands of the file menu.
-    pub(in crate::app) fn file_command(&mut self, ctx: &egui::Context, command: Command) {
+    pub fn file_command(&mut self, ctx: &egui::Context, command: Command) {
         let material_file = || format!("{}.json", preset::command_line_name(&self.desk_material().name));
         let ask = match command {
-            Command::New => {
-                self.unless_unsaved(ctx, Then::New);
-                return;
-            }
-            Command::CopyPicture => {
-                self.want_picture(Destination::Clipboard);
-                return;
-            }
+            Command::New => return self.unless_unsaved(ctx, Then::New),
+            Command::CopyPicture => return self.want_picture(Destination::Clipboard),
             Command::Save => match self.files.project.clone() {
-                Some(path) => {
-                    self.save_project(path);
-                    return;
-                }
+                Some(path) => return self.save_project(path),
                 None => (Purpose::SaveProject, format!("untitled{KIND}.json")),
             },
             Command::SaveAs => (
@@ -300,15 +291,9 @@ impl App {
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::WatchFolder => (Purpose::WatchFolder, String::new()),
-            Command::TypePaths => {
-                self.toggle_typed_paths();
-                return;
-            }
+            Command::TypePaths => return self.toggle_typed_paths(),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
-            Command::Export => {
-                self.ask_export(ctx, None);
-                return;
-            }
+            Command::Export => return self.ask_export(ctx, None),
             Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
             Command::QueuePicture => (Purpose::QueuePicture, format!("{}.png", self.files.project_name())),
@@ -320,7 +305,7 @@ impl App {
     }
 
     /// A file was chosen in a dialog.
-    pub(in crate::app) fn chosen(&mut self, purpose: Purpose, path: PathBuf) {
+    pub fn chosen(&mut self, purpose: Purpose, path: PathBuf) {
         match purpose {
             Purpose::Open | Purpose::OpenModel | Purpose::OpenEnvironment | Purpose::OpenMaterial => {
                 self.open(path);
@@ -348,7 +333,7 @@ impl App {
     }
 
     /// The system's dialog was left without a file, or was never seen; it does not report which.
-    pub(in crate::app) fn report_unsaved(&mut self, purpose: Purpose) {
+    pub fn report_unsaved(&mut self, purpose: Purpose) {
         let text = format!(
             "{}: no file was chosen, nothing is saved. If no dialog was seen: File › Type file names",
             purpose.title()
@@ -357,7 +342,7 @@ impl App {
     }
 
     /// Changes how files are chosen.
-    pub(in crate::app) fn toggle_typed_paths(&mut self) {
+    pub fn toggle_typed_paths(&mut self) {
         let text = match self.dialogs.toggle_typed() {
             true => "files are chosen by typing their paths in the window",
             false => "files are chosen in the system's dialog",
@@ -417,13 +402,13 @@ impl App {
     fn save_material(&mut self, path: PathBuf) {
         let material = self.desk_material();
         self.files.disk.write(move || {
-            let saved = save_material(&path, &material).map_err(|error| error.to_string());
+            let saved = save_material(&path, &material).map_err(crate::in_words);
             Done::Wrote(saved.map(|()| Success::with_file("Saved", &path, "")))
         });
     }
 
     /// Reports what was to be done, in a note.
-    pub(in crate::app) fn report_outcome(&mut self, outcome: Result<Success, String>) {
+    pub fn report_outcome(&mut self, outcome: Result<Success, String>) {
         match outcome {
             Ok(success) => self.report_success(Some(success)),
             Err(error) => self.report(Level::Error, error),

@@ -10,23 +10,20 @@ use crate::app::services::messages::Success;
 use crate::render::worker::Level;
 use crate::store::{FileError, library};
 
+type Materials = Listed<Vec<library::Entry>>;
+
 impl App {
     /// Lists the user's folder, beside the window.
-    pub(in crate::app) fn list_library(&mut self) {
+    pub fn list_library(&mut self) {
         if let Some(folder) = self.shared.library.folder.clone() {
-            self.files.disk.list(move || {
-                Done::Listed(library::list(&folder).map(|entries| Listed {
-                    done: None,
-                    entries,
-                    added: None,
-                    removed: None,
-                }))
-            });
+            self.files
+                .disk
+                .list(move || Done::Listed(library::list(&folder).map(Listed::of)));
         }
     }
 
     /// Changes the user's folder, beside the window.
-    pub(in crate::app) fn change_library(&mut self, change: Change) {
+    pub fn change_library(&mut self, change: Change) {
         let Some(folder) = self.shared.library.folder.clone() else {
             self.report(
                 Level::Error,
@@ -37,40 +34,26 @@ impl App {
         let material = self.desk_material();
         let kept = self.shared.library.removed.take();
         self.files.disk.write(move || {
-            let changed = || -> Result<Listed, FileError> {
-                let (mut added, mut removed) = (None, None);
-                let saved = |path: &Path| Success::with_file("Saved", path, "one of your presets");
-                let done = match &change {
+            let changed = || -> Result<Materials, FileError> {
+                let mut listed = Listed::default();
+                let saved = |path: &Path| Some(Success::with_file("Saved", path, "one of your presets"));
+                match &change {
                     Change::Add => {
                         let path = library::add(&folder, &material)?;
-                        Some(saved(added.insert(path)))
+                        listed.done = saved(listed.added.insert(path));
                     }
-                    Change::Rename(path, name) => {
-                        Some(Success::with_file("Renamed to", &library::rename(path, name)?, ""))
-                    }
-                    Change::Remove(path) => {
-                        removed = Some(library::remove(path)?);
-                        Some(Success::with_file("Removed", path, ""))
-                    }
-                    Change::Duplicate(path) => Some(saved(&library::duplicate(path)?)),
-                    Change::Restore => match &kept {
-                        Some(kept) => Some(Success::with_file("Restored", &library::restore(kept)?, "")),
-                        None => None,
-                    },
-                };
-                Ok(Listed {
-                    done,
-                    entries: library::list(&folder)?,
-                    added,
-                    removed,
-                })
+                    Change::Duplicate(path) => listed.done = saved(&library::duplicate(path)?),
+                    change => listed.change(change, kept.as_ref(), library::rename)?,
+                }
+                listed.entries = library::list(&folder)?;
+                Ok(listed)
             };
             Done::ChangedLibrary(changed())
         });
     }
 
     /// Takes the folder's contents, or says why there are none.
-    pub(in crate::app) fn take_library(&mut self, listed: Result<Listed, FileError>) {
+    pub fn take_library(&mut self, listed: Result<Materials, FileError>) {
         match listed {
             Ok(listed) => {
                 self.report_success(listed.done);

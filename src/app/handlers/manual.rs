@@ -10,7 +10,7 @@ use crate::app::sheets::menu::Sheet;
 impl App {
     /// The address in the book of what the user is at: the sheet that is open, the panel of the focused control, or the
     /// panel under the pointer.
-    pub(in crate::app) fn topic(&self, ctx: &Context) -> &'static str {
+    pub fn topic(&self, ctx: &Context) -> &'static str {
         let is_asked = self.unsaved.is_open() || !self.leftovers.is_empty();
         let is_searching = matches!(self.sheet, Sheet::Palette { .. } | Sheet::Shortcuts);
         let sheets = [

@@ -2,12 +2,12 @@
 
 mod commands;
 mod compare;
-pub(super) mod dropped;
+pub mod dropped;
 mod export;
-pub(super) mod files;
+pub mod files;
 mod library;
 mod manual;
-pub(super) mod models;
+pub mod models;
 mod outside;
 mod palette_items;
 mod queue;

@@ -15,11 +15,11 @@ use crate::store::examples::still_life;
 /// What an edit is called that changes the model, before the model's name.
 const MODEL_CHANGED: &str = "Change the model to";
 /// What an edit is called that changes the environment.
-pub(in crate::app) const ENVIRONMENT_CHANGED: &str = "Change the environment";
+pub const ENVIRONMENT_CHANGED: &str = "Change the environment";
 
 impl App {
     /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
-    pub(in crate::app) fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
+    pub fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
         let is_shown_anew = self.document.model == source && self.document.import != options;
         let edited = self.desk_material();
@@ -62,7 +62,7 @@ impl App {
 
     /// Takes over what files hold now that were saved by another program. Materials that were edited stay, the others are
     /// those of the file; view and light stay as they are.
-    pub(in crate::app) fn adopt_reloaded(&mut self, before: Option<Arc<Model>>, model: Option<Arc<Model>>) {
+    pub fn adopt_reloaded(&mut self, before: Option<Arc<Model>>, model: Option<Arc<Model>>) {
         let (Some(before), Some(model)) = (before, model) else {
             return;
         };
@@ -87,7 +87,7 @@ impl App {
     }
 
     /// What was called off while it was made ready is not in the document either.
-    pub(in crate::app) fn take_back_cancelled(&mut self, ctx: &egui::Context) {
+    pub fn take_back_cancelled(&mut self, ctx: &egui::Context) {
         let snapshot = self.worker.snapshot();
         let Some(scene) = &snapshot.scene else { return };
         let (shown, wanted) = (&scene.document, &self.document);
@@ -100,7 +100,7 @@ impl App {
     }
 
     /// Has the files looked at that are shown, and those read again that another program saved.
-    pub(in crate::app) fn watch_files(&mut self) {
+    pub fn watch_files(&mut self) {
         let snapshot = self.worker.snapshot();
         let Some(scene) = &snapshot.scene else { return };
         let mut files = scene.model.files.clone();

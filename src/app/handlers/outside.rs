@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
+use crate::app::sheets::question;
 use crate::import::resource;
 
 impl App {
     /// Asks about files that a file names, which is opened again once they are allowed.
-    pub(in crate::app) fn ask_about(&mut self, path: &Path, files: Vec<PathBuf>) {
+    pub fn ask_about(&mut self, path: &Path, files: Vec<PathBuf>) {
         if !files.is_empty() {
             self.unsaved.outside.ask(files);
             self.unsaved.outside.named_by = Some(path.to_owned());
@@ -15,21 +16,14 @@ impl App {
     }
 
     /// Asks once for all that was refused; what is allowed is remembered, and read.
-    pub(in crate::app) fn show_outside(&mut self, ctx: &egui::Context) {
+    pub fn show_outside(&mut self, ctx: &egui::Context) {
         let outside = &mut self.unsaved.outside;
         outside.ask(self.worker.loading().take_refused());
         if outside.files.is_empty() {
             outside.named_by = None;
             return;
         }
-        let mut answer = None;
-        let modal = egui::Modal::new(egui::Id::unique("outside")).show(ctx, |ui| {
-            answer = outside.show(ui);
-        });
-        if modal.should_close() {
-            answer = Some(false);
-        }
-        let Some(is_allowed) = answer else {
+        let Some(is_allowed) = question(ctx, "outside", false, |ui| outside.show(ui)) else {
             return;
         };
         let files = std::mem::take(&mut outside.files);

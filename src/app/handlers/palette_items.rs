@@ -14,7 +14,7 @@ use crate::store::PRESETS;
 
 impl App {
     /// Materials, environments, views of the camera, workspaces and recent files.
-    pub(in crate::app) fn things(&self) -> Vec<Findable> {
+    pub fn things(&self) -> Vec<Findable> {
         let shipped = PRESETS
             .iter()
             .map(|material| self.material(preset_key(material), material));

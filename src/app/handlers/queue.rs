@@ -13,7 +13,7 @@ use crate::render::queue::Task;
 
 impl App {
     /// Has a task rendered by the engine that renders the viewport, and shows the queue.
-    pub(in crate::app) fn enqueue(&mut self, task: Task) {
+    pub fn enqueue(&mut self, task: Task) {
         let kind = self.worker.snapshot().engine.as_ref().map(|engine| engine.kind);
         let engine = kind.map_or(EngineChoice::Cpu, EngineChoice::from);
         self.shared.queue.add(task, engine);
@@ -21,20 +21,20 @@ impl App {
     }
 
     /// Has the document rendered as it is, with its own image size.
-    pub(in crate::app) fn enqueue_picture(&mut self, path: PathBuf) {
+    pub fn enqueue_picture(&mut self, path: PathBuf) {
         let document = Box::new(self.document.clone());
         self.enqueue(Task::Picture { document, path });
     }
 
     /// Says how tasks ended.
-    pub(in crate::app) fn take_queue_news(&mut self) {
+    pub fn take_queue_news(&mut self) {
         for ended in self.shared.queue.take_news() {
             self.report_outcome(ended.map(Success::new));
         }
     }
 
     /// Asks before the window is closed over renders that are not done.
-    pub(in crate::app) fn show_queue_question(&mut self, ctx: &egui::Context) {
+    pub fn show_queue_question(&mut self, ctx: &egui::Context) {
         if !self.unsaved.asks_about_queue {
             return;
         }

@@ -7,7 +7,7 @@ use crate::render::worker::Level;
 
 impl App {
     /// Takes the reports of the thread that saves documents for recovery.
-    pub(in crate::app) fn take_autosave_reports(&mut self) {
+    pub fn take_autosave_reports(&mut self) {
         for text in self.autosave.witness.take_reported() {
             self.report(Level::Error, text);
         }
@@ -29,7 +29,7 @@ impl App {
     }
 
     /// Shows the sheet as long as there is something to choose.
-    pub(in crate::app) fn show_recovery(&mut self, ctx: &egui::Context) {
+    pub fn show_recovery(&mut self, ctx: &egui::Context) {
         if self.leftovers.is_empty() {
             return;
         }

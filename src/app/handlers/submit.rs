@@ -9,7 +9,7 @@ use crate::render::worker::{Activity, Pace, Picture};
 
 impl App {
     /// Records the frame's edit and hands the renderer what differs from what it has.
-    pub(in crate::app) fn record_and_submit(&mut self, ctx: &egui::Context) {
+    pub fn record_and_submit(&mut self, ctx: &egui::Context) {
         let is_dragging = is_dragging(ctx);
         self.record(is_dragging);
         if self.awaited > 0 {

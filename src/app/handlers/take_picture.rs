@@ -10,14 +10,14 @@ use crate::render::worker::{Activity, Level};
 
 /// Where an image goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Destination {
+pub enum Destination {
     File(PathBuf),
     Clipboard,
 }
 
 impl App {
     /// Hands the image over as soon as it is whole.
-    pub(in crate::app) fn want_picture(&mut self, to: Destination) {
+    pub fn want_picture(&mut self, to: Destination) {
         if self.worker.snapshot().picture.is_none() {
             self.report(Level::Warning, "there is no image yet");
         } else {
@@ -27,7 +27,7 @@ impl App {
 
     /// Delivers the image if one was requested. While something is being changed there are only small previews, which
     /// do not count, unless rendering was stopped and nothing better will come.
-    pub(in crate::app) fn hand_over_pictures(&mut self, ctx: &egui::Context) {
+    pub fn hand_over_pictures(&mut self, ctx: &egui::Context) {
         if self.files.wanted_pictures.is_empty() {
             return;
         }
@@ -52,8 +52,7 @@ impl App {
                 Destination::File(path) => {
                     let (picture, details) = (picture.clone(), details.clone());
                     self.files.disk.write_beside(move || {
-                        output::write(&path, picture.rendered(), &picture.document)
-                            .map_err(|error| error.to_string())?;
+                        output::write(&path, picture.rendered(), &picture.document).map_err(crate::in_words)?;
                         Ok(Success::with_file("Saved", &path, &details).finished(is_finished))
                     });
                 }
@@ -68,11 +67,11 @@ impl App {
     }
 
     /// Writes the layers that the renderer made.
-    pub(in crate::app) fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>, progress: &Progress) {
+    pub fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>, progress: &Progress) {
         let is_finished = progress.is_done;
         let samples = samples([progress.samples_per_pixel, progress.samples_wanted], is_finished);
         self.files.disk.write_beside(move || {
-            output::write_layers(&path, &layers).map_err(|error| error.to_string())?;
+            output::write_layers(&path, &layers).map_err(crate::in_words)?;
             let details = format!("layers, {samples}");
             Ok(Success::with_file("Saved", &path, &details).finished(is_finished))
         });

@@ -7,7 +7,7 @@ use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 impl App {
     /// Puts images on the selected materials, in one edit.
-    pub(in crate::app) fn put_textures(&mut self, textures: &[(TextureTarget, UserTexture)]) {
+    pub fn put_textures(&mut self, textures: &[(TextureTarget, UserTexture)]) {
         let Some((_, first)) = textures.first() else { return };
         let name = first
             .file
@@ -39,7 +39,7 @@ impl App {
     }
 
     /// Puts images on what their names say; those that are left over. One by itself whose name says nothing is a base colour.
-    pub(in crate::app) fn put_pictures(&mut self, pictures: &[PathBuf]) -> Vec<PathBuf> {
+    pub fn put_pictures(&mut self, pictures: &[PathBuf]) -> Vec<PathBuf> {
         let (found, left) = set::recognised(pictures);
         if let (true, [picture]) = (found.is_empty(), pictures) {
             self.put_textures(&[(TextureTarget::BaseColor, UserTexture::of(picture.clone()))]);

@@ -20,7 +20,7 @@ const PREVIEW_STEP: Duration = Duration::from_millis(33);
 
 impl App {
     /// Opens the sheet, with the size of the image as it is.
-    pub(in crate::app) fn open_turntable(&mut self) {
+    pub fn open_turntable(&mut self) {
         let project = self.files.project.as_deref().and_then(Path::parent);
         let beside = project.or(self.dialogs.folder()).unwrap_or(Path::new(""));
         // Nothing but a place to begin with: where there is no working folder a path can be typed.
@@ -43,7 +43,7 @@ impl App {
     }
 
     /// Begins a turn in the viewport, or ends it.
-    pub(in crate::app) fn toggle_preview(&mut self) {
+    pub fn toggle_preview(&mut self) {
         let camera = self.document.camera;
         let since = Instant::now();
         let preview = &mut self.turntable.preview;
@@ -51,7 +51,7 @@ impl App {
     }
 
     /// The document as the viewport shows it, and whether that turns.
-    pub(in crate::app) fn document_shown(&mut self, ctx: &egui::Context) -> (Document, bool) {
+    pub fn document_shown(&mut self, ctx: &egui::Context) -> (Document, bool) {
         let is_called_off = !self.is_covered() && ctx.input(|input| input.key_pressed(egui::Key::Escape));
         let is_over = |preview: &Preview| is_called_off || preview.camera != self.document.camera;
         if self.turntable.preview.as_ref().is_some_and(is_over) {
@@ -69,7 +69,7 @@ impl App {
     }
 
     /// Shows the sheet where it is open.
-    pub(in crate::app) fn show_turntable(&mut self, ctx: &egui::Context) {
+    pub fn show_turntable(&mut self, ctx: &egui::Context) {
         if !self.turntable.is_open {
             return;
         }

@@ -4,12 +4,13 @@ use egui::ViewportCommand;
 
 use crate::app::App;
 use crate::app::actions::Command;
+use crate::app::sheets;
 use crate::app::sheets::unsaved::{Answer, Question, Then};
 use crate::render::worker::Level;
 
 impl App {
     /// Does what replaces the document or closes the window; asks first where that would lose edits.
-    pub(in crate::app) fn unless_unsaved(&mut self, ctx: &egui::Context, then: Then) {
+    pub fn unless_unsaved(&mut self, ctx: &egui::Context, then: Then) {
         if self.edits.is_saved(&self.document) {
             self.go_on(ctx, then);
         } else {
@@ -29,7 +30,7 @@ impl App {
     }
 
     /// Keeps the window open where edits, files being written or renders would be lost with it.
-    pub(in crate::app) fn guard_close(&mut self, ctx: &egui::Context) {
+    pub fn guard_close(&mut self, ctx: &egui::Context) {
         let is_asked = ctx.input(|input| input.viewport().close_requested());
         if !is_asked || self.unsaved.may_close {
             return;
@@ -47,7 +48,7 @@ impl App {
     }
 
     /// Goes on with what waits for a file, once it is written; not where that failed or was cancelled.
-    pub(in crate::app) fn go_on_after_save(&mut self, ctx: &egui::Context, has_failed: bool) {
+    pub fn go_on_after_save(&mut self, ctx: &egui::Context, has_failed: bool) {
         if has_failed {
             self.unsaved.after_save = None;
         }
@@ -63,19 +64,13 @@ impl App {
     }
 
     /// Shows the questions where there are any.
-    pub(in crate::app) fn show_question(&mut self, ctx: &egui::Context) {
+    pub fn show_question(&mut self, ctx: &egui::Context) {
         self.show_outside(ctx);
         let name = self.files.project_name();
         let Some(question) = &mut self.unsaved.question else {
             return;
         };
-        let mut answer = None;
-        let modal = egui::Modal::new(egui::Id::unique("unsaved")).show(ctx, |ui| {
-            answer = question.show(ui, &name);
-        });
-        if modal.should_close() {
-            answer = Some(Answer::Cancel);
-        }
+        let answer = sheets::question(ctx, "unsaved", Answer::Cancel, |ui| question.show(ui, &name));
         let Some(answer) = answer else {
             return;
         };

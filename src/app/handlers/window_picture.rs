@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 impl App {
     /// Asks for the image that was wanted in the frame before, when a sheet may have lain over the window.
-    pub(in crate::app) fn picture_window(&mut self, ctx: &egui::Context) {
+    pub fn picture_window(&mut self, ctx: &egui::Context) {
         let Some(path) = self.window_picture.take() else {
             return;
         };
@@ -47,5 +47,5 @@ fn save(path: &Path, image: &ColorImage) -> Result<(), String> {
     let opaque = |pixel: &egui::Color32| [pixel.r(), pixel.g(), pixel.b(), 255];
     let rgba: Vec<u8> = image.pixels.iter().flat_map(opaque).collect();
     let bytes = png_bytes(image.size.map(|side| side as u32), &rgba, None)?;
-    save_atomically(path, &bytes).map_err(|error| error.to_string())
+    save_atomically(path, &bytes).map_err(crate::in_words)
 }

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::app::kit::words::{duration, percent_short};
-pub(in crate::app) use crate::plot::number as short;
+pub(crate) use crate::plot::number as short;
 
 /// The share of an axis at either end in which there are no labels: half of a label's height in a small chart.
 const LABEL_GAP: f64 = 0.05;
@@ -20,7 +20,7 @@ const POWERS_MAX: f64 = 6.5;
 const MARGIN: [f32; 2] = [0.07, 0.07];
 
 /// A plot that stands still; what a number on either axis is called is up to the chart.
-pub(in crate::app) fn still<'a, F>(name: &str, height: f32, in_words: [F; 2]) -> Plot<'a>
+pub fn still<'a, F>(name: &str, height: f32, in_words: [F; 2]) -> Plot<'a>
 where
     F: Fn(f64) -> String + Clone + 'a,
 {
@@ -50,7 +50,7 @@ where
 }
 
 /// A plot of logarithms to base 10 that stands still: seconds to the right, shares upwards; `axes` are the titles.
-pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
+pub fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
     let in_words: [fn(f64) -> String; 2] = [|x| duration(10.0_f64.powf(x)), |y| percent_short(10.0_f64.powf(y))];
     still(name, height, in_words)
         .x_axis_label(axes[0])
@@ -61,7 +61,7 @@ pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: 
 }
 
 /// The first round number that is not below this one: where an axis ends so that its last label is always seen.
-pub(in crate::app) fn rounded_up(value: f64) -> f64 {
+pub fn rounded_up(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.max(1e-9).log10().floor());
     let digits = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let is_above = |digit: &f64| digit * power >= value * (1.0 - 1e-9);
@@ -70,7 +70,7 @@ pub(in crate::app) fn rounded_up(value: f64) -> f64 {
 
 /// A line for each power of ten of an axis that counts them from 0, to either side; for every other one where they are
 /// many.
-pub(in crate::app) fn powers(input: GridInput) -> Vec<GridMark> {
+pub fn powers(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let step = if high - low > POWERS_MAX { 2 } else { 1 };
     let marks = (low.ceil() as i32..=high.floor() as i32).filter(|power| power % step == 0);

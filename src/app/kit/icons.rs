@@ -6,7 +6,7 @@ use crate::app::kit::theme::ROW_HEIGHT;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Icon {
+pub enum Icon {
     Pause,
     Play,
     More,
@@ -20,7 +20,7 @@ pub(in crate::app) enum Icon {
 }
 
 /// A square button with an icon, which has a name and explains itself.
-pub(in crate::app) fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
+pub fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ROW_HEIGHT), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let visuals = ui.style().interact(&response);

@@ -4,8 +4,8 @@ use egui::{Align, Response, Ui, Vec2};
 
 /// A row that is to have the keys as soon as it is shown.
 #[derive(Clone, Default)]
-pub(super) struct FocusRequest {
-    pub(super) group: &'static str,
+pub struct FocusRequest {
+    pub group: &'static str,
     row: String,
     /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
     /// of a number.
@@ -24,14 +24,14 @@ fn request_id() -> egui::Id {
     egui::Id::unique("requested focus")
 }
 
-pub(super) fn requested(ui: &Ui) -> Option<FocusRequest> {
+pub fn requested(ui: &Ui) -> Option<FocusRequest> {
     let frame = ui.ctx().cumulative_frame_nr();
     let requested: Option<FocusRequest> = ui.data(|data| data.get_temp(request_id()));
     requested.filter(|requested| frame <= requested.frame + REQUEST_FRAMES)
 }
 
 /// Gives the row of this name (see [`Name::full`](super::widgets::Name::full)) the keys, and opens its group.
-pub(in crate::app) fn focus_row(ctx: &egui::Context, group: &'static str, row: String) {
+pub fn focus_row(ctx: &egui::Context, group: &'static str, row: String) {
     let requested = FocusRequest {
         group,
         row,
@@ -44,7 +44,7 @@ pub(in crate::app) fn focus_row(ctx: &egui::Context, group: &'static str, row: S
 
 /// What is typed before the row has the keys waits for it: at the start of each frame it is removed from the input, and put
 /// back once the row's number is selected, which it then replaces.
-pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
+pub fn hold_typing(ctx: &egui::Context) {
     let frame = ctx.cumulative_frame_nr();
     let Some(mut requested) = ctx.data_mut(|data| data.remove_temp::<FocusRequest>(request_id())) else {
         return;
@@ -65,7 +65,7 @@ pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
 }
 
 /// Gives the row's control the keys where that was requested and it has been seen; true where it is still to be seen.
-pub(super) fn fulfil_request(ui: &Ui, row: &str) -> bool {
+pub fn fulfil_request(ui: &Ui, row: &str) -> bool {
     let Some(mut requested) = requested(ui).filter(|requested| requested.row == row && !requested.is_given) else {
         return false;
     };
@@ -78,7 +78,7 @@ pub(super) fn fulfil_request(ui: &Ui, row: &str) -> bool {
     false
 }
 
-pub(super) fn note_requested(ui: &Ui, control: &Response) {
+pub fn note_requested(ui: &Ui, control: &Response) {
     if let Some(mut requested) = requested(ui) {
         requested.control = Some(control.id);
         ui.data_mut(|data| data.insert_temp(request_id(), requested));
@@ -92,7 +92,7 @@ fn search_id() -> egui::Id {
 }
 
 /// Keeps the arrow keys for a control that has the focus, across or up and down: else they would move the focus.
-pub(in crate::app) fn hold_arrows(ui: &Ui, response: &Response, horizontal_arrows: bool, vertical_arrows: bool) {
+pub fn hold_arrows(ui: &Ui, response: &Response, horizontal_arrows: bool, vertical_arrows: bool) {
     let filter = egui::EventFilter {
         horizontal_arrows,
         vertical_arrows,
@@ -103,7 +103,7 @@ pub(in crate::app) fn hold_arrows(ui: &Ui, response: &Response, horizontal_arrow
 
 /// A field to search a panel with. Letters that are typed while the pointer is over the panel and nothing has the keys
 /// are meant for it, see [`take_search`].
-pub(in crate::app) fn search_field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> Response {
+pub fn search_field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> Response {
     let field = egui::TextEdit::singleline(text)
         .hint_text(hint)
         .desired_width(f32::INFINITY)
@@ -117,7 +117,7 @@ pub(in crate::app) fn search_field(ui: &mut Ui, text: &mut String, hint: &str, n
 }
 
 /// Gives the search field of the panel under the pointer the keys where a word is begun; true where that was done.
-pub(in crate::app) fn take_search(ctx: &egui::Context) -> bool {
+pub fn take_search(ctx: &egui::Context) -> bool {
     let meant: Option<(egui::Id, u64)> = ctx.data(|data| data.get_temp(search_id()));
     let is_word = |event: &egui::Event| matches!(event, egui::Event::Text(text) if !text.trim().is_empty());
     let Some((field, frame)) = meant.filter(|_| ctx.input(|input| input.events.iter().any(is_word))) else {

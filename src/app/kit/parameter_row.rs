@@ -8,7 +8,7 @@ use crate::document::parameter::RowStyle;
 use crate::document::{Kind, Parameter, Value};
 
 /// Whether a parameter can be edited in a row; what depends on the scene has controls of its own.
-pub(in crate::app) fn has_row<T>(parameter: &Parameter<T>) -> bool {
+pub fn has_row<T>(parameter: &Parameter<T>) -> bool {
     match &parameter.kind {
         Kind::Curve => false,
         Kind::Optional { kind, at_first, .. } => at_first.is_some() || matches!(**kind, Kind::Toggle),
@@ -18,25 +18,20 @@ pub(in crate::app) fn has_row<T>(parameter: &Parameter<T>) -> bool {
 
 /// Shows a parameter's row; true where `value` is another afterwards, which may be out of the parameter's range for a
 /// moment, as a picker's is.
-pub(in crate::app) fn show<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, value: &mut Value) -> bool {
+pub fn show<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, value: &mut Value) -> bool {
     show_as(ui, parameter, &parameter.full_name(), value)
 }
 
 /// The same under another name, for one of several things that have the parameter.
-pub(in crate::app) fn show_as<T: Default>(
-    ui: &mut Ui,
-    parameter: &Parameter<T>,
-    full: &str,
-    value: &mut Value,
-) -> bool {
+pub fn show_as<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, full: &str, value: &mut Value) -> bool {
     show_beside(ui, parameter, full, value, None)
 }
 
 /// A square behind a row's control, which is shown by a function.
-pub(in crate::app) type Beside<'a> = Option<&'a mut dyn FnMut(&mut Ui)>;
+pub type Beside<'a> = Option<&'a mut dyn FnMut(&mut Ui)>;
 
 /// The same with something in a square behind the control.
-pub(in crate::app) fn show_beside<T: Default>(
+pub fn show_beside<T: Default>(
     ui: &mut Ui,
     parameter: &Parameter<T>,
     full: &str,
@@ -67,7 +62,7 @@ pub(in crate::app) fn show_beside<T: Default>(
 }
 
 /// The control of a parameter, under a name that is unique in the window.
-pub(in crate::app) fn control<T>(ui: &mut Ui, parameter: &Parameter<T>, name: &str, value: &mut Value) -> Response {
+pub fn control<T>(ui: &mut Ui, parameter: &Parameter<T>, name: &str, value: &mut Value) -> Response {
     of_kind(ui, &parameter.kind, &parameter.row, name, value)
 }
 

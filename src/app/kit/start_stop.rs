@@ -3,7 +3,7 @@
 use egui::{Button, Response, Ui};
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::app) enum Pressed {
+pub enum Pressed {
     #[default]
     Nothing,
     Start,
@@ -11,7 +11,7 @@ pub(in crate::app) enum Pressed {
 }
 
 /// Shows the button that starts, as it is dressed by `dress`, or the one that stops beside a spinner.
-pub(in crate::app) fn start_or_stop(
+pub fn start_or_stop(
     ui: &mut Ui,
     label: &str,
     is_busy: bool,

@@ -7,13 +7,13 @@ use egui::{
 };
 
 /// Space between the parts of a panel, points.
-pub(in crate::app) const GAP: f32 = 8.0;
+pub const GAP: f32 = 8.0;
 /// Height of a row of a panel, points.
-pub(in crate::app) const ROW_HEIGHT: f32 = 22.0;
+pub const ROW_HEIGHT: f32 = 22.0;
 /// Height of bars: the menu, the viewport's header, tabs, the status bar.
-pub(in crate::app) const BAR_HEIGHT: f32 = 28.0;
+pub const BAR_HEIGHT: f32 = 28.0;
 /// Space around the contents of a panel, points.
-pub(in crate::app) const PANEL_MARGIN: i8 = 10;
+pub const PANEL_MARGIN: i8 = 10;
 
 /// The greys of a theme, from the darkest surface to the text.
 struct Palette {
@@ -58,7 +58,7 @@ const LIGHT: Palette = Palette {
 };
 
 /// The one colour of the interface.
-pub(in crate::app) fn accent(is_dark: bool) -> Color32 {
+pub fn accent(is_dark: bool) -> Color32 {
     if is_dark {
         Color32::from_rgb(86, 148, 214)
     } else {
@@ -67,11 +67,11 @@ pub(in crate::app) fn accent(is_dark: bool) -> Color32 {
 }
 
 /// What surrounds the image: a grey that is neither black nor white, so that both can be distinguished from it.
-pub(in crate::app) fn surround(is_dark: bool) -> Color32 {
+pub fn surround(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { 28 } else { 150 })
 }
 
-pub(in crate::app) fn install(ctx: &egui::Context) {
+pub fn install(ctx: &egui::Context) {
     ctx.set_fonts(fonts());
     ctx.set_style_of(Theme::Dark, style(&DARK, true));
     ctx.set_style_of(Theme::Light, style(&LIGHT, false));
@@ -193,6 +193,6 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
 }
 
 /// The grey between the panels.
-pub(in crate::app) fn ground(is_dark: bool) -> Color32 {
+pub fn ground(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { DARK.ground } else { LIGHT.ground })
 }

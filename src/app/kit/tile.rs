@@ -13,7 +13,7 @@ const BUTTON: f32 = 18.0;
 
 /// How things are laid out.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::app) enum Layout {
+pub enum Layout {
     /// Rows with thumbnails of this height.
     List(f32),
     /// A grid of images of this height.
@@ -21,25 +21,25 @@ pub(in crate::app) enum Layout {
 }
 
 /// What is shown.
-pub(in crate::app) struct Tile<'a> {
+pub struct Tile<'a> {
     /// What stands below the image, or beside it.
-    pub(in crate::app) name: &'a str,
+    pub name: &'a str,
     /// What it is called where only one thing may have a name.
-    pub(in crate::app) full_name: &'a str,
+    pub full_name: &'a str,
     /// What the button is called.
-    pub(in crate::app) menu_name: &'a str,
+    pub menu_name: &'a str,
     /// `None` until it is there.
-    pub(in crate::app) picture: Option<&'a TextureHandle>,
+    pub picture: Option<&'a TextureHandle>,
     /// Width of the image over its height.
-    pub(in crate::app) aspect: f32,
+    pub aspect: f32,
     /// Stands in for the image.
-    pub(in crate::app) color: Color32,
-    pub(in crate::app) is_current: bool,
-    pub(in crate::app) is_favourite: bool,
+    pub color: Color32,
+    pub is_current: bool,
+    pub is_favourite: bool,
 }
 
 /// Tiles side by side, in as many rows as they take.
-pub(in crate::app) fn grid(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+pub fn grid(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = Vec2::splat(GAP);
         content(ui);
@@ -47,7 +47,7 @@ pub(in crate::app) fn grid(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
 }
 
 /// Begins another row of a grid where there is no room for something so wide, points.
-pub(in crate::app) fn make_room(ui: &mut Ui, width: f32) {
+pub fn make_room(ui: &mut Ui, width: f32) {
     if ui.available_size_before_wrap().x < width {
         ui.end_row();
     }
@@ -55,7 +55,7 @@ pub(in crate::app) fn make_room(ui: &mut Ui, width: f32) {
 
 impl Tile<'_> {
     /// Shows it; `menu` is what its button and a right click open.
-    pub(in crate::app) fn show(&self, ui: &mut Ui, layout: Layout, mut menu: impl FnMut(&mut Ui)) -> Response {
+    pub fn show(&self, ui: &mut Ui, layout: Layout, mut menu: impl FnMut(&mut Ui)) -> Response {
         match layout {
             Layout::List(height) => self.row(ui, height, &mut menu),
             Layout::Grid(height) => self.tile(ui, height, &mut menu),
@@ -148,7 +148,7 @@ const DRAGGED: f32 = 56.0;
 const DRAGGED_BY: f32 = 10.0;
 
 /// Shows what is dragged beside the pointer: what is under the pointer stays in sight.
-pub(in crate::app) fn at_pointer(ui: &Ui, picture: Option<&TextureHandle>, color: Color32) {
+pub fn at_pointer(ui: &Ui, picture: Option<&TextureHandle>, color: Color32) {
     let Some(at) = ui.input(|input| input.pointer.latest_pos()) else {
         return;
     };

@@ -10,6 +10,7 @@ use egui::{
 
 use crate::app::kit::keys::{fulfil_request, hold_arrows, note_requested, requested};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
+use crate::named::Named;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
 
@@ -24,19 +25,19 @@ const HEX_WIDTH: f32 = 68.0;
 
 /// What a row is called and explains.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::app) struct Name<'a> {
+pub struct Name<'a> {
     /// The name for screen readers and tests; unique in the window.
-    pub(in crate::app) full: &'a str,
-    pub(in crate::app) label: &'a str,
+    pub full: &'a str,
+    pub label: &'a str,
     /// A symbol behind it, or empty.
-    pub(in crate::app) symbol: &'a str,
+    pub symbol: &'a str,
     /// What it does to the image.
-    pub(in crate::app) help: &'a str,
+    pub help: &'a str,
 }
 
 impl<'a> Name<'a> {
     /// Without a symbol.
-    pub(in crate::app) fn new(full: &'a str, label: &'a str, help: &'a str) -> Self {
+    pub fn new(full: &'a str, label: &'a str, help: &'a str) -> Self {
         Self {
             full,
             label,
@@ -48,15 +49,15 @@ impl<'a> Name<'a> {
 
 /// What happened to a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::app) struct RowResponse {
+pub struct RowResponse {
     /// Its value was changed by the control.
-    pub(in crate::app) changed: bool,
+    pub changed: bool,
     /// It is to go back to its default.
-    pub(in crate::app) reset: bool,
+    pub reset: bool,
 }
 
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
-pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
+pub fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
         let is_requested = fulfil_request(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
@@ -116,22 +117,22 @@ fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
 
 /// How a number is edited.
 #[derive(Clone, Debug)]
-pub(in crate::app) struct NumberStyle<'a> {
+pub struct NumberStyle<'a> {
     /// The values that it may take.
-    pub(in crate::app) range: RangeInclusive<f64>,
+    pub range: RangeInclusive<f64>,
     /// What the bar spans; `None` for no bar.
-    pub(in crate::app) bar: Option<[f64; 2]>,
+    pub bar: Option<[f64; 2]>,
     /// Unit behind the number, with its space where one belongs.
-    pub(in crate::app) unit: &'a str,
+    pub unit: &'a str,
     /// Change per point of dragging where there is no bar.
-    pub(in crate::app) speed: f64,
+    pub speed: f64,
     /// Most digits behind the point.
-    pub(in crate::app) decimals: usize,
+    pub decimals: usize,
 }
 
 impl<'a> NumberStyle<'a> {
     /// A number without a bar.
-    pub(in crate::app) fn plain(range: RangeInclusive<f64>, unit: &'a str, speed: f64, decimals: usize) -> Self {
+    pub fn plain(range: RangeInclusive<f64>, unit: &'a str, speed: f64, decimals: usize) -> Self {
         Self {
             range,
             bar: None,
@@ -142,19 +143,19 @@ impl<'a> NumberStyle<'a> {
     }
 
     /// The same with a bar that spans this, if anything.
-    pub(in crate::app) fn with_bar(self, bar: impl Into<Option<[f64; 2]>>) -> Self {
+    pub fn with_bar(self, bar: impl Into<Option<[f64; 2]>>) -> Self {
         let bar = bar.into();
         Self { bar, ..self }
     }
 }
 
 /// A number as a bar to drag (with shift: finely) or to type into.
-pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
+pub fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
     number_or(ui, value, style, None)
 }
 
 /// The same, with a word in place of 0.
-pub(in crate::app) fn number_or<N: egui::emath::Numeric>(
+pub fn number_or<N: egui::emath::Numeric>(
     ui: &mut Ui,
     value: &mut N,
     style: &NumberStyle<'_>,
@@ -251,7 +252,7 @@ fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) ->
 const PICKER_ROUNDING: f32 = 1e-5;
 
 /// A linear colour: a swatch that opens a picker, and its sRGB code to type.
-pub(in crate::app) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
+pub fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
     let spacing = ui.spacing().item_spacing.x;
     let beside_code = ui.available_width() - HEX_WIDTH - spacing;
     // In a narrow panel there is no room for the code: the picker shows the numbers.
@@ -306,13 +307,13 @@ fn hex_field(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> bool {
 }
 
 /// `#rrggbb` in sRGB.
-pub(in crate::app) fn hex_of(linear: [f32; 3]) -> String {
+pub fn hex_of(linear: [f32; 3]) -> String {
     let [r, g, b] = srgb_of(linear);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// The sRGB bytes of a linear colour.
-pub(in crate::app) fn srgb_of([r, g, b]: [f32; 3]) -> [u8; 3] {
+pub fn srgb_of([r, g, b]: [f32; 3]) -> [u8; 3] {
     let encoded = srgb_from_linear(vec3(r, g, b)).to_f32();
     encoded.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
 }
@@ -328,7 +329,7 @@ fn linear_of(text: &str) -> Option<[f32; 3]> {
 }
 
 /// Three numbers side by side, with what each is called.
-pub(in crate::app) fn triple<N: egui::emath::Numeric>(
+pub fn triple<N: egui::emath::Numeric>(
     ui: &mut Ui,
     name: &str,
     values: &mut [N; 3],
@@ -352,12 +353,7 @@ pub(in crate::app) fn triple<N: egui::emath::Numeric>(
 }
 
 /// One of several: (value, label, help).
-pub(in crate::app) fn choice<T: PartialEq + Clone>(
-    ui: &mut Ui,
-    id: &str,
-    value: &mut T,
-    choices: &[(T, &str, &str)],
-) -> Response {
+pub fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T, choices: &[(T, &str, &str)]) -> Response {
     let current = choices.iter().find(|(choice, ..)| choice == value);
     let mut changed = false;
     let width = ui.available_width();
@@ -390,12 +386,7 @@ pub(in crate::app) fn choice<T: PartialEq + Clone>(
 }
 
 /// The same as a menu within a menu; true where another one is chosen.
-pub(in crate::app) fn choice_menu<T: PartialEq + Clone>(
-    ui: &mut Ui,
-    label: &str,
-    value: &mut T,
-    choices: &[(T, &str, &str)],
-) -> bool {
+pub fn choice_menu<T: PartialEq + Clone>(ui: &mut Ui, label: &str, value: &mut T, choices: &[(T, &str, &str)]) -> bool {
     let before = value.clone();
     ui.menu_button(label, |ui| {
         for (choice, label, help) in choices {
@@ -432,12 +423,12 @@ fn step_by_keys<T: PartialEq + Clone>(
 }
 
 /// The heading of a group of rows, which opens and closes it.
-pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
+pub fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     group_open(ui, title, None, body);
 }
 
 /// The same, opened or closed by the program in this frame.
-pub(in crate::app) fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
+pub fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
     let request = requested(ui)
         .is_some_and(|requested| requested.group == title)
         .then_some(true);
@@ -466,7 +457,7 @@ fn show_focus(ui: &Ui, response: &Response) {
 /// Content that appears and disappears by itself, such as answers of other threads, above controls that stay. egui
 /// distinguishes controls by their order: without this those below would be others once it came, and a click, a drag or
 /// the keys that one of them had would be lost.
-pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+pub fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     let mut inside = ui.new_child(UiBuilder::new());
     let result = content(&mut inside);
     let taken = inside.min_rect();
@@ -480,21 +471,21 @@ pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut U
 }
 
 /// An image with a name beside it, to choose.
-pub(in crate::app) struct PictureRow<'a> {
-    pub(in crate::app) name: &'a str,
+pub struct PictureRow<'a> {
+    pub name: &'a str,
     /// What it is called where only one thing may have a name.
-    pub(in crate::app) full_name: &'a str,
+    pub full_name: &'a str,
     /// `None` until it is there.
-    pub(in crate::app) picture: Option<&'a TextureHandle>,
+    pub picture: Option<&'a TextureHandle>,
     /// Of the image, points.
-    pub(in crate::app) size: Vec2,
+    pub size: Vec2,
     /// Stands in for the image.
-    pub(in crate::app) color: Color32,
-    pub(in crate::app) is_current: bool,
+    pub color: Color32,
+    pub is_current: bool,
 }
 
 impl PictureRow<'_> {
-    pub(in crate::app) fn show(&self, ui: &mut Ui) -> Response {
+    pub fn show(&self, ui: &mut Ui) -> Response {
         let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.full_name));
@@ -524,14 +515,14 @@ impl PictureRow<'_> {
 }
 
 /// A field for a new name, which has the keys. `Some(None)`: left as it was.
-pub(in crate::app) fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
+pub fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
     let is_done = text_field(ui, "New name", name)?;
     let name = name.trim().to_owned();
     Some((is_done && !name.is_empty()).then_some(name))
 }
 
 /// A field for words, which has the keys. `Some`: whether they are to count.
-pub(in crate::app) fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
+pub fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
     let field = ui
         .add(egui::TextEdit::singleline(text).desired_width(f32::INFINITY))
         .accessible_name(name);
@@ -549,13 +540,31 @@ pub(in crate::app) fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> 
 }
 
 /// Why work beside the window came to nothing, where it did.
-pub(in crate::app) fn failure(ui: &mut Ui, why: Option<String>) {
+pub fn failure(ui: &mut Ui, why: Option<String>) {
     if let Some(why) = why {
         ui.add(egui::Label::new(RichText::new(why).color(ui.visuals().error_fg_color)).wrap());
     }
 }
 
+/// A button with help; whether it was pressed.
+pub fn pressed(ui: &mut Ui, text: impl Into<String>, help: &str) -> bool {
+    ui.button(text.into()).on_hover_text(help).clicked()
+}
+
+/// Contents of a row from its right end.
+pub fn at_right<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.with_layout(Layout::right_to_left(Align::Center), contents).inner
+}
+
+/// The choices of a closed list.
+pub fn choices<T: Named>() -> Vec<(T, &'static str, &'static str)> {
+    T::ALL
+        .iter()
+        .map(|choice| (*choice, choice.label(), choice.help()))
+        .collect()
+}
+
 /// A note in weak text.
-pub(in crate::app) fn note(ui: &mut Ui, text: impl Into<String>) {
+pub fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).weak());
 }

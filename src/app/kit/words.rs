@@ -1,7 +1,7 @@
 //! Numbers in words.
 
 /// A time in words, two digits.
-pub(in crate::app) fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
         s if s < 9.95 => format!("{s:.1} s"),
@@ -17,13 +17,13 @@ const FORECAST_FROM_S: f64 = 0.5;
 const FORECAST_FROM_SHARE: f64 = 0.01;
 
 /// What is left of a work of which a share is done after a time: "40 s left". `None` where that would be a guess.
-pub(in crate::app) fn time_left(share: f64, seconds: f64) -> Option<String> {
+pub fn time_left(share: f64, seconds: f64) -> Option<String> {
     let is_told = seconds >= FORECAST_FROM_S && (FORECAST_FROM_SHARE..1.0).contains(&share);
     is_told.then(|| format!("{} left", about(seconds * (1.0 / share - 1.0))))
 }
 
 /// A time in steps so coarse that a text with it does not flicker.
-pub(in crate::app) fn about(seconds: f64) -> String {
+pub fn about(seconds: f64) -> String {
     let step = match seconds {
         s if s < 10.0 => 1.0,
         s if s < 60.0 => 5.0,
@@ -43,7 +43,7 @@ fn duration_whole(seconds: f64) -> String {
 }
 
 /// A share in per cent with as many digits as it has.
-pub(in crate::app) fn percent_short(share: f64) -> String {
+pub fn percent_short(share: f64) -> String {
     // Fifteen digits hide what the hundredfold adds to a decimal number.
     format!("{} %", (share * 1e10).round() / 1e8)
 }
@@ -52,7 +52,7 @@ pub(in crate::app) fn percent_short(share: f64) -> String {
 const PERCENT_MIN: f64 = 0.0001;
 
 /// A share as a percentage with three digits.
-pub(in crate::app) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let value = 100.0 * share;
     if value > 0.0 && value < PERCENT_MIN {
         return format!("< {PERCENT_MIN} %");
@@ -68,7 +68,7 @@ pub(in crate::app) fn percent(share: f64) -> String {
 }
 
 /// An error relative to the mean: above all of it the estimate is worth nothing yet.
-pub(in crate::app) fn error(share: f64) -> String {
+pub fn error(share: f64) -> String {
     if share < 1.0 {
         percent(share)
     } else {
@@ -77,7 +77,7 @@ pub(in crate::app) fn error(share: f64) -> String {
 }
 
 /// A number with three digits and a prefix.
-pub(in crate::app) fn short_number(value: f64) -> String {
+pub fn short_number(value: f64) -> String {
     let (scaled, prefix) = match value {
         v if v >= 1e9 => (v / 1e9, " G"),
         v if v >= 1e6 => (v / 1e6, " M"),

@@ -57,7 +57,7 @@ impl View {
     }
 
     /// The ray through a point: origin and unit direction.
-    pub(super) fn ray(&self, at: DVec2) -> [DVec3; 2] {
+    pub fn ray(&self, at: DVec2) -> [DVec3; 2] {
         let share = 2.0 * at / self.size - 1.0;
         let [origin, forward] = [self.camera.origin, self.camera.forward].map(|of| vector(of.to_f64()));
         let aside = share.x * vector(self.camera.right.to_f64()) - share.y * vector(self.camera.up.to_f64());
@@ -68,12 +68,12 @@ impl View {
     }
 }
 
-pub(super) fn vector(of: [f64; 3]) -> DVec3 {
+pub fn vector(of: [f64; 3]) -> DVec3 {
     DVec3::from_array(of)
 }
 
 /// Puts the middle of a light at a place, or as near as the range of its distance lets it.
-pub(super) fn put_at(light: &mut AreaLight, place: DVec3) {
+pub fn put_at(light: &mut AreaLight, place: DVec3) {
     let away = place - DVec3::from_array(light.target);
     let (least, most) = range::AREA_LENGTH.into_inner();
     light.distance = away.length().clamp(least, most);
@@ -81,7 +81,7 @@ pub(super) fn put_at(light: &mut AreaLight, place: DVec3) {
 }
 
 /// Moves a light in the plane through it that is parallel to the image, as far as the pointer moved there.
-pub(super) fn move_in_plane(light: &mut AreaLight, view: &View, pull: &Pull) {
+pub fn move_in_plane(light: &mut AreaLight, view: &View, pull: &Pull) {
     let middle = light.shape().frame().middle;
     let forward = DVec3::from_array(view.camera.forward.to_f64());
     let in_plane = |at: DVec2| {
@@ -92,7 +92,7 @@ pub(super) fn move_in_plane(light: &mut AreaLight, view: &View, pull: &Pull) {
 }
 
 /// Moves a light along an axis of length 1, as far as the pointer moved along its image.
-pub(super) fn move_along(light: &mut AreaLight, axis: DVec3, view: &View, pull: &Pull) {
+pub fn move_along(light: &mut AreaLight, axis: DVec3, view: &View, pull: &Pull) {
     let middle = light.shape().frame().middle;
     let (from, to) = (
         nearest(view.ray(pull.from), middle, axis),

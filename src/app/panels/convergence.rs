@@ -17,7 +17,7 @@ const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 
 
 /// Error against time.
 #[derive(Default)]
-pub(super) struct ConvergencePanel;
+pub struct ConvergencePanel;
 
 impl Panel for ConvergencePanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -25,7 +25,7 @@ const SNAP: f64 = 0.05;
 
 /// The geometric lobe's curve, to look at and to draw.
 #[derive(Default)]
-pub(super) struct CurvePanel {
+pub struct CurvePanel {
     dragged: Option<usize>,
     selected: Option<usize>,
     /// The curve as this panel left it.
@@ -86,10 +86,6 @@ impl Panel for CurvePanel {
 
 /// Which curve, and the way from a named one to one's own.
 fn head(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut crate::document::MaterialSettings) {
-    let choices: Vec<_> = Curve::ALL
-        .iter()
-        .map(|curve| (*curve, curve.label(), curve.help()))
-        .collect();
     let name = Name {
         full: "Curve shape",
         label: "Curve",
@@ -97,7 +93,7 @@ fn head(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut crate::document::Materi
         help: material.curve.help(),
     };
     if widgets::row(ui, name, |ui| {
-        widgets::choice(ui, "curve shape", &mut material.curve, &choices)
+        widgets::choice(ui, "curve shape", &mut material.curve, &widgets::choices())
     })
     .changed
     {
@@ -106,7 +102,7 @@ fn head(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut crate::document::Materi
     ui.horizontal(|ui| {
         widgets::note(ui, format!("D = {}", material.curve.formula()));
         if !material.curve.has_table() {
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            widgets::at_right(ui, |ui| {
                 let button = ui
                     .button("Edit as custom")
                     .on_hover_text("Makes a curve of your own that begins as this one");

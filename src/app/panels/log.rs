@@ -11,7 +11,7 @@ use crate::render::worker::Level;
 
 /// What was said, newest first.
 #[derive(Default)]
-pub(super) struct LogPanel;
+pub struct LogPanel;
 
 impl Panel for LogPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {

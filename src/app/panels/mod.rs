@@ -8,7 +8,7 @@ use super::desk::Desk;
 use super::pane::Pane;
 
 /// A panel: what it remembers, and how it is drawn.
-pub(super) trait Panel {
+pub trait Panel {
     /// Draws it and takes what the user does with it.
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>);
 
@@ -34,22 +34,22 @@ macro_rules! panels {
 crate::app::pane::list!(panels);
 
 /// The panels with what they remember.
-pub(super) struct Panels(Vec<(Pane, Box<dyn Panel>)>);
+pub struct Panels(Vec<(Pane, Box<dyn Panel>)>);
 
 impl Panels {
-    pub(super) fn show(&mut self, pane: Pane, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, pane: Pane, ui: &mut Ui, desk: &mut Desk<'_>) {
         if let Some((_, panel)) = self.0.iter_mut().find(|(of, _)| *of == pane) {
             panel.show(ui, desk);
         }
     }
 
     /// See [`Panel::tick`].
-    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+    pub fn tick(&mut self, desk: &mut Desk<'_>) {
         self.0.iter_mut().for_each(|(_, panel)| panel.tick(desk));
     }
 
     /// See [`Panel::hear`].
-    pub(super) fn on_command(&mut self, command: Command) {
+    pub fn on_command(&mut self, command: Command) {
         self.0.iter_mut().for_each(|(_, panel)| panel.on_command(command));
     }
 }

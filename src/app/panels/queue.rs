@@ -10,15 +10,13 @@ use crate::render::queue::{Entry, State};
 
 /// The renders beside the window.
 #[derive(Default)]
-pub(super) struct QueuePanel;
+pub struct QueuePanel;
 
 impl Panel for QueuePanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.horizontal_wrapped(|ui| {
             for command in [Command::QueuePicture, Command::Turntable] {
-                if ui.button(command.label()).on_hover_text(command.help()).clicked() {
-                    desk.act(command);
-                }
+                desk.button(ui, command);
             }
         });
         let queue = &desk.shared.queue;
@@ -62,7 +60,7 @@ fn row(ui: &mut Ui, desk: &Desk<'_>, entry: &Entry, can_be_first: bool) {
     let queue = &desk.shared.queue;
     let name = &entry.name;
     ui.horizontal(|ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        widgets::at_right(ui, |ui| {
             let word = if entry.is_over() { "Remove" } else { "Cancel" };
             if ui.button(word).accessible_name(format!("{word} {name}")).clicked() {
                 queue.remove(entry.id);

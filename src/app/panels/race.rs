@@ -32,7 +32,7 @@ const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
 const REFERENCE_TIMES: f64 = 4.0;
 
 /// Techniques against each other on this view.
-pub(super) struct RacePanel {
+pub struct RacePanel {
     worker: StudyWorker<Race>,
     chosen: Vec<&'static str>,
     seconds: f64,
@@ -224,9 +224,9 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
         .map(|(index, _)| index)
 }
 
-/// Whether it can become a document's: what is no setting of one can't.
+/// Whether it can become a document's.
 fn is_setting(runner: &Runner) -> bool {
-    !runner.technique.is_double() && runner.technique != Technique::as_is()
+    runner.technique != Technique::as_is()
 }
 
 /// The same as a table, the soonest first; the one that was chosen.

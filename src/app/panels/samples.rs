@@ -14,6 +14,7 @@ use crate::app::kit::words::short_number;
 use crate::app::services::beside::started;
 use crate::job::scatter::ScatterRequest;
 use crate::matching::lobe_of_material;
+use crate::named::named;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;
@@ -23,34 +24,17 @@ use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samp
 /// The plot of angles goes on beyond its ends by this share, so that its labels stay within it.
 const ANGLE_MARGIN: f64 = 0.07;
 
-/// From where the samples are looked at.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::app) enum Look {
-    #[default]
-    Mirror,
-    Above,
-    Side,
-    Angle,
+named! {
+    /// From where the samples are looked at.
+    #[derive(Default)]
+    Look {
+        #[default]
+        Mirror, "mirror", "Along mirror direction", "From the mirror direction, as in the paper's Fig. 1; the circle has the radius of the roughness.";
+        Above, "above", "Above", "Down the normal: the circle is the horizon.";
+        Side, "side", "Side", "Across the plane of incidence: the line is the surface.";
+        Angle, "angle", "Angle", "How often each angle α to the mirror direction is drawn, as in the paper's Fig. 3.";
+    }
 }
-
-const LOOKS: [(Look, &str, &str); 4] = [
-    (
-        Look::Mirror,
-        "Along mirror direction",
-        "From the mirror direction, as in the paper's Fig. 1; the circle has the radius of the roughness.",
-    ),
-    (Look::Above, "Above", "Down the normal: the circle is the horizon."),
-    (
-        Look::Side,
-        "Side",
-        "Across the plane of incidence: the line is the surface.",
-    ),
-    (
-        Look::Angle,
-        "Angle",
-        "How often each angle α to the mirror direction is drawn, as in the paper's Fig. 3.",
-    ),
-];
 
 /// Numbers of samples to choose from.
 const COUNTS: [(u32, &str, &str); 4] = [
@@ -62,7 +46,7 @@ const COUNTS: [(u32, &str, &str); 4] = [
 
 /// The samples that the engine draws of the lobe, as a cloud or against the angle.
 #[derive(Default)]
-pub(super) struct SamplesPanel {
+pub struct SamplesPanel {
     worker: Option<SampleWorker>,
     asked: Option<SampleQuery>,
     count: Option<u32>,
@@ -144,12 +128,9 @@ fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
 
 fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut SamplesPanel) {
     ui.horizontal_wrapped(|ui| {
-        for (look, label, help) in LOOKS {
-            if ui
-                .selectable_label(state.look == look, label)
-                .on_hover_text(help)
-                .clicked()
-            {
+        for &look in Look::ALL {
+            let label = ui.selectable_label(state.look == look, look.label());
+            if label.on_hover_text(look.help()).clicked() {
                 state.look = look;
             }
         }

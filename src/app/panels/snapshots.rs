@@ -7,28 +7,25 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::{theme, widgets};
 use crate::app::services::compare::Rival;
-use crate::app::services::snapshots::PinChange;
+use crate::app::services::library::Change;
 
 /// Width and height of an image's place, points.
 const PLACE: egui::Vec2 = vec2(112.0, 74.0);
 
 /// The pinned states.
 #[derive(Default)]
-pub(super) struct SnapshotsPanel;
+pub struct SnapshotsPanel;
 
 impl Panel for SnapshotsPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.horizontal_wrapped(|ui| {
-            let pin = ui.button(Command::Pin.label());
-            if pin.on_hover_text(Command::Pin.help()).clicked() {
-                desk.act(Command::Pin);
-            }
+            desk.button(ui, Command::Pin);
             let removed = desk.shared.snapshots.removed.as_ref();
             let name = removed.and_then(|removed| removed.path().file_stem());
             if let Some(name) = name
                 && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
             {
-                desk.actions.push(Action::ChangeSnapshots(PinChange::Restore));
+                desk.actions.push(Action::ChangeSnapshots(Change::Restore));
             }
         });
         ui.add_space(theme::GAP);
@@ -56,7 +53,7 @@ fn renaming(ui: &mut Ui, desk: &mut Desk<'_>) {
     let chosen = widgets::name_field(ui, name);
     ui.add_space(theme::GAP);
     if let Some(chosen) = chosen {
-        let rename = |name| Action::ChangeSnapshots(PinChange::Rename(path.clone(), name));
+        let rename = |name| Action::ChangeSnapshots(Change::Rename(path.clone(), name));
         desk.actions.extend(chosen.map(rename));
         desk.shared.snapshots.renaming = None;
     }
@@ -109,8 +106,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
         }
         is_renaming |= ui.button("Rename").clicked();
         if ui.button("Delete").clicked() {
-            desk.actions
-                .push(Action::ChangeSnapshots(PinChange::Remove(path.clone())));
+            desk.actions.push(Action::ChangeSnapshots(Change::Remove(path.clone())));
         }
     };
     response.context_menu(&mut more);

@@ -11,13 +11,13 @@ use crate::store::FileError;
 use crate::store::recovery::{self, Recovered, RecoveryFile};
 
 /// Shortest time between two copies of a document that keeps changing.
-pub(in crate::app) const INTERVAL: Duration = Duration::from_secs(5);
+pub const INTERVAL: Duration = Duration::from_secs(5);
 /// How long the window waits for the thread to end when it is closed.
 const FAREWELL: Duration = Duration::from_secs(2);
 
 /// The file for this window's unsaved edits, and the thread that writes it.
 #[derive(Default)]
-pub(in crate::app) struct Autosave {
+pub struct Autosave {
     /// `None` where nothing is saved for recovery.
     orders: Option<Sender<Order>>,
     reports: Option<Receiver<Report>>,
@@ -27,7 +27,7 @@ pub(in crate::app) struct Autosave {
     kept: Option<Document>,
     kept_at: Option<Instant>,
     /// What a panic puts aside.
-    pub(in crate::app) witness: Witness,
+    pub witness: Witness,
 }
 
 enum Order {
@@ -38,7 +38,7 @@ enum Order {
 }
 
 /// A report of the thread.
-pub(in crate::app) enum Report {
+pub enum Report {
     /// What crashes left.
     Found(Vec<Leftover>),
     /// Something can't be written or removed.
@@ -46,18 +46,18 @@ pub(in crate::app) enum Report {
 }
 
 /// Something that a crash left.
-pub(in crate::app) struct Leftover {
+pub struct Leftover {
     /// For [`Autosave::discard`].
-    pub(in crate::app) index: usize,
+    pub index: usize,
     /// The document, or why it can't be read; `None` where a panic left nothing but its report.
-    pub(in crate::app) contents: Option<Result<Recovered, String>>,
+    pub contents: Option<Result<Recovered, String>>,
     /// What a panic wrote.
-    pub(in crate::app) report: Option<recovery::Report>,
+    pub report: Option<recovery::Report>,
 }
 
 impl Autosave {
     /// Starts to put documents aside in a folder, and looks for what crashes left there.
-    pub(in crate::app) fn begin(folder: PathBuf, interval: Duration, ctx: egui::Context) -> std::io::Result<Self> {
+    pub fn begin(folder: PathBuf, interval: Duration, ctx: egui::Context) -> std::io::Result<Self> {
         let (orders, ordered) = channel();
         let (sender, reports) = channel();
         let witness = Witness::default();
@@ -82,18 +82,13 @@ impl Autosave {
     }
 
     /// What the thread reported since this was last called.
-    pub(in crate::app) fn take_reports(&self) -> Vec<Report> {
+    pub fn take_reports(&self) -> Vec<Report> {
         self.reports.iter().flat_map(Receiver::try_iter).collect()
     }
 
     /// Takes the document as the frame left it. Returns after how long to be called again, where something is still to
     /// be saved.
-    pub(in crate::app) fn watch(
-        &mut self,
-        document: &Document,
-        project: Option<&Path>,
-        is_saved: bool,
-    ) -> Option<Duration> {
+    pub fn watch(&mut self, document: &Document, project: Option<&Path>, is_saved: bool) -> Option<Duration> {
         self.witness.see(document, project, is_saved);
         if is_saved {
             if self.kept.take().is_some() {
@@ -113,19 +108,19 @@ impl Autosave {
     }
 
     /// Puts a document aside at once.
-    pub(in crate::app) fn keep(&mut self, document: &Document, project: Option<&Path>) {
+    pub fn keep(&mut self, document: &Document, project: Option<&Path>) {
         self.order(Order::Keep(Box::new(document.clone()), project.map(Path::to_owned)));
         self.kept = Some(document.clone());
         self.kept_at = Some(Instant::now());
     }
 
     /// Removes a leftover, once everything saved before has been written.
-    pub(in crate::app) fn discard(&self, index: usize) {
+    pub fn discard(&self, index: usize) {
         self.order(Order::Discard(index));
     }
 
     /// The window is closed as it should be: nothing is left.
-    pub(in crate::app) fn end(&mut self) {
+    pub fn end(&mut self) {
         self.kept = None;
         self.order(Order::Forget);
     }
@@ -162,7 +157,7 @@ fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dy
         let leftovers: Vec<Option<RecoveryFile>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
         let load = |(index, slot): (usize, &Option<RecoveryFile>)| {
             let slot = slot.as_ref()?;
-            let load = || slot.load().map_err(|error| error.to_string());
+            let load = || slot.load().map_err(crate::in_words);
             Some(Leftover {
                 index,
                 contents: slot.has_document().then(load),

@@ -5,10 +5,10 @@ use std::io;
 use crate::render::background::Background;
 
 /// What a thread calls when there is something new to show.
-pub(in crate::app) type Repaint = Box<dyn Fn() + Send>;
+pub type Repaint = Box<dyn Fn() + Send>;
 
 /// The thread, started if it is not there yet. `None` if the system gives none, which the log says.
-pub(in crate::app) fn started<'a, Q, A>(
+pub fn started<'a, Q, A>(
     thread: &'a mut Option<Background<Q, A>>,
     ctx: &egui::Context,
     spawn: impl FnOnce(Repaint) -> io::Result<Background<Q, A>>,

@@ -7,6 +7,7 @@ use crate::analysis::difference::difference;
 use crate::app::services::beside::started;
 use crate::document::{Change, Document, MaterialSettings};
 use crate::matching::{lobe_of_material, matched_lobe};
+use crate::named::named;
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::render::EngineKind;
@@ -24,38 +25,18 @@ pub enum Rival {
 }
 
 /// What the materials before the last change are called.
-pub(in crate::app) const BEFORE: &str = "What you had";
+pub const BEFORE: &str = "What you had";
 
-/// How A and B are shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum View {
-    /// A left of a divider, B right of it.
-    #[default]
-    Wipe,
-    /// One beside the other.
-    SideBySide,
-    /// B less A.
-    Difference,
-    /// One after the other.
-    Flicker,
-}
-
-impl View {
-    /// All of them, with their names and what they show.
-    pub(in crate::app) const ALL: [(Self, &'static str, &'static str); 4] = [
-        (
-            Self::Wipe,
-            "Wipe",
-            "A left of the divider, B right of it. Drag the divider.",
-        ),
-        (Self::SideBySide, "Side by side", "One beside the other."),
-        (
-            Self::Difference,
-            "Difference",
-            "Luminance of B less that of A, in linear light.",
-        ),
-        (Self::Flicker, "Flicker", "One after the other in the same place."),
-    ];
+named! {
+    /// How A and B are shown.
+    #[derive(Default)]
+    View {
+        #[default]
+        Wipe, "wipe", "Wipe", "A left of the divider, B right of it. Drag the divider.";
+        SideBySide, "side-by-side", "Side by side", "One beside the other.";
+        Difference, "difference", "Difference", "Luminance of B less that of A, in linear light.";
+        Flicker, "flicker", "Flicker", "One after the other in the same place.";
+    }
 }
 
 /// A lobe to match, and with which.
@@ -80,48 +61,48 @@ struct DifferenceQuery {
 }
 
 /// How two images differ.
-pub(in crate::app) struct Compared {
+pub struct Compared {
     /// Columns and rows.
-    pub(in crate::app) size: [usize; 2],
+    pub size: [usize; 2],
     /// The image of the difference.
-    pub(in crate::app) rgba: Vec<u8>,
+    pub rgba: Vec<u8>,
     /// Its full colours, in radiance.
-    pub(in crate::app) scale: f32,
+    pub scale: f32,
     /// Root mean square relative difference.
-    pub(in crate::app) rms: f64,
+    pub rms: f64,
     /// Samples per pixel of A and B.
-    pub(in crate::app) samples: [u32; 2],
+    pub samples: [u32; 2],
     /// Differs from one to the next.
-    pub(in crate::app) serial: u64,
+    pub serial: u64,
 }
 
 /// The comparison; B is only rendered while it is on.
-pub(in crate::app) struct Compare {
-    pub(in crate::app) is_on: bool,
-    pub(in crate::app) view: View,
-    pub(in crate::app) rival: Rival,
+pub struct Compare {
+    pub is_on: bool,
+    pub view: View,
+    pub rival: Rival,
     /// It was chosen: it stays until something else is.
-    pub(in crate::app) is_chosen: bool,
+    pub is_chosen: bool,
     /// Where the divider is, as a share of the image's width.
-    pub(in crate::app) divider: f32,
+    pub divider: f32,
     /// Changes a second.
-    pub(in crate::app) flicker_hz: f32,
+    pub flicker_hz: f32,
     /// The difference with the full colour; `None` is automatic.
-    pub(in crate::app) scale: Option<f32>,
-    pub(in crate::app) renderer: Option<Renderer>,
+    pub scale: Option<f32>,
+    pub renderer: Option<Renderer>,
     matching: Option<Background<MatchQuery, Matched>>,
     asked_match: Option<MatchQuery>,
     differing: Option<Background<DifferenceQuery, Arc<Compared>>>,
     asked_difference: Option<([u64; 3], Option<f32>)>,
     /// Counts B's renderers: serial numbers restart with each.
-    pub(in crate::app) generation: u64,
+    pub generation: u64,
 }
 
-pub(in crate::app) struct Renderer {
-    pub(in crate::app) worker: Worker,
-    pub(in crate::app) engine: EngineKind,
-    pub(in crate::app) submitted: Option<Document>,
-    pub(in crate::app) is_paused: bool,
+pub struct Renderer {
+    pub worker: Worker,
+    pub engine: EngineKind,
+    pub submitted: Option<Document>,
+    pub is_paused: bool,
 }
 
 impl Default for Compare {
@@ -146,21 +127,21 @@ impl Default for Compare {
 
 impl Compare {
     /// The state of B's renderer; `None` where there is none yet.
-    pub(in crate::app) fn snapshot(&self) -> Option<Arc<Snapshot>> {
+    pub fn snapshot(&self) -> Option<Arc<Snapshot>> {
         Some(self.renderer.as_ref()?.worker.snapshot())
     }
 
-    pub(in crate::app) fn picture(&self) -> Option<Arc<Picture>> {
+    pub fn picture(&self) -> Option<Arc<Picture>> {
         self.snapshot()?.picture.clone()
     }
 
     /// How the latest images differ.
-    pub(in crate::app) fn compared(&self) -> Option<Arc<Compared>> {
+    pub fn compared(&self) -> Option<Arc<Compared>> {
         self.differing.as_ref()?.latest()
     }
 
     /// What B is called.
-    pub(in crate::app) fn name(&self, material: &MaterialSettings) -> String {
+    pub fn name(&self, material: &MaterialSettings) -> String {
         match &self.rival {
             Rival::Lobe(lobe) => match self.matched(material, *lobe) {
                 Some(Ok(model)) => format!("{}, R {:.3}", lobe.label(), model.roughness),
@@ -172,7 +153,7 @@ impl Compare {
     }
 
     /// Why the look could not be matched.
-    pub(in crate::app) fn match_error(&self, material: &MaterialSettings) -> Option<String> {
+    pub fn match_error(&self, material: &MaterialSettings) -> Option<String> {
         match &self.rival {
             Rival::Lobe(lobe) => self.matched(material, *lobe)?.err(),
             _ => None,
@@ -187,7 +168,7 @@ impl Compare {
     }
 
     /// The document with B's materials.
-    pub(in crate::app) fn rival_document(&self, document: &Document, slot: usize) -> Document {
+    pub fn rival_document(&self, document: &Document, slot: usize) -> Document {
         let mut rival = document.clone();
         let material = rival.material_mut(slot);
         match &self.rival {
@@ -208,7 +189,7 @@ impl Compare {
     }
 
     /// Looks for the roughness of another lobe, where B is one.
-    pub(in crate::app) fn match_look(&mut self, ctx: &egui::Context, material: &MaterialSettings) {
+    pub fn match_look(&mut self, ctx: &egui::Context, material: &MaterialSettings) {
         let Rival::Lobe(lobe) = self.rival else { return };
         let mut model = lobe_of_material(material);
         // Another name is not another look.
@@ -219,7 +200,7 @@ impl Compare {
         }
         let matching = started(&mut self.matching, ctx, |repaint| {
             Background::spawn("match lobes", repaint, |query: MatchQuery, responder| {
-                let found = matched_lobe(&query.model, query.lobe).map_err(|error| error.to_string());
+                let found = matched_lobe(&query.model, query.lobe).map_err(crate::in_words);
                 responder.publish(Matched { query, found });
             })
         });
@@ -231,7 +212,7 @@ impl Compare {
     }
 
     /// Requests the difference of the images if they are new and of the same size and view.
-    pub(in crate::app) fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
+    pub fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
         let (Some(a), Some(b)) = (a, self.picture()) else {
             return;
         };
@@ -277,7 +258,7 @@ impl Compare {
     }
 
     /// Ends B's renderer, beside the window: its thread may have to finish a step.
-    pub(in crate::app) fn stop(&mut self) {
+    pub fn stop(&mut self) {
         if let Some(renderer) = self.renderer.take() {
             // Without a thread it ends here.
             let _ = std::thread::Builder::new()

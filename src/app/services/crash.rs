@@ -26,7 +26,7 @@ static WITNESSES: Mutex<Vec<Weak<Mutex<Known>>>> = Mutex::new(Vec::new());
 
 /// What a window records in case something panics.
 #[derive(Clone)]
-pub(in crate::app) struct Witness(Arc<Mutex<Known>>);
+pub struct Witness(Arc<Mutex<Known>>);
 
 struct Known {
     /// The document where it is unsaved, and the file that it belongs to.
@@ -66,7 +66,7 @@ impl Witness {
     }
 
     /// Takes the document as the frame left it.
-    pub(in crate::app) fn see(&self, document: &Document, project: Option<&Path>, is_saved: bool) {
+    pub fn see(&self, document: &Document, project: Option<&Path>, is_saved: bool) {
         let known = &mut *self.known();
         let is_known = |(kept, of): &(Document, Option<PathBuf>)| kept == document && of.as_deref() == project;
         if is_saved {
@@ -77,12 +77,12 @@ impl Witness {
     }
 
     /// Where copies go, once there is such a place.
-    pub(in crate::app) fn put_copies_at(&self, path: &Path) {
+    pub fn put_copies_at(&self, path: &Path) {
         self.known().copy = Some(path.to_owned());
     }
 
     /// What renders.
-    pub(in crate::app) fn see_engine(&self, engine: &str) {
+    pub fn see_engine(&self, engine: &str) {
         let known = &mut *self.known();
         if known.engine != engine {
             engine.clone_into(&mut known.engine);
@@ -90,7 +90,7 @@ impl Witness {
     }
 
     /// Records an action.
-    pub(in crate::app) fn note(&self, action: impl Into<String>) {
+    pub fn note(&self, action: impl Into<String>) {
         let action: String = action.into().chars().take(ACTION_LENGTH).collect();
         let actions = &mut self.known().actions;
         match actions.back_mut() {
@@ -103,7 +103,7 @@ impl Witness {
     }
 
     /// What is to be said of panics in threads beside the window's.
-    pub(in crate::app) fn take_reported(&self) -> Vec<String> {
+    pub fn take_reported(&self) -> Vec<String> {
         std::mem::take(&mut self.known().reported)
     }
 }

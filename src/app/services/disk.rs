@@ -6,15 +6,16 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use crate::app::services::export::Ready;
 use crate::app::services::library::Listed;
 use crate::app::services::messages::Success;
-use crate::app::services::snapshots::PinsListed;
+use crate::app::services::snapshots::Pins;
 use crate::document::Document;
 use crate::panics::caught;
 use crate::store::FileError;
 use crate::store::exchange::ExchangeError;
+use crate::store::library::Entry;
 use crate::store::opened::Opened;
 
 /// What came of a job.
-pub(in crate::app) enum Done {
+pub enum Done {
     /// A file was read; and the files that it names and may not.
     Read(PathBuf, Result<Opened, ExchangeError>, Vec<PathBuf>),
     /// A file for another program is ready to be written.
@@ -24,13 +25,13 @@ pub(in crate::app) enum Done {
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
     /// The user's materials were listed.
-    Listed(Result<Listed, FileError>),
+    Listed(Result<Listed<Vec<Entry>>, FileError>),
     /// The user's materials were changed.
-    ChangedLibrary(Result<Listed, FileError>),
+    ChangedLibrary(Result<Listed<Vec<Entry>>, FileError>),
     /// The pinned states were listed.
-    ListedPins(Result<PinsListed, FileError>),
+    ListedPins(Result<Listed<Pins>, FileError>),
     /// The pinned states were changed.
-    ChangedPins(Result<PinsListed, FileError>),
+    ChangedPins(Result<Listed<Pins>, FileError>),
     /// Something else was written; what to say about it.
     Wrote(Result<Success, String>),
     /// What was to be done panicked, and what the panic said.
@@ -39,7 +40,7 @@ pub(in crate::app) enum Done {
 
 /// What a job is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Task {
+pub enum Task {
     Open,
     List,
     Write,
@@ -48,7 +49,7 @@ pub(in crate::app) enum Task {
 type Job = Box<dyn FnOnce() -> Done + Send>;
 
 /// The thread, and its orders.
-pub(in crate::app) struct Disk {
+pub struct Disk {
     ctx: egui::Context,
     jobs: Sender<(Task, Job)>,
     sender: Sender<Done>,
@@ -59,7 +60,7 @@ pub(in crate::app) struct Disk {
 
 impl Disk {
     /// Starts the thread.
-    pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+    pub fn new(ctx: egui::Context) -> std::io::Result<Self> {
         let (jobs, to_do) = channel::<(Task, Job)>();
         let (sender, done) = channel();
         let (of_thread, repaint) = (sender.clone(), ctx.clone());
@@ -80,29 +81,29 @@ impl Disk {
         })
     }
 
-    pub(in crate::app) fn open(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+    pub fn open(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.reads += 1;
         self.order(Task::Open, job);
     }
 
-    pub(in crate::app) fn list(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+    pub fn list(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.reads += 1;
         self.order(Task::List, job);
     }
 
-    pub(in crate::app) fn write(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+    pub fn write(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.writes += 1;
         self.order(Task::Write, job);
     }
 
     /// Writes something that takes long, on a thread of its own.
-    pub(in crate::app) fn write_beside(&mut self, work: impl FnOnce() -> Result<Success, String> + Send + 'static) {
+    pub fn write_beside(&mut self, work: impl FnOnce() -> Result<Success, String> + Send + 'static) {
         self.writes += 1;
         self.beside(Task::Write, || Done::Wrote(work()));
     }
 
     /// Makes something that takes long and is shown then, on a thread of its own.
-    pub(in crate::app) fn open_beside(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+    pub fn open_beside(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
         self.reads += 1;
         self.beside(Task::List, job);
     }
@@ -127,17 +128,17 @@ impl Disk {
     }
 
     /// Whether a file that was asked for has not been read yet.
-    pub(in crate::app) fn is_reading(&self) -> bool {
+    pub fn is_reading(&self) -> bool {
         self.reads > 0
     }
 
     /// Whether something is still to be written.
-    pub(in crate::app) fn is_writing(&self) -> bool {
+    pub fn is_writing(&self) -> bool {
         self.writes > 0
     }
 
     /// What was done since this was last called.
-    pub(in crate::app) fn take_done(&mut self) -> Vec<Done> {
+    pub fn take_done(&mut self) -> Vec<Done> {
         let done: Vec<Done> = self.done.try_iter().collect();
         for done in &done {
             match done {

@@ -12,14 +12,14 @@ const PAUSE: Duration = Duration::from_millis(600);
 const STEPS: usize = 500;
 
 /// The documents gone through, and what the frame's edit is called.
-pub(in crate::app) struct Edits {
+pub struct Edits {
     history: History<Document>,
     note: Option<(Cow<'static, str>, Cow<'static, str>)>,
     last_change: Option<Instant>,
 }
 
 impl Edits {
-    pub(in crate::app) fn new(document: Document) -> Self {
+    pub fn new(document: Document) -> Self {
         Self {
             history: History::new(document, STEPS),
             note: None,
@@ -28,12 +28,12 @@ impl Edits {
     }
 
     /// Names the edit of this frame: for the menu, and a key that says whether the next one belongs to it.
-    pub(in crate::app) fn note(&mut self, label: impl Into<Cow<'static, str>>, key: impl Into<Cow<'static, str>>) {
+    pub fn note(&mut self, label: impl Into<Cow<'static, str>>, key: impl Into<Cow<'static, str>>) {
         self.note = Some((label.into(), key.into()));
     }
 
     /// Takes the document as the frame left it; true where it changed.
-    pub(in crate::app) fn record(&mut self, document: &Document, is_dragging: bool) -> bool {
+    pub fn record(&mut self, document: &Document, is_dragging: bool) -> bool {
         self.record_at(document, is_dragging, Instant::now())
     }
 
@@ -53,52 +53,52 @@ impl Edits {
     }
 
     /// The next change starts a step of its own.
-    pub(in crate::app) fn seal(&mut self) {
+    pub fn seal(&mut self) {
         self.history.seal();
     }
 
     /// How long ago the last change was, within the pause that ends a step.
-    pub(in crate::app) fn is_in_flow(&self) -> bool {
+    pub fn is_in_flow(&self) -> bool {
         self.last_change.is_some_and(|at| at.elapsed() < PAUSE)
     }
 
-    pub(in crate::app) fn undo(&mut self) -> Option<Document> {
+    pub fn undo(&mut self) -> Option<Document> {
         self.history.undo().cloned()
     }
 
-    pub(in crate::app) fn redo(&mut self) -> Option<Document> {
+    pub fn redo(&mut self) -> Option<Document> {
         self.history.redo().cloned()
     }
 
     /// The materials before the last change to them, of the same model.
-    pub(in crate::app) fn materials_before(&self, now: &Document) -> Option<Vec<MaterialSettings>> {
+    pub fn materials_before(&self, now: &Document) -> Option<Vec<MaterialSettings>> {
         let is_wanted = |then: &Document| then.model == now.model && then.materials != now.materials;
         Some(self.history.before(is_wanted)?.materials.clone())
     }
 
-    pub(in crate::app) fn undo_label(&self) -> Option<&str> {
+    pub fn undo_label(&self) -> Option<&str> {
         self.history.undo_label()
     }
 
-    pub(in crate::app) fn redo_label(&self) -> Option<&str> {
+    pub fn redo_label(&self) -> Option<&str> {
         self.history.redo_label()
     }
 
     /// Whether a file, or nothing but the start, holds the document.
-    pub(in crate::app) fn is_saved(&self, document: &Document) -> bool {
+    pub fn is_saved(&self, document: &Document) -> bool {
         self.history.is_saved() && self.history.current() == document
     }
 
     /// A file holds this document by now, which may have been edited since.
-    pub(in crate::app) fn mark_value_saved(&mut self, document: &Document) {
+    pub fn mark_value_saved(&mut self, document: &Document) {
         self.history.mark_value_saved(document);
     }
 
-    pub(in crate::app) fn mark_unsaved(&mut self) {
+    pub fn mark_unsaved(&mut self) {
         self.history.mark_unsaved();
     }
 
-    pub(in crate::app) fn mark_saved(&mut self) {
+    pub fn mark_saved(&mut self) {
         self.history.mark_saved();
     }
 }

@@ -14,7 +14,7 @@ use crate::render::environment_thumbnails::{
 use crate::scene::environment::{Environment, EnvironmentSource};
 
 /// What to call an environment in a menu.
-pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
+pub fn environment_label(source: &EnvironmentSource) -> String {
     match source {
         EnvironmentSource::File(path) => path.file_name().map_or_else(
             || path.display().to_string(),
@@ -26,7 +26,7 @@ pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
 
 /// The thumbnails of environments.
 #[derive(Default)]
-pub(in crate::app) struct Environments {
+pub struct Environments {
     cache: Option<PathBuf>,
     /// Set while the viewport goes first.
     hold: Arc<AtomicBool>,
@@ -42,7 +42,7 @@ pub(in crate::app) struct Environments {
 
 impl Environments {
     /// `cache` keeps the images from one start to the next; nothing is made while `hold` is set.
-    pub(in crate::app) fn new(cache: Option<PathBuf>, hold: Arc<AtomicBool>) -> Self {
+    pub fn new(cache: Option<PathBuf>, hold: Arc<AtomicBool>) -> Self {
         Self {
             cache,
             hold,
@@ -51,24 +51,24 @@ impl Environments {
     }
 
     /// The image of an environment.
-    pub(in crate::app) fn picture(&self, source: &EnvironmentSource) -> Option<&TextureHandle> {
+    pub fn picture(&self, source: &EnvironmentSource) -> Option<&TextureHandle> {
         self.textures.get(source)
     }
 
     /// The pixels of that image, red, green, blue and alpha.
-    pub(in crate::app) fn pixels(&self, source: &EnvironmentSource) -> Option<&[u8]> {
+    pub fn pixels(&self, source: &EnvironmentSource) -> Option<&[u8]> {
         self.uploaded.as_ref()?.get(source)?.as_deref().map(Vec::as_slice)
     }
 
     /// Whether its file is not there or can't be read.
-    pub(in crate::app) fn is_missing(&self, source: &EnvironmentSource) -> bool {
+    pub fn is_missing(&self, source: &EnvironmentSource) -> bool {
         let known = self.uploaded.as_ref().and_then(|made| made.get(source));
         known.is_some_and(Option::is_none)
     }
 
     /// Asks for the images of what a part of the window shows, besides those that others do, and takes those that are there.
     /// `loaded` is the environment in use, with where it comes from. To be called while they are seen.
-    pub(in crate::app) fn make_pictures(
+    pub fn make_pictures(
         &mut self,
         ctx: &egui::Context,
         (shown_by, shown): (&'static str, &[EnvironmentSource]),

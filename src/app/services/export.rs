@@ -9,20 +9,20 @@ use crate::store::exchange::{self, Prepared, Registered, Subject};
 const COMPARED_MAX: usize = 4;
 
 /// A file that is ready to be written, with images of what it loses.
-pub(in crate::app) struct Ready {
-    pub(in crate::app) prepared: Prepared,
+pub struct Ready {
+    pub prepared: Prepared,
     /// One for each material, where there is something to show.
-    pub(in crate::app) compared: Vec<Option<Compared>>,
+    pub compared: Vec<Option<Compared>>,
 }
 
 /// Makes the file of a subject.
-pub(in crate::app) fn ready(subject: &Subject, name: &str, path: &Path, format: &Registered) -> Result<Ready, String> {
-    let mut prepared = exchange::prepare(subject, name, path, format).map_err(|error| error.to_string())?;
+pub fn ready(subject: &Subject, name: &str, path: &Path, format: &Registered) -> Result<Ready, String> {
+    let mut prepared = exchange::prepare(subject, name, path, format).map_err(crate::in_words)?;
     let mut pictures: Vec<Option<Compared>> = Vec::new();
     for (index, material) in prepared.report.materials.iter_mut().enumerate() {
         let looks = material.looks.as_ref().filter(|_| index < COMPARED_MAX);
         let of_both = looks.map(|looks| compared(looks)).transpose();
-        let of_both = of_both.map_err(|error| error.to_string())?;
+        let of_both = of_both.map_err(crate::in_words)?;
         material.difference = of_both.as_ref().map(|compared| compared.difference);
         pictures.push(of_both);
     }

@@ -1,7 +1,7 @@
 //! The user's materials and the thumbnails of all of them.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -11,17 +11,17 @@ use crate::app::services::beside::started;
 use crate::app::services::messages::Success;
 use crate::document::MaterialSettings;
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
-use crate::store::PRESETS;
-use crate::store::library::{Entry, Removed};
+use crate::store::library::{self, Entry, Removed};
+use crate::store::{FileError, PRESETS};
 
-/// What can be done with a material of the user's.
+/// What can be done with the files of a folder of the user's: materials, or pinned states.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Change {
-    /// The selected material is added.
+    /// The selected material is added, or the document pinned with the latest image.
     Add,
-    /// A file's material gets another name.
+    /// A file gets another name.
     Rename(PathBuf, String),
-    /// A file's material is added once more under another name.
+    /// A material is added once more under another name.
     Duplicate(PathBuf),
     /// A file is removed.
     Remove(PathBuf),
@@ -29,31 +29,65 @@ pub enum Change {
     Restore,
 }
 
-/// What came of a change: what to say, which materials there are, what was added and is to be named, and what was removed.
-pub(in crate::app) struct Listed {
-    pub(in crate::app) done: Option<Success>,
-    pub(in crate::app) entries: Vec<Entry>,
-    pub(in crate::app) added: Option<PathBuf>,
-    pub(in crate::app) removed: Option<Removed>,
+/// What came of a change: what to say, what there is in the folder, what was added and is to be named, and what was removed.
+#[derive(Default)]
+pub struct Listed<T> {
+    pub done: Option<Success>,
+    pub entries: T,
+    pub added: Option<PathBuf>,
+    pub removed: Option<Removed>,
+}
+
+impl<T: Default> Listed<T> {
+    pub fn of(entries: T) -> Self {
+        Self {
+            entries,
+            ..Self::default()
+        }
+    }
+
+    /// What is the same in every folder: makes a change but for additions, with the file that was removed before.
+    pub fn change(
+        &mut self,
+        change: &Change,
+        removed: Option<&Removed>,
+        rename: fn(&Path, &str) -> Result<PathBuf, FileError>,
+    ) -> Result<(), FileError> {
+        let done = |verb: &str, path: &Path| Some(Success::with_file(verb, path, ""));
+        match change {
+            Change::Rename(path, name) => self.done = done("Renamed to", &rename(path, name)?),
+            Change::Remove(path) => {
+                self.removed = Some(library::remove(path)?);
+                self.done = done("Removed", path);
+            }
+            Change::Restore => {
+                if let Some(removed) = removed {
+                    self.done = done("Restored", &library::restore(removed)?);
+                }
+            }
+            Change::Add | Change::Duplicate(_) => {}
+        }
+        Ok(())
+    }
 }
 
 /// A material of the panel, with the key of its image.
-pub(in crate::app) struct MaterialCard {
-    pub(in crate::app) entry: Entry,
-    pub(in crate::app) key: u64,
+pub struct MaterialCard {
+    pub entry: Entry,
+    pub key: u64,
 }
 
 /// The materials to choose from.
 #[derive(Default)]
-pub(in crate::app) struct Library {
+pub struct Library {
     /// Where the user's are; `None` where there is no place for them.
-    pub(in crate::app) folder: Option<PathBuf>,
-    pub(in crate::app) own: Vec<MaterialCard>,
+    pub folder: Option<PathBuf>,
+    pub own: Vec<MaterialCard>,
     /// Keys of the shipped ones.
     shipped: Vec<u64>,
-    pub(in crate::app) renaming: Option<(PathBuf, String)>,
+    pub renaming: Option<(PathBuf, String)>,
     /// What was removed last.
-    pub(in crate::app) removed: Option<Removed>,
+    pub removed: Option<Removed>,
     /// Set while the viewport goes first.
     hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
@@ -61,15 +95,15 @@ pub(in crate::app) struct Library {
     /// Those of the document with the keys of their images, as they were when the user last paused.
     in_document: Vec<(MaterialSettings, u64)>,
     /// Materials that lie in watched folders.
-    pub(in crate::app) watched: Vec<MaterialSettings>,
-    pub(in crate::app) is_asked: bool,
+    pub watched: Vec<MaterialSettings>,
+    pub is_asked: bool,
     textures: HashMap<u64, TextureHandle>,
     uploaded: Option<Thumbnails>,
 }
 
 impl Library {
     /// `cache` keeps the images; without it none are made.
-    pub(in crate::app) fn new(folder: Option<PathBuf>, cache: Option<PathBuf>) -> Self {
+    pub fn new(folder: Option<PathBuf>, cache: Option<PathBuf>) -> Self {
         Self {
             folder,
             cache,
@@ -79,34 +113,34 @@ impl Library {
     }
 
     /// Set while images have to wait.
-    pub(in crate::app) fn holder(&self) -> Arc<AtomicBool> {
+    pub fn holder(&self) -> Arc<AtomicBool> {
         self.hold.clone()
     }
 
     /// Whether images have to wait.
-    pub(in crate::app) fn hold(&self, is_held: bool) {
+    pub fn hold(&self, is_held: bool) {
         self.hold.store(is_held, Ordering::Relaxed);
     }
 
     /// The image of a shipped material, by its place among them.
-    pub(in crate::app) fn shipped_picture(&self, index: usize) -> Option<&TextureHandle> {
+    pub fn shipped_picture(&self, index: usize) -> Option<&TextureHandle> {
         self.textures.get(self.shipped.get(index)?)
     }
 
     /// The image of a material of the user's.
-    pub(in crate::app) fn picture(&self, key: u64) -> Option<&TextureHandle> {
+    pub fn picture(&self, key: u64) -> Option<&TextureHandle> {
         self.textures.get(&key)
     }
 
     /// Has the name of a material of the user's typed, which begins as the one that it has.
-    pub(in crate::app) fn ask_name(&mut self, path: PathBuf) {
+    pub fn ask_name(&mut self, path: PathBuf) {
         let own = self.own.iter().find(|shown| shown.entry.path == path);
         if let Some(Ok(material)) = own.map(|shown| &shown.entry.material) {
             self.renaming = Some((path, material.name.clone()));
         }
     }
 
-    pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {
+    pub fn take_list(&mut self, entries: Vec<Entry>) {
         let show = |entry: Entry| MaterialCard {
             key: entry.material.as_ref().map_or(0, thumbnails::key),
             entry,
@@ -116,7 +150,7 @@ impl Library {
     }
 
     /// Has images made of the document's materials, and gives that of each; `is_in_flow`: they are being edited.
-    pub(in crate::app) fn pictures_of(
+    pub fn pictures_of(
         &mut self,
         ctx: &egui::Context,
         materials: &[MaterialSettings],
@@ -137,7 +171,7 @@ impl Library {
     }
 
     /// Asks for images that are not there yet, and takes those that are. To be called while they are seen.
-    pub(in crate::app) fn make_pictures(&mut self, ctx: &egui::Context) {
+    pub fn make_pictures(&mut self, ctx: &egui::Context) {
         let Some(cache) = &self.cache else {
             return;
         };

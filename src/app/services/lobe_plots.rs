@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 /// The angle between view and normal at first, degrees.
-pub(in crate::app) const VIEW_ANGLE_DEG: f32 = 45.0;
+pub const VIEW_ANGLE_DEG: f32 = 45.0;
 
 /// What the plots of lobes and of their samples share.
 #[derive(Clone, Debug)]
-pub(in crate::app) struct LobePlots {
+pub struct LobePlots {
     /// The angle between view and normal, degrees.
-    pub(in crate::app) view_angle_deg: f32,
+    pub view_angle_deg: f32,
     /// The file of a measured material, to compare lobes with.
-    pub(in crate::app) measured: Option<PathBuf>,
+    pub measured: Option<PathBuf>,
 }
 
 impl Default for LobePlots {

@@ -1,51 +1,51 @@
 //! What of the image is looked at closely: a pixel, and what is seen there.
 
 /// A pixel, as shares of the image's width and height.
-pub(in crate::app) type Place = [f64; 2];
+pub type Place = [f64; 2];
 
 /// What is seen at a place of the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::app) struct SeenSurface {
+pub struct SeenSurface {
     /// The material slot; `None` for the ground and area lights, which are no materials of the document.
-    pub(in crate::app) slot: Option<usize>,
+    pub slot: Option<usize>,
     /// The object of the model; `None` for the ground and area lights.
-    pub(in crate::app) object: Option<usize>,
+    pub object: Option<usize>,
     /// Along the camera's viewing direction, scene units.
-    pub(in crate::app) depth: f64,
+    pub depth: f64,
     /// Between view and shading normal, degrees.
-    pub(in crate::app) view_angle_deg: f32,
+    pub view_angle_deg: f32,
     /// The place, in the geometry's units.
-    pub(in crate::app) place: glam::DVec3,
+    pub place: glam::DVec3,
     /// Where the viewer's ray goes that is mirrored there.
-    pub(in crate::app) mirrored: glam::DVec3,
+    pub mirrored: glam::DVec3,
 }
 
 /// The pixel that the inspector describes.
 #[derive(Clone, Debug, Default)]
-pub(in crate::app) struct Look {
+pub struct Look {
     /// Whether the inspector was shown in this frame, and in the one before: only then are pixels reported.
-    pub(in crate::app) is_shown: bool,
-    pub(in crate::app) was_shown: bool,
+    pub is_shown: bool,
+    pub was_shown: bool,
     /// The pixel under the pointer, or the one that it was at last, or that it is pinned to.
-    pub(in crate::app) at: Option<Place>,
+    pub at: Option<Place>,
     /// It stays where it is while the pointer moves on.
-    pub(in crate::app) is_pinned: bool,
-    pub(in crate::app) seen: Option<SeenSurface>,
+    pub is_pinned: bool,
+    pub seen: Option<SeenSurface>,
 }
 
 impl Look {
     /// What is drawn before the inspector goes by the frame before.
-    pub(in crate::app) fn begin_frame(&mut self) {
+    pub fn begin_frame(&mut self) {
         self.was_shown = std::mem::take(&mut self.is_shown);
     }
 
     /// Pins the pixel until it is released.
-    pub(in crate::app) fn pin(&mut self, at: Place) {
+    pub fn pin(&mut self, at: Place) {
         (self.at, self.is_pinned) = (Some(at), true);
     }
 
     /// The pixel of an image of this size.
-    pub(in crate::app) fn pixel(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
+    pub fn pixel(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
         let [x, y] = self.at?;
         let index = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side.saturating_sub(1));
         (width > 0 && height > 0).then(|| [index(x, width), index(y, height)])
@@ -53,7 +53,7 @@ impl Look {
 }
 
 /// The middle of a pixel of an image of this size.
-pub(in crate::app) fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
+pub fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
     let share = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side.max(1));
     [share(x, width), share(y, height)]
 }

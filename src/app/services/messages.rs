@@ -11,7 +11,7 @@ const LIMIT: usize = 500;
 
 /// What a note has a button for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Offer {
+pub enum Offer {
     /// All that became of the model's file. The note stays until it is closed.
     ImportReport,
     /// Rendering to the end what was saved unfinished.
@@ -20,20 +20,20 @@ pub(in crate::app) enum Offer {
 
 /// Something that was done as asked, for a note.
 #[derive(Debug)]
-pub(in crate::app) struct Success {
+pub struct Success {
     text: String,
     file: Option<PathBuf>,
     offer: Option<Offer>,
 }
 
 impl Success {
-    pub(in crate::app) fn new(text: String) -> Self {
+    pub fn new(text: String) -> Self {
         let (file, offer) = (None, None);
         Self { text, file, offer }
     }
 
     /// About a file: what was done, the file's name, and details if there are any.
-    pub(in crate::app) fn with_file(done: &str, path: &Path, details: &str) -> Self {
+    pub fn with_file(done: &str, path: &Path, details: &str) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let separator = if details.is_empty() { "" } else { ": " };
         Self {
@@ -43,7 +43,7 @@ impl Success {
     }
 
     /// Offers to render to the end what is not finished.
-    pub(in crate::app) fn finished(self, is_finished: bool) -> Self {
+    pub fn finished(self, is_finished: bool) -> Self {
         let offer = (!is_finished).then_some(Offer::Render);
         Self { offer, ..self }
     }
@@ -51,21 +51,21 @@ impl Success {
 
 /// Something said.
 #[derive(Clone, Debug)]
-pub(in crate::app) struct Entry {
+pub struct Entry {
     /// Distinguishes it from the others for as long as the window lives.
-    pub(in crate::app) number: u64,
-    pub(in crate::app) level: Level,
-    pub(in crate::app) text: String,
-    pub(in crate::app) at: Instant,
+    pub number: u64,
+    pub level: Level,
+    pub text: String,
+    pub at: Instant,
     /// Shown over the viewport until it is old or closed.
-    pub(in crate::app) is_open: bool,
+    pub is_open: bool,
     /// The file that it is about.
-    pub(in crate::app) file: Option<PathBuf>,
-    pub(in crate::app) offer: Option<Offer>,
+    pub file: Option<PathBuf>,
+    pub offer: Option<Offer>,
 }
 
 /// Adds an entry; one that says the same as the last stays that one, and is new again.
-pub(in crate::app) fn add(log: &mut Vec<Entry>, level: Level, text: String) {
+pub fn add(log: &mut Vec<Entry>, level: Level, text: String) {
     match level {
         Level::Error => log::error!("{text}"),
         Level::Warning => log::warn!("{text}"),
@@ -75,7 +75,7 @@ pub(in crate::app) fn add(log: &mut Vec<Entry>, level: Level, text: String) {
 }
 
 /// Adds what was done as asked.
-pub(in crate::app) fn add_success(log: &mut Vec<Entry>, success: Success) {
+pub fn add_success(log: &mut Vec<Entry>, success: Success) {
     match &success.file {
         Some(file) => log::info!("{} ({})", success.text, file.display()),
         None => log::info!("{}", success.text),
@@ -108,7 +108,7 @@ fn push(log: &mut Vec<Entry>, level: Level, said: Success, is_open: bool) {
 }
 
 /// Adds what became of a model's file where that is not all as the file says.
-pub(in crate::app) fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
+pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
     let Some(worst) = Fate::ALL[1..].iter().rev().find_map(|fate| report.of(*fate).next()) else {
         return;
     };

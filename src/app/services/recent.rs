@@ -21,7 +21,7 @@ type Search = Background<Vec<PathBuf>, Arc<HashSet<PathBuf>>>;
 
 /// The list, the latest first.
 #[derive(Default)]
-pub(in crate::app) struct Recent {
+pub struct Recent {
     paths: Vec<PathBuf>,
     search: Option<Search>,
     searched_at: Option<Instant>,
@@ -29,7 +29,7 @@ pub(in crate::app) struct Recent {
 
 impl Recent {
     /// The list as the last start left it.
-    pub(in crate::app) fn new(paths: Vec<PathBuf>) -> Self {
+    pub fn new(paths: Vec<PathBuf>) -> Self {
         Self {
             paths,
             ..Self::default()
@@ -37,19 +37,19 @@ impl Recent {
     }
 
     /// What the next start is to have.
-    pub(in crate::app) fn paths(&self) -> &[PathBuf] {
+    pub fn paths(&self) -> &[PathBuf] {
         &self.paths
     }
 
     /// Those that are environments.
-    pub(in crate::app) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
+    pub fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
         // Of images only environments are remembered, and those that have a document inside.
         let is_map = |path: &&PathBuf| is_picture(path) && !may_hold_document(path);
         self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
     }
 
     /// A file was opened or saved. Files not named in Unicode can't be remembered, as the settings are text.
-    pub(in crate::app) fn add(&mut self, path: &Path) {
+    pub fn add(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         if path.to_str().is_none() {
             return;
@@ -60,12 +60,12 @@ impl Recent {
         self.searched_at = None;
     }
 
-    pub(in crate::app) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.paths.clear();
     }
 
     /// Those that are not there any more, as far as is known; looks again where that was long ago.
-    pub(in crate::app) fn missing(&mut self, ctx: &egui::Context) -> Arc<HashSet<PathBuf>> {
+    pub fn missing(&mut self, ctx: &egui::Context) -> Arc<HashSet<PathBuf>> {
         self.look(ctx);
         self.search.as_ref().and_then(Background::latest).unwrap_or_default()
     }

@@ -22,7 +22,7 @@ struct Read {
 
 /// The image of the file that was asked for last.
 #[derive(Default)]
-pub(in crate::app) struct ReferenceImage {
+pub struct ReferenceImage {
     worker: Option<Background<PathBuf, Arc<Read>>>,
     asked: Option<PathBuf>,
     /// What was read last, with its texture.
@@ -31,7 +31,7 @@ pub(in crate::app) struct ReferenceImage {
 
 impl ReferenceImage {
     /// The image of a file, once it is read. To be called while it is shown.
-    pub(in crate::app) fn texture(&mut self, ctx: &egui::Context, file: &Path) -> Option<&TextureHandle> {
+    pub fn texture(&mut self, ctx: &egui::Context, file: &Path) -> Option<&TextureHandle> {
         let worker = started(&mut self.worker, ctx, |repaint| {
             Background::spawn("reference image", repaint, |file: PathBuf, responder| {
                 let image = read_texture(&file, true, SIDE_MAX, &Budget::of_import()).map(|texture| image(&texture));
@@ -53,7 +53,7 @@ impl ReferenceImage {
     }
 
     /// Why a file can't be shown, if that is known.
-    pub(in crate::app) fn failure(&self, file: &Path) -> Option<&str> {
+    pub fn failure(&self, file: &Path) -> Option<&str> {
         let (read, _) = self.read.as_ref().filter(|(read, _)| read.file == file)?;
         read.image.as_ref().err().map(String::as_str)
     }

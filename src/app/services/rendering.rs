@@ -3,21 +3,21 @@
 use crate::render::{EngineChoice, RayQueries};
 
 /// The engine that renders, and when it rests.
-pub(in crate::app) struct Rendering {
+pub struct Rendering {
     /// The engine that was asked for, and the one that is remembered: the command line's is not.
-    pub(in crate::app) engine: EngineChoice,
-    pub(in crate::app) kept_engine: EngineChoice,
+    pub engine: EngineChoice,
+    pub kept_engine: EngineChoice,
     /// Whether the GPU's engine uses ray queries, as it is remembered.
-    pub(in crate::app) kept_ray_queries: RayQueries,
+    pub kept_ray_queries: RayQueries,
     /// Rendering was stopped by hand.
-    pub(in crate::app) is_paused: bool,
+    pub is_paused: bool,
     /// A study measures, for which it rests.
-    pub(in crate::app) is_measuring: bool,
+    pub is_measuring: bool,
 }
 
 impl Rendering {
     /// Renders with an engine; `kept` is remembered.
-    pub(in crate::app) fn new(engine: EngineChoice, kept: (EngineChoice, RayQueries)) -> Self {
+    pub fn new(engine: EngineChoice, kept: (EngineChoice, RayQueries)) -> Self {
         let (kept_engine, kept_ray_queries) = kept;
         Self {
             engine,

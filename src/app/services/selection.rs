@@ -8,7 +8,7 @@ use crate::scene::texture::TextureTarget;
 
 /// A part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::app) enum Thing {
+pub enum Thing {
     /// An object of the model, by number.
     Object(usize),
     Slot(usize),
@@ -16,36 +16,36 @@ pub(in crate::app) enum Thing {
 
 /// The slot that is edited, what is chosen beside it, and what is lit up.
 #[derive(Clone, Debug, Default)]
-pub(in crate::app) struct Selection {
+pub struct Selection {
     /// The material slot that is edited.
-    pub(in crate::app) slot: usize,
+    pub slot: usize,
     /// The slots that were selected of other models, for when undo or redo brings them back.
     slots_of: Vec<(ModelSource, usize)>,
     /// The tree was shown in this frame, and in the one before: outlines are drawn.
-    pub(in crate::app) is_shown: bool,
-    pub(in crate::app) was_shown: bool,
+    pub is_shown: bool,
+    pub was_shown: bool,
     /// The user has chosen something of this model: what is edited at first is not outlined.
-    pub(in crate::app) is_made: bool,
-    pub(in crate::app) objects: BTreeSet<usize>,
+    pub is_made: bool,
+    pub objects: BTreeSet<usize>,
     /// Slots that are edited together with the selected one.
-    pub(in crate::app) also: BTreeSet<usize>,
+    pub also: BTreeSet<usize>,
     /// What the pointer is over in this frame, and what it was over in the one before.
-    pub(in crate::app) hovered: Option<Thing>,
-    pub(in crate::app) lit: Option<Thing>,
+    pub hovered: Option<Thing>,
+    pub lit: Option<Thing>,
     /// The area light whose handles are shown.
-    pub(in crate::app) light: Option<usize>,
+    pub light: Option<usize>,
     /// The list of lights was shown in this frame, and in the one before: lights are marked in the viewport.
-    pub(in crate::app) shows_lights: bool,
-    pub(in crate::app) showed_lights: bool,
+    pub shows_lights: bool,
+    pub showed_lights: bool,
     /// The place of a texture that the pointer is over in this frame: an image that is dropped goes there.
-    pub(in crate::app) texture: Option<TextureTarget>,
+    pub texture: Option<TextureTarget>,
     /// The material that was copied.
-    pub(in crate::app) copied: Option<MaterialSettings>,
+    pub copied: Option<MaterialSettings>,
 }
 
 impl Selection {
     /// What the parts of the window say about this frame comes after what they said about the last one.
-    pub(in crate::app) fn begin_frame(&mut self) {
+    pub fn begin_frame(&mut self) {
         self.was_shown = std::mem::take(&mut self.is_shown);
         self.showed_lights = std::mem::take(&mut self.shows_lights);
         self.lit = self.hovered.take();
@@ -53,12 +53,12 @@ impl Selection {
     }
 
     /// Whether the next frame shows something else without anything else happening.
-    pub(in crate::app) fn is_news(&self) -> bool {
+    pub fn is_news(&self) -> bool {
         self.hovered != self.lit || self.is_shown != self.was_shown || self.shows_lights != self.showed_lights
     }
 
     /// Nothing is chosen of another model.
-    pub(in crate::app) fn forget(&mut self) {
+    pub fn forget(&mut self) {
         self.objects.clear();
         self.also.clear();
         self.hovered = None;
@@ -66,7 +66,7 @@ impl Selection {
     }
 
     /// Another model takes a model's place: the slot is the one that was selected of it last.
-    pub(in crate::app) fn change_model(&mut self, left: ModelSource, model: &ModelSource) {
+    pub fn change_model(&mut self, left: ModelSource, model: &ModelSource) {
         self.forget();
         self.slots_of.retain(|(of, _)| *of != left);
         self.slots_of.push((left, self.slot));
@@ -75,19 +75,19 @@ impl Selection {
     }
 
     /// The slots that are edited: the selected one first.
-    pub(in crate::app) fn slots(&self) -> Vec<usize> {
+    pub fn slots(&self) -> Vec<usize> {
         let others = self.also.iter().copied().filter(|slot| *slot != self.slot);
         std::iter::once(self.slot).chain(others).collect()
     }
 
     /// Chooses an object alone, or takes it in or out beside the others.
-    pub(in crate::app) fn choose_object(&mut self, object: usize, beside_others: bool) {
+    pub fn choose_object(&mut self, object: usize, beside_others: bool) {
         self.is_made = true;
         toggle(&mut self.objects, object, beside_others);
     }
 
     /// Takes a slot in beside the selected one, or out.
-    pub(in crate::app) fn choose_also(&mut self, slot: usize) {
+    pub fn choose_also(&mut self, slot: usize) {
         toggle(&mut self.also, slot, true);
     }
 }

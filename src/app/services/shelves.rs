@@ -24,24 +24,24 @@ const INTERVAL: Duration = Duration::from_secs(2);
 /// What is remembered from one start to the next. Things are known by a key: `preset:gold`, `environment:studio`, or a path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub(in crate::app) struct KeptShelves {
+pub struct KeptShelves {
     /// Those that come first.
-    pub(in crate::app) favourites: BTreeSet<String>,
+    pub favourites: BTreeSet<String>,
     /// By what is tagged.
-    pub(in crate::app) tags: BTreeMap<String, BTreeSet<String>>,
+    pub tags: BTreeMap<String, BTreeSet<String>>,
     /// Folders that are watched.
-    pub(in crate::app) folders: Vec<PathBuf>,
+    pub folders: Vec<PathBuf>,
     /// Side of a material's image, points; [`LIST`] and below are rows of a list.
-    pub(in crate::app) picture_side: f32,
+    pub picture_side: f32,
 }
 
 /// The key of a shipped material.
-pub(in crate::app) fn preset_key(material: &MaterialSettings) -> String {
+pub fn preset_key(material: &MaterialSettings) -> String {
     format!("preset:{}", command_line_name(&material.name))
 }
 
 /// The key of an environment.
-pub(in crate::app) fn environment_key(source: &EnvironmentSource) -> String {
+pub fn environment_key(source: &EnvironmentSource) -> String {
     match source {
         EnvironmentSource::File(path) => path.display().to_string(),
         _ => format!("environment:{}", environment_label(source).to_lowercase()),
@@ -49,9 +49,9 @@ pub(in crate::app) fn environment_key(source: &EnvironmentSource) -> String {
 }
 
 /// The side of an image in a list.
-pub(in crate::app) const LIST: f32 = 36.0;
+pub const LIST: f32 = 36.0;
 /// The largest side of an image.
-pub(in crate::app) const SIDE_MAX: f32 = 256.0;
+pub const SIDE_MAX: f32 = 256.0;
 
 impl Default for KeptShelves {
     fn default() -> Self {
@@ -66,20 +66,20 @@ impl Default for KeptShelves {
 
 impl KeptShelves {
     /// Makes something a favourite, or none any more.
-    pub(in crate::app) fn favour(&mut self, key: &str) {
+    pub fn favour(&mut self, key: &str) {
         if !self.favourites.remove(key) {
             self.favourites.insert(key.to_owned());
         }
     }
 
     /// The tags of something, commas between them.
-    pub(in crate::app) fn tags_of(&self, key: &str) -> String {
+    pub fn tags_of(&self, key: &str) -> String {
         let tags: Vec<&str> = self.tags.get(key).into_iter().flatten().map(String::as_str).collect();
         tags.join(", ")
     }
 
     /// Gives something the tags of a text, commas between them.
-    pub(in crate::app) fn tag(&mut self, key: &str, text: &str) {
+    pub fn tag(&mut self, key: &str, text: &str) {
         let tags = text.split(',').map(|tag| tag.trim().to_lowercase());
         let tags: BTreeSet<String> = tags.filter(|tag| !tag.is_empty()).collect();
         if tags.is_empty() {
@@ -90,15 +90,15 @@ impl KeptShelves {
     }
 
     /// Every tag that something has.
-    pub(in crate::app) fn all_tags(&self) -> BTreeSet<&str> {
+    pub fn all_tags(&self) -> BTreeSet<&str> {
         self.tags.values().flatten().map(String::as_str).collect()
     }
 }
 
 /// The browser's state.
 #[derive(Default)]
-pub(in crate::app) struct Shelves {
-    pub(in crate::app) kept: KeptShelves,
+pub struct Shelves {
+    pub kept: KeptShelves,
     worker: Option<Background<Vec<PathBuf>, Arc<Vec<Contents>>>>,
     has_failed: bool,
     asked: Option<(Instant, Vec<PathBuf>)>,
@@ -108,7 +108,7 @@ pub(in crate::app) struct Shelves {
 }
 
 impl Shelves {
-    pub(in crate::app) fn new(kept: KeptShelves) -> Self {
+    pub fn new(kept: KeptShelves) -> Self {
         Self {
             kept,
             ..Self::default()
@@ -116,7 +116,7 @@ impl Shelves {
     }
 
     /// Watches a folder from now on.
-    pub(in crate::app) fn watch(&mut self, folder: PathBuf) {
+    pub fn watch(&mut self, folder: PathBuf) {
         if !self.kept.folders.contains(&folder) {
             self.kept.folders.push(folder);
         }
@@ -124,7 +124,7 @@ impl Shelves {
 
     /// Looks into the folders now and then, and has images made of the materials that lie there. To be called while they
     /// are seen.
-    pub(in crate::app) fn look(&mut self, ctx: &egui::Context, library: &mut Library) {
+    pub fn look(&mut self, ctx: &egui::Context, library: &mut Library) {
         if self.kept.folders.is_empty() && self.asked.is_none() || self.has_failed {
             return;
         }
@@ -175,7 +175,7 @@ impl Shelves {
     }
 
     /// What the folders hold, each with the keys of its images.
-    pub(in crate::app) fn contents(&self) -> (Arc<Vec<Contents>>, Vec<Vec<u64>>) {
+    pub fn contents(&self) -> (Arc<Vec<Contents>>, Vec<Vec<u64>>) {
         (self.contents.clone(), self.picture_keys.clone())
     }
 }

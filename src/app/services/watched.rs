@@ -7,13 +7,13 @@ use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, SystemTime};
 
 /// From one look to the next. A file counts as saved when it was the same at two looks.
-pub(in crate::app) const INTERVAL: Duration = Duration::from_millis(500);
+pub const INTERVAL: Duration = Duration::from_millis(500);
 
 /// When a file was changed, and its length; nothing where it is not there.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// The files that are looked at.
-pub(in crate::app) struct Watched(Arc<Mutex<Vec<File>>>);
+pub struct Watched(Arc<Mutex<Vec<File>>>);
 
 struct File {
     path: PathBuf,
@@ -57,7 +57,7 @@ fn stamp(path: &PathBuf) -> Stamp {
 
 impl Watched {
     /// Starts the thread, which ends with this value. `repaint` is called when a file was saved.
-    pub(in crate::app) fn new(interval: Duration, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+    pub fn new(interval: Duration, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let files = Arc::new(Mutex::new(Vec::new()));
         let of_thread: Weak<Mutex<Vec<File>>> = Arc::downgrade(&files);
         std::thread::Builder::new().name("watched".to_owned()).spawn(move || {
@@ -77,7 +77,7 @@ impl Watched {
     }
 
     /// Watches these files from now on; those already watched keep their state.
-    pub(in crate::app) fn watch(&self, paths: &[PathBuf]) {
+    pub fn watch(&self, paths: &[PathBuf]) {
         let mut files = lock(&self.0);
         let is_same = files.len() == paths.len() && files.iter().zip(paths).all(|(file, path)| file.path == *path);
         if is_same {
@@ -94,7 +94,7 @@ impl Watched {
     }
 
     /// Those that were saved since this was last called.
-    pub(in crate::app) fn take_changed(&self) -> Vec<PathBuf> {
+    pub fn take_changed(&self) -> Vec<PathBuf> {
         let mut files = lock(&self.0);
         let taken = |file: &mut File| std::mem::take(&mut file.has_changed).then(|| file.path.clone());
         files.iter_mut().filter_map(taken).collect()

@@ -16,6 +16,6 @@ pub enum Change {
 }
 
 /// Whether the workspace is one of the program's.
-pub(in crate::app) fn is_built_in(name: &str) -> bool {
+pub fn is_built_in(name: &str) -> bool {
     [LOOK, MEASURE].contains(&name)
 }

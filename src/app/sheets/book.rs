@@ -18,12 +18,12 @@ fn asked_id() -> egui::Id {
 }
 
 /// Opens the manual at an address in this frame.
-pub(in crate::app) fn ask(ctx: &egui::Context, address: &'static str) {
+pub fn ask(ctx: &egui::Context, address: &'static str) {
     ctx.data_mut(|data| data.insert_temp(asked_id(), address));
 }
 
 /// A button that opens the manual at an address.
-pub(in crate::app) fn help_button(ui: &mut Ui, about: &str, address: &'static str) {
+pub fn help_button(ui: &mut Ui, about: &str, address: &'static str) {
     let button = ui.add(egui::Button::new("?").frame(false));
     let button = button.accessible_name(format!("Manual: {about}"));
     if button.on_hover_text("Opens the manual at this page (F1).").clicked() {
@@ -32,7 +32,7 @@ pub(in crate::app) fn help_button(ui: &mut Ui, about: &str, address: &'static st
 }
 
 /// The heading of a sheet, with the button behind it.
-pub(in crate::app) fn heading(ui: &mut Ui, title: &str, address: &'static str) {
+pub fn heading(ui: &mut Ui, title: &str, address: &'static str) {
     ui.horizontal(|ui| {
         ui.heading(title);
         help_button(ui, title, address);
@@ -41,7 +41,7 @@ pub(in crate::app) fn heading(ui: &mut Ui, title: &str, address: &'static str) {
 
 /// The window.
 #[derive(Default)]
-pub(in crate::app) struct Manual {
+pub struct Manual {
     pages: Pages,
     /// Addresses that were opened, the shown one last; empty if it is closed.
     addresses: Vec<String>,
@@ -52,7 +52,7 @@ pub(in crate::app) struct Manual {
 }
 
 impl Manual {
-    pub(in crate::app) fn new(pages: Pages) -> Self {
+    pub fn new(pages: Pages) -> Self {
         Self {
             pages,
             ..Self::default()
@@ -78,7 +78,7 @@ impl Manual {
     }
 
     /// Shows it where it is open, over the sheets if one covers the window.
-    pub(in crate::app) fn show(&mut self, ctx: &egui::Context, is_covered: bool) {
+    pub fn show(&mut self, ctx: &egui::Context, is_covered: bool) {
         if let Some(address) = ctx.data_mut(|data| data.remove_temp::<&'static str>(asked_id())) {
             self.open(address.to_owned());
         }

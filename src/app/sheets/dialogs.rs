@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use egui::{Key, Ui};
 
 use crate::app::kit::{theme, widgets};
+use crate::app::sheets::question;
 use crate::render::output::FORMATS;
 use crate::scene::texture::TextureTarget;
 use crate::store::exchange;
@@ -23,7 +24,7 @@ const FOLDERS: usize = 6;
 
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Purpose {
+pub enum Purpose {
     Open,
     SaveProject,
     OpenModel,
@@ -74,11 +75,11 @@ impl Purpose {
         }
     }
 
-    pub(in crate::app) fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         self.traits().0
     }
 
-    pub(in crate::app) fn is_saving(self) -> bool {
+    pub fn is_saving(self) -> bool {
         self.traits().1
     }
 
@@ -89,7 +90,7 @@ impl Purpose {
 
 /// The dialog that is open, if any, and where the last one was.
 #[derive(Default)]
-pub(in crate::app) struct Dialogs {
+pub struct Dialogs {
     pending: Option<Pending>,
     field: Option<PathField>,
     folder: Option<PathBuf>,
@@ -143,7 +144,7 @@ struct PathField {
 
 impl Dialogs {
     /// Paths are typed, never chosen in the system's dialog; they begin in a folder.
-    pub(in crate::app) fn typed(folder: PathBuf) -> Self {
+    pub fn typed(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
             typed: Some(Why::Asked),
@@ -152,7 +153,7 @@ impl Dialogs {
     }
 
     /// Changes between typed paths and the system's dialogs; true where paths are typed from now on.
-    pub(in crate::app) fn toggle_typed(&mut self) -> bool {
+    pub fn toggle_typed(&mut self) -> bool {
         self.typed = match self.typed {
             None => Some(Why::Asked),
             Some(_) => None,
@@ -161,23 +162,23 @@ impl Dialogs {
     }
 
     /// The folder of the file that was chosen last, if any.
-    pub(in crate::app) fn folder(&self) -> Option<&Path> {
+    pub fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
     /// Whether the path field is open.
-    pub(in crate::app) fn is_open(&self) -> bool {
+    pub fn is_open(&self) -> bool {
         self.field.is_some()
     }
 
     /// Whether a file is being chosen, in the path field or in the system's dialog.
-    pub(in crate::app) fn is_asking(&self) -> bool {
+    pub fn is_asking(&self) -> bool {
         self.field.is_some() || self.pending.is_some()
     }
 
     /// Asks for a file; `suggestion` is a file's name to save under. While the system's dialog is open, or does as if it
     /// were, the path field opens beside it.
-    pub(in crate::app) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
+    pub fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
         if self.field.is_some() {
             return;
         }
@@ -252,7 +253,7 @@ impl Dialogs {
 
     /// Shows the path field where it is open. What a file was chosen for, in either way, with the file; without one
     /// where the system's dialog was left without a choice. `recent` are the folders of files opened and saved last.
-    pub(in crate::app) fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
+    pub fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
         let chosen = self
             .poll()
             .or_else(|| self.show_field(ui, recent).map(|(purpose, path)| (purpose, Some(path))))?;
@@ -290,15 +291,10 @@ impl Dialogs {
         if !field.has_had_focus {
             field.folders = to_begin_with(self.folder.as_deref(), recent);
         }
-        let mut outcome = None;
-        let modal = egui::Modal::new(egui::Id::unique("path field")).show(ui.ctx(), |ui| {
+        let chosen = question(ui.ctx(), "path field", None, |ui| {
             ui.set_width(520.0_f32.min(0.9 * ui.ctx().content_rect().width()));
-            outcome = field.show(ui);
-        });
-        if modal.should_close() {
-            outcome = Some(None);
-        }
-        let chosen = outcome?;
+            field.show(ui)
+        })?;
         let purpose = field.purpose;
         self.field = None;
         chosen.map(|path| (purpose, path))

@@ -5,7 +5,7 @@ use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui, vec2};
 use crate::app::book::EXPORT;
 use crate::app::kit::{theme, widgets};
 use crate::app::services::export::Ready;
-use crate::app::sheets::{book, scrolled};
+use crate::app::sheets::{answers, book, question, scrolled};
 use crate::render::looks::Compared;
 use crate::store::exchange::Prepared;
 use crate::store::exchange::report::{MaterialReport, Outcome};
@@ -19,19 +19,19 @@ const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference
 
 /// The sheet, while there is something to ask.
 #[derive(Default)]
-pub(in crate::app) struct ExportSheet {
+pub struct ExportSheet {
     ready: Option<Ready>,
     textures: Vec<Option<[TextureHandle; 3]>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Answer {
+pub enum Answer {
     Write,
     Cancel,
 }
 
 impl ExportSheet {
-    pub(in crate::app) fn ask(&mut self, ctx: &egui::Context, ready: Ready) {
+    pub fn ask(&mut self, ctx: &egui::Context, ready: Ready) {
         let texture = |(name, picture): (&&str, &image::RgbImage)| {
             let size = [picture.width() as usize, picture.height() as usize];
             ctx.load_texture(*name, ColorImage::from_rgb(size, picture), TextureOptions::LINEAR)
@@ -45,21 +45,20 @@ impl ExportSheet {
         self.ready = Some(ready);
     }
 
-    pub(in crate::app) fn is_open(&self) -> bool {
+    pub fn is_open(&self) -> bool {
         self.ready.is_some()
     }
 
     /// The file, to be written; the sheet is closed.
-    pub(in crate::app) fn take(&mut self) -> Option<Prepared> {
+    pub fn take(&mut self) -> Option<Prepared> {
         self.textures.clear();
         Some(self.ready.take()?.prepared)
     }
 
     /// Shows the sheet where it is open.
-    pub(in crate::app) fn show(&self, ctx: &egui::Context) -> Option<Answer> {
+    pub fn show(&self, ctx: &egui::Context) -> Option<Answer> {
         let ready = self.ready.as_ref()?;
-        let mut answer = None;
-        let modal = egui::Modal::new(egui::Id::unique("export")).show(ctx, |ui| {
+        question(ctx, "export", Answer::Cancel, |ui| {
             ui.set_width(SHEET);
             book::heading(ui, "Export", EXPORT);
             let report = &ready.prepared.report;
@@ -71,19 +70,8 @@ impl ExportSheet {
                 }
             });
             ui.add_space(theme::GAP);
-            ui.horizontal(|ui| {
-                if ui.button("Write the file").clicked() {
-                    answer = Some(Answer::Write);
-                }
-                if ui.button("Cancel").clicked() {
-                    answer = Some(Answer::Cancel);
-                }
-            });
-        });
-        if modal.should_close() {
-            answer = Some(Answer::Cancel);
-        }
-        answer
+            answers(ui, [("Write the file", Answer::Write), ("Cancel", Answer::Cancel)])
+        })
     }
 }
 

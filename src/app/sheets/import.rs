@@ -1,6 +1,6 @@
 //! The sheet about the model's file: which of its images is shown, and what became of its parts.
 
-use egui::{Align, Layout, RichText, Ui};
+use egui::{RichText, Ui};
 
 use crate::app::actions::Action;
 use crate::app::book::MODEL_FILE;
@@ -11,7 +11,7 @@ use crate::document::{Document, ImportLobe};
 use crate::scene::{Fate, ImportReport, Model, ModelOptions};
 
 /// Shows the sheet of a model. What is chosen is asked for as an action; true where the sheet is done with.
-pub(in crate::app) fn show(
+pub fn show(
     ui: &mut Ui,
     document: &Document,
     (model, lobe): (Option<&Model>, ImportLobe),
@@ -22,9 +22,7 @@ pub(in crate::app) fn show(
     ui.horizontal(|ui| {
         book::heading(ui, "Model file", MODEL_FILE);
         // Above what comes and goes, so that it stays where it is.
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            is_done = ui.button("Close").clicked()
-        });
+        widgets::at_right(ui, |ui| is_done = ui.button("Close").clicked());
     });
     ui.label(document.model.to_string());
     let Some(model) = model else {

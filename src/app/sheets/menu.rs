@@ -21,7 +21,7 @@ const PATH_WIDTH: f32 = 900.0;
 
 /// What is open over the window.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::app) enum Sheet {
+pub enum Sheet {
     #[default]
     None,
     Palette {
@@ -39,7 +39,7 @@ pub(in crate::app) enum Sheet {
     },
 }
 
-pub(in crate::app) fn bar(
+pub fn bar(
     ui: &mut Ui,
     edits: &Edits,
     recent: &mut Recent,
@@ -71,7 +71,7 @@ pub(in crate::app) fn bar(
                 }
             });
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        widgets::at_right(ui, |ui| {
             let keys = Command::Palette
                 .shortcut()
                 .map(|shortcut| ui.ctx().format_shortcut(&shortcut));
@@ -182,7 +182,7 @@ fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
     ui.menu_button("Examples", |ui| {
         for (number, example) in EXAMPLES.iter().enumerate() {
-            if ui.button(example.label).on_hover_text(example.help).clicked() {
+            if widgets::pressed(ui, example.label, example.help) {
                 do_and_close(ui, actions, Action::OpenExample(number));
             }
         }
@@ -191,17 +191,13 @@ fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
 
 fn import_lobes(ui: &mut Ui, mut chosen: ImportLobe, actions: &mut Vec<Action>) {
     ui.separator();
-    let choices: Vec<_> = ImportLobe::ALL
-        .iter()
-        .map(|lobe| (*lobe, lobe.label(), lobe.help()))
-        .collect();
-    if widgets::choice_menu(ui, "Import glTF materials as", &mut chosen, &choices) {
+    if widgets::choice_menu(ui, "Import glTF materials as", &mut chosen, &widgets::choices()) {
         actions.push(Action::ImportAs(chosen));
     }
 }
 
 /// Shows the sheet that is open.
-pub(in crate::app) fn sheet(
+pub fn sheet(
     ctx: &egui::Context,
     sheet: &mut Sheet,
     desk: (&Document, &MaterialSettings),
@@ -210,22 +206,26 @@ pub(in crate::app) fn sheet(
 ) {
     let (document, material) = desk;
     let mut is_done = false;
-    let modal = match sheet {
+    let id = match sheet {
         Sheet::None => return,
+        Sheet::Palette { .. } => "palette",
+        Sheet::ModelFile => "model file",
+        Sheet::Shortcuts => "shortcuts",
+        Sheet::About => "about",
+        Sheet::Path { .. } => "path",
+    };
+    let modal = egui::Modal::new(egui::Id::unique(id)).show(ctx, |ui| match sheet {
+        Sheet::None => {}
         Sheet::Palette {
             search,
             selected,
             things,
-        } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
-            is_done = palette::show(ui, search, selected, document, (material, things), actions);
-        }),
-        Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
-            is_done = import::show(ui, document, (model, lobe), actions);
-        }),
-        Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
-        Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
-        Sheet::Path { text } => egui::Modal::new(egui::Id::unique("path")).show(ctx, |ui| path(ui, text)),
-    };
+        } => is_done = palette::show(ui, search, selected, document, (material, things), actions),
+        Sheet::ModelFile => is_done = import::show(ui, document, (model, lobe), actions),
+        Sheet::Shortcuts => shortcuts(ui),
+        Sheet::About => about(ui),
+        Sheet::Path { text } => path(ui, text),
+    });
     if is_done || modal.should_close() {
         *sheet = Sheet::None;
     }
@@ -306,7 +306,7 @@ fn path(ui: &mut Ui, text: &str) {
     });
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
-        if ui.button("Copy").on_hover_text("Copies the account as text.").clicked() {
+        if widgets::pressed(ui, "Copy", "Copies the account as text.") {
             ui.ctx().copy_text(text.to_owned());
         }
         if ui.button("Close").clicked() {

@@ -1,19 +1,43 @@
 //! What lies around and over the panels: menus, status bar, dialogs and sheets.
 
-pub(super) mod book;
-pub(super) mod dialogs;
-pub(super) mod export;
-pub(super) mod import;
-pub(super) mod menu;
-pub(super) mod outside;
-pub(super) mod palette;
-pub(super) mod recovery;
+pub mod book;
+pub mod dialogs;
+pub mod export;
+pub mod import;
+pub mod menu;
+pub mod outside;
+pub mod palette;
+pub mod recovery;
 pub mod status;
-pub(super) mod turntable;
-pub(super) mod unsaved;
+pub mod turntable;
+pub mod unsaved;
 mod workspaces;
 
-use egui::Ui;
+use egui::{Context, Id, Modal, Ui};
+
+/// A sheet over the window, and its answer; closed without one, it is `cancelled`.
+pub fn question<A>(ctx: &Context, id: &str, cancelled: A, show: impl FnOnce(&mut Ui) -> Option<A>) -> Option<A> {
+    let modal = Modal::new(Id::unique(id)).show(ctx, show);
+    if modal.should_close() {
+        Some(cancelled)
+    } else {
+        modal.inner
+    }
+}
+
+/// Buttons side by side, each with the answer that it gives.
+fn answers<A>(ui: &mut Ui, buttons: impl IntoIterator<Item = (&'static str, A)>) -> Option<A> {
+    let pressed = |ui: &mut Ui| {
+        let mut answer = None;
+        for (text, of_button) in buttons {
+            if ui.button(text).clicked() {
+                answer = Some(of_button);
+            }
+        }
+        answer
+    };
+    ui.horizontal(pressed).inner
+}
 
 /// Share of the window's height that long sheets scroll within.
 const SHEET_SHARE: f32 = 0.7;

@@ -5,23 +5,24 @@ use std::path::PathBuf;
 use egui::Ui;
 
 use crate::app::kit::{theme, widgets};
+use crate::app::sheets::answers;
 
 /// Most names that are shown.
 const SHOWN: usize = 8;
 
 /// What is asked, and what was denied before: that is not asked again until the next start.
 #[derive(Default)]
-pub(in crate::app) struct Outside {
+pub struct Outside {
     /// The files that are asked about; nothing is asked where there are none.
-    pub(in crate::app) files: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
     /// The file that names them, where it is opened again once they are allowed.
-    pub(in crate::app) named_by: Option<PathBuf>,
-    pub(in crate::app) denied: Vec<PathBuf>,
+    pub named_by: Option<PathBuf>,
+    pub denied: Vec<PathBuf>,
 }
 
 impl Outside {
     /// Adds files to the question.
-    pub(in crate::app) fn ask(&mut self, files: Vec<PathBuf>) {
+    pub fn ask(&mut self, files: Vec<PathBuf>) {
         for file in files {
             if !self.denied.contains(&file) && !self.files.contains(&file) {
                 self.files.push(file);
@@ -30,7 +31,7 @@ impl Outside {
     }
 
     /// Shows the question; true for yes.
-    pub(in crate::app) fn show(&self, ui: &mut Ui) -> Option<bool> {
+    pub fn show(&self, ui: &mut Ui) -> Option<bool> {
         ui.set_width(480.0);
         ui.heading("Read files from elsewhere?");
         let by = match &self.named_by {
@@ -51,15 +52,6 @@ impl Outside {
             widgets::note(ui, format!("and {} more", self.files.len() - SHOWN));
         }
         ui.add_space(theme::GAP);
-        let mut answer = None;
-        ui.horizontal(|ui| {
-            if ui.button("Allow").clicked() {
-                answer = Some(true);
-            }
-            if ui.button("Deny").clicked() {
-                answer = Some(false);
-            }
-        });
-        answer
+        answers(ui, [("Allow", true), ("Deny", false)])
     }
 }

@@ -8,30 +8,24 @@ use crate::app::pane::Pane;
 use crate::document::{Document, Kind, MaterialSettings, PARAMETERS, Parameter, SETTINGS};
 
 /// Something to be found.
-struct Entry {
-    label: String,
-    text: String,
-    help: &'static str,
-    keys: String,
-    is_favourite: bool,
-    action: Action,
-}
-
-/// Something that can be used, and what it is found by.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::app) struct Findable {
-    pub(in crate::app) label: String,
+pub struct Findable {
+    pub label: String,
     /// Words beside those of the label.
-    pub(in crate::app) tags: String,
-    pub(in crate::app) is_favourite: bool,
-    pub(in crate::app) action: Action,
+    pub tags: String,
+    pub help: &'static str,
+    pub keys: String,
+    pub is_favourite: bool,
+    pub action: Action,
 }
 
 impl Findable {
-    pub(in crate::app) fn new(label: String, action: Action) -> Self {
+    pub fn new(label: String, action: Action) -> Self {
         Self {
             label,
             tags: String::new(),
+            help: "",
+            keys: String::new(),
             is_favourite: false,
             action,
         }
@@ -39,7 +33,7 @@ impl Findable {
 }
 
 /// The keys go to the palette with the next frame: what is typed right after it was asked for is not lost.
-pub(in crate::app) fn focus(ctx: &egui::Context) {
+pub fn focus(ctx: &egui::Context) {
     ctx.memory_mut(|memory| memory.request_focus(field_id()));
 }
 
@@ -48,7 +42,7 @@ fn field_id() -> egui::Id {
 }
 
 /// Shows it; true once something was chosen.
-pub(in crate::app) fn show(
+pub fn show(
     ui: &mut Ui,
     search: &mut String,
     selected: &mut usize,
@@ -81,7 +75,7 @@ pub(in crate::app) fn show(
         for (index, entry) in found.iter().enumerate() {
             let button = egui::Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
             // By its words: entries come and go with what is loaded meanwhile.
-            let id = egui::Id::unique(("palette", &entry.label, &entry.text));
+            let id = egui::Id::unique(("palette", &entry.label, &entry.tags));
             let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
             let apart = egui::UiBuilder::new().scope_id(id);
             let response = ui.scope_builder(apart, |ui| ui.add_sized(size, button)).inner;
@@ -107,34 +101,34 @@ pub(in crate::app) fn show(
 }
 
 /// A parameter that has a row.
-fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Entry> {
-    parameter_row::has_row(parameter).then(|| Entry {
-        label: parameter.full_name(),
-        text: format!("{} {}", parameter.full_name(), parameter.key),
+fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Findable> {
+    parameter_row::has_row(parameter).then(|| Findable {
+        tags: parameter.key.to_owned(),
         help: parameter.help,
-        keys: String::new(),
-        is_favourite: false,
-        action: Action::Edit(parameter.key),
+        ..Findable::new(parameter.full_name(), Action::Edit(parameter.key))
     })
 }
 
 /// What has all the words of the search, those first that have them in their names; commands, then parameters, then
 /// panels, then what can be used: materials, environments, views, files, workspaces. Favourites of the browser stand before
 /// others, and are found by their tags as there.
-fn found(ui: &Ui, search: &str, document: &Document, (edited, things): (&MaterialSettings, &[Findable])) -> Vec<Entry> {
+fn found(
+    ui: &Ui,
+    search: &str,
+    document: &Document,
+    (edited, things): (&MaterialSettings, &[Findable]),
+) -> Vec<Findable> {
     let search = search.to_lowercase();
     let words: Vec<&str> = search.split_whitespace().collect();
     let commands = Command::ALL.iter().filter(|command| **command != Command::Palette);
-    let commands = commands.map(|command| Entry {
-        label: command.label().to_owned(),
-        text: format!("{} {} {}", command.menu().label(), command.label(), command.help()),
+    let commands = commands.map(|command| Findable {
+        tags: format!("{} {}", command.menu().label(), command.help()),
         help: command.help(),
         keys: command
             .shortcut()
             .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
             .unwrap_or_default(),
-        is_favourite: false,
-        action: Action::Do(*command),
+        ..Findable::new(command.label().to_owned(), Action::Do(*command))
     });
     // A texture's switch stands beside its image.
     let parameters = PARAMETERS
@@ -146,28 +140,16 @@ fn found(ui: &Ui, search: &str, document: &Document, (edited, things): (&Materia
         .filter(|setting| (setting.applies)(document))
         .filter_map(of_parameter);
     let panes = Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport);
-    let panes = panes.map(|pane| Entry {
-        label: pane.command(),
-        text: pane.command(),
-        help: "",
-        keys: String::new(),
-        is_favourite: false,
-        action: Action::Reveal(pane),
-    });
+    let panes = panes.map(|pane| Findable::new(pane.command(), Action::Reveal(pane)));
     let has_words = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word))
     };
-    let things = things.iter().map(|thing| Entry {
-        label: thing.label.clone(),
-        text: format!("{} {}", thing.label, thing.tags),
-        help: "",
-        keys: String::new(),
-        is_favourite: thing.is_favourite,
-        action: thing.action.clone(),
-    });
-    let entries = commands.chain(parameters).chain(settings).chain(panes).chain(things);
-    let mut found: Vec<Entry> = entries.filter(|entry| has_words(&entry.text)).collect();
+    let entries = commands.chain(parameters).chain(settings).chain(panes);
+    let mut found: Vec<Findable> = entries
+        .chain(things.iter().cloned())
+        .filter(|entry| has_words(&format!("{} {}", entry.label, entry.tags)))
+        .collect();
     found.sort_by_key(|entry| (!has_words(&entry.label), !entry.is_favourite));
     found
 }

@@ -10,12 +10,12 @@ use crate::app::sheets::scrolled;
 use crate::store::recovery::{Recovered, Report};
 
 /// What is to be done with a leftover.
-pub(in crate::app) enum Choice {
+pub enum Choice {
     Restore,
     Discard,
 }
 
-pub(in crate::app) fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
+pub fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
     let mut chosen = None;
     ui.set_width(460.0);
     if leftovers.iter().any(|leftover| leftover.contents.is_some()) {
@@ -95,7 +95,7 @@ fn show_report(ui: &mut Ui, report: &Report) {
 }
 
 /// What to call it.
-pub(in crate::app) fn name(recovered: &Recovered) -> String {
+pub fn name(recovered: &Recovered) -> String {
     let stem = recovered.project.as_ref().and_then(|path| path.file_stem());
     stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }

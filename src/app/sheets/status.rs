@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use egui::{RichText, Ui};
 
 use crate::app::actions::Action;
+use crate::app::kit::widgets;
 use crate::app::kit::words::{error, percent, short_number, time_left};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
@@ -57,7 +58,7 @@ impl Track {
 impl FrameMeter {
     /// A frame begins. `is_running`: it was asked for while the last one was drawn. `work_seconds`: eframe's count of
     /// the last one.
-    pub(in crate::app) fn begin(&mut self, now: Instant, is_running: bool, work_seconds: Option<f32>) {
+    pub fn begin(&mut self, now: Instant, is_running: bool, work_seconds: Option<f32>) {
         let is_warm = self.frames > WARM_UP_FRAMES;
         if let Some(seconds) = work_seconds {
             let work = Duration::from_secs_f32(seconds.clamp(0.0, 1e3));
@@ -157,13 +158,7 @@ impl<'a> Part<'a> {
 }
 
 /// Shows the bar's contents, what there is room for. `has_numbers`: error, samples and times stand in it, too.
-pub(in crate::app) fn show(
-    ui: &mut Ui,
-    snapshot: &Snapshot,
-    meter: &FrameMeter,
-    has_numbers: bool,
-    actions: &mut Vec<Action>,
-) {
+pub fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, has_numbers: bool, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
         let mut parts = if has_numbers { engine(ui, snapshot) } else { Vec::new() };
@@ -179,7 +174,7 @@ pub(in crate::app) fn show(
         let fits = fitting(&widths, ui.available_width() + SPACING);
         for part in parts.into_iter().filter(|part| fits.contains(&part.rank)) {
             if part.rank == Rank::Window {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), part.show);
+                widgets::at_right(ui, part.show);
             } else {
                 (part.show)(ui);
             }

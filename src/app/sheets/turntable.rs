@@ -9,33 +9,25 @@ use crate::app::kit::words::duration;
 use crate::app::kit::{theme, widgets};
 use crate::document::turntable::Turn;
 use crate::document::{CameraSettings, Document};
+use crate::named::named;
 use crate::render::turntable::{FPS, Turntable};
 use crate::store::video;
 
 /// Frames at first: four seconds.
 const FRAMES: u32 = 96;
 /// Columns and rows at first, where the image's own size only follows from the window's.
-pub(in crate::app) const SIZE: [u32; 2] = [1920, 1080];
+pub const SIZE: [u32; 2] = [1920, 1080];
 
-/// What a turntable is written as.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Form {
-    Pictures,
-    #[default]
-    Mp4,
-    Gif,
+named! {
+    /// What a turntable is written as.
+    #[derive(Default)]
+    Form {
+        Pictures, "images", "Images", "Numbered images (.png) in a folder.";
+        #[default]
+        Mp4, "mp4", "Video (.mp4)", "H.264, which everything plays.";
+        Gif, "gif", "Animation (.gif)", "256 colours a frame, in an endless loop.";
+    }
 }
-
-/// All of them, with their labels and what they are.
-const FORMS: [(Form, &str, &str); 3] = [
-    (Form::Pictures, "Images", "Numbered images (.png) in a folder."),
-    (Form::Mp4, "Video (.mp4)", "H.264, which everything plays."),
-    (
-        Form::Gif,
-        "Animation (.gif)",
-        "256 colours a frame, in an endless loop.",
-    ),
-];
 
 impl Form {
     /// The ending of its file; none for a folder.
@@ -49,24 +41,24 @@ impl Form {
 }
 
 /// A turn in the viewport.
-pub(in crate::app) struct Preview {
-    pub(in crate::app) since: Instant,
+pub struct Preview {
+    pub since: Instant,
     /// The document's camera: a turn ends where that is moved.
-    pub(in crate::app) camera: CameraSettings,
+    pub camera: CameraSettings,
 }
 
-pub(in crate::app) struct TurntableSheet {
-    pub(in crate::app) is_open: bool,
+pub struct TurntableSheet {
+    pub is_open: bool,
     frames: u32,
-    pub(in crate::app) turn: Turn,
+    pub turn: Turn,
     /// The turn that the viewport shows.
-    pub(in crate::app) preview: Option<Preview>,
+    pub preview: Option<Preview>,
     form: Form,
     fps: f64,
-    pub(in crate::app) samples: u32,
-    pub(in crate::app) size: [u32; 2],
+    pub samples: u32,
+    pub size: [u32; 2],
     /// The folder or the file.
-    pub(in crate::app) output: String,
+    pub output: String,
 }
 
 impl Default for TurntableSheet {
@@ -86,7 +78,7 @@ impl Default for TurntableSheet {
 }
 
 impl TurntableSheet {
-    pub(in crate::app) fn order(&self, document: &Document) -> Turntable {
+    pub fn order(&self, document: &Document) -> Turntable {
         let mut document = document.clone();
         [document.render.width, document.render.height] = self.size;
         document.render.samples = self.samples;
@@ -111,14 +103,10 @@ impl TurntableSheet {
     }
 
     /// The settings; true to begin. `samples_per_second`: how fast pixels are sampled at present.
-    pub(in crate::app) fn settings(&mut self, ui: &mut Ui, samples_per_second: f64) -> bool {
-        let turns: Vec<_> = Turn::ALL
-            .iter()
-            .map(|turn| (*turn, turn.label(), turn.help()))
-            .collect();
+    pub fn settings(&mut self, ui: &mut Ui, samples_per_second: f64) -> bool {
         let name = widgets::Name::new("Turntable turn", "Turn", "What turns, anticlockwise seen from above.");
         widgets::row(ui, name, |ui| {
-            widgets::choice(ui, "turntable turn", &mut self.turn, &turns)
+            widgets::choice(ui, "turntable turn", &mut self.turn, &widgets::choices())
         });
         let mut number =
             |name: &str, label: &str, help: &str, value: &mut u32, range: std::ops::RangeInclusive<f64>| {
@@ -144,7 +132,7 @@ impl TurntableSheet {
         number("Turntable height", "Height", "Rows of each.", height, 1.0..=8192.0);
         let name = widgets::Name::new("Turntable form", "Written as", "What the frames are written as.");
         widgets::row(ui, name, |ui| {
-            widgets::choice(ui, "turntable form", &mut self.form, &FORMS)
+            widgets::choice(ui, "turntable form", &mut self.form, &widgets::choices())
         });
         let is_video = self.form != Form::Pictures;
         let name = widgets::Name::new("Turntable frames a second", "Frames/s", "How fast a video plays.");
@@ -197,7 +185,7 @@ fn with_ending(path: &str, ending: &str) -> String {
         .extension()
         .and_then(|has| has.to_str())
         .unwrap_or_default();
-    let is_known = FORMS.iter().any(|(form, ..)| form.ending() == has);
+    let is_known = Form::ALL.iter().any(|form| form.ending() == has);
     match is_known && has != ending && !path.is_empty() {
         true => Path::new(path).with_extension(ending).display().to_string(),
         false => path.to_owned(),

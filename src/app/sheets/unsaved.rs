@@ -10,7 +10,7 @@ use crate::document::Document;
 use crate::store::Loaded;
 
 /// What would lose the edits.
-pub(in crate::app) enum Then {
+pub enum Then {
     /// The window is closed.
     Close,
     New,
@@ -30,26 +30,26 @@ impl Then {
 
 /// The questions that are open, and what waits for a file to be saved.
 #[derive(Default)]
-pub(in crate::app) struct Unsaved {
-    pub(in crate::app) question: Option<Question>,
-    pub(in crate::app) after_save: Option<Then>,
+pub struct Unsaved {
+    pub question: Option<Question>,
+    pub after_save: Option<Then>,
     /// Asked and answered: the window may go.
-    pub(in crate::app) may_close: bool,
+    pub may_close: bool,
     /// The question whether to give renders in the queue up is open.
-    pub(in crate::app) asks_about_queue: bool,
+    pub asks_about_queue: bool,
     /// What files name elsewhere.
-    pub(in crate::app) outside: Outside,
+    pub outside: Outside,
     /// That was answered with yes.
-    pub(in crate::app) gives_queue_up: bool,
+    pub gives_queue_up: bool,
 }
 
 /// The open question.
-pub(in crate::app) struct Question {
-    pub(in crate::app) then: Then,
-    pub(in crate::app) is_new: bool,
+pub struct Question {
+    pub then: Then,
+    pub is_new: bool,
 }
 
-pub(in crate::app) enum Answer {
+pub enum Answer {
     Save,
     Discard,
     Cancel,
@@ -57,13 +57,13 @@ pub(in crate::app) enum Answer {
 
 impl Unsaved {
     /// Whether an answer is waited for.
-    pub(in crate::app) fn is_open(&self) -> bool {
+    pub fn is_open(&self) -> bool {
         self.question.is_some() || self.asks_about_queue || !self.outside.files.is_empty()
     }
 }
 
 impl Question {
-    pub(in crate::app) fn show(&mut self, ui: &mut Ui, name: &str) -> Option<Answer> {
+    pub fn show(&mut self, ui: &mut Ui, name: &str) -> Option<Answer> {
         ui.set_width(380.0);
         ui.heading(format!("Save the changes to {name}?"));
         widgets::note(

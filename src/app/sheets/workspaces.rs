@@ -11,7 +11,7 @@ use crate::app::services::workspaces::{Change, LOOK, MEASURE, is_built_in};
 const NAME_WIDTH: f32 = 160.0;
 
 /// Shows tabs and menu, from right to left.
-pub(super) fn show(ui: &mut Ui, (names, current): (&[&str], &str), actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, (names, current): (&[&str], &str), actions: &mut Vec<Action>) {
     menu(ui, (names, current), actions);
     let is_tab = |name: &&&str| is_built_in(name) || **name == current;
     for &name in names.iter().rev().filter(is_tab) {

@@ -25,10 +25,10 @@ const KEY_STEP: f32 = 0.01;
 const LEGEND: egui::Vec2 = vec2(160.0, 10.0);
 
 /// Height of the bar.
-pub(super) const BAR_HEIGHT: f32 = 2.0 * theme::BAR_HEIGHT;
+pub const BAR_HEIGHT: f32 = 2.0 * theme::BAR_HEIGHT;
 
 /// The part of the area in which A is shown, by which its size goes.
-pub(super) fn area_of_a(area: Rect, view: View) -> Rect {
+pub fn area_of_a(area: Rect, view: View) -> Rect {
     if view == View::SideBySide {
         halves(area)[0]
     } else {
@@ -46,7 +46,7 @@ fn halves(area: Rect) -> [Rect; 2] {
 
 impl Viewport {
     /// Shows A, `a`, and B where there is an image of it; returns where what the pointer is over is shown.
-    pub(super) fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
+    pub fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
         let resolution = desk.shared.viewing.resolution;
         let place = placed(area_of_a(area, desk.shared.compare.view), a, resolution);
         let Some(b) = desk.shared.compare.picture() else {
@@ -103,7 +103,7 @@ impl Viewport {
     }
 
     /// The divider over the image. To be shown after what turns the camera, so that it is before that.
-    pub(super) fn divider(ui: &mut Ui, place: Rect, desk: &mut Desk<'_>) {
+    pub fn divider(ui: &mut Ui, place: Rect, desk: &mut Desk<'_>) {
         let compare = &mut desk.shared.compare;
         let x = egui::lerp(place.x_range(), compare.divider);
         let rect = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, place.y_range());
@@ -212,7 +212,7 @@ impl ShownTexture {
 }
 
 /// What A and B are, how they are shown, how far they are apart, and what can be done with B.
-pub(super) fn bar(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
+pub fn bar(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
     let (upper, lower) = bar.split_top_bottom_at_fraction(0.5);
     in_row(ui, upper, |ui| contestants(ui, desk));
@@ -240,7 +240,7 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
             ui.colored_label(color, "not matched").on_hover_text(why);
         }
     });
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    widgets::at_right(ui, |ui| {
         if icons::button(ui, Icon::Close, "Stop comparing", "Stop comparing (C)").clicked() {
             desk.act(Command::Compare);
         }
@@ -304,9 +304,9 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
     let compare = &mut desk.shared.compare;
-    for (view, label, help) in View::ALL {
-        let response = ui.selectable_label(compare.view == view, label).on_hover_text(help);
-        if response.clicked() {
+    for &view in View::ALL {
+        let response = ui.selectable_label(compare.view == view, view.label());
+        if response.on_hover_text(view.help()).clicked() {
             compare.view = view;
         }
     }
@@ -341,7 +341,7 @@ fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
         View::Wipe | View::SideBySide => {}
     }
     let Some(compared) = compared else { return };
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    widgets::at_right(ui, |ui| {
         let [a, b] = compared.samples;
         let help = format!(
             "Root mean square of (B − A) over A, with at least 0.1 for A. A has {a} samples per pixel and B {b}, \

@@ -19,7 +19,7 @@ const HEIGHT: f32 = 76.0;
 
 /// Fetches the denoiser beside the window.
 #[derive(Default)]
-pub(super) struct DenoiserOffer {
+pub struct DenoiserOffer {
     worker: Option<Background<(), Result<(), String>>>,
     is_declined: bool,
     /// The outcome was taken note of.
@@ -28,7 +28,7 @@ pub(super) struct DenoiserOffer {
 
 impl DenoiserOffer {
     /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
-    pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         if self.is_declined
             || !desk.shared.offers_downloads
             || !can_fetch()
@@ -79,7 +79,7 @@ impl DenoiserOffer {
         }
         let worker = started(&mut self.worker, ui.ctx(), |repaint| {
             Background::spawn("denoiser", repaint, |(), responder| {
-                responder.publish(fetch().map_err(|error| error.to_string()));
+                responder.publish(fetch().map_err(crate::in_words));
             })
         });
         if let Some(worker) = worker {

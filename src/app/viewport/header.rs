@@ -7,9 +7,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::{theme, widgets};
 use crate::app::services::environments::environment_label;
-use crate::app::services::viewing::RESOLUTIONS;
 use crate::document::{Denoise, LightPaths};
-use crate::optics::tone::ToneCurve;
 use crate::render::shown::Shown;
 use crate::scene::ModelSource;
 use crate::scene::environment::BUILT_IN;
@@ -58,7 +56,7 @@ const MODELS: [(&str, ModelSource); 5] = [
     ("Shader ball", ModelSource::Shaderball),
 ];
 
-pub(super) fn model_label(source: &ModelSource) -> String {
+pub fn model_label(source: &ModelSource) -> String {
     let built_in = MODELS.iter().find(|(_, of)| of == source);
     match (built_in, source) {
         (Some((label, _)), _) => (*label).to_owned(),
@@ -70,7 +68,7 @@ pub(super) fn model_label(source: &ModelSource) -> String {
     }
 }
 
-pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
     let inside = bar.shrink2(vec2(8.0, 0.0));
     let builder = UiBuilder::new()
@@ -81,7 +79,7 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     models(&mut ui, desk);
     environments(&mut ui, desk);
     let inside = fitting(ui.available_width(), ui.spacing().item_spacing.x);
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    widgets::at_right(&mut ui, |ui| {
         if inside.len() < ITEMS.len() {
             more(ui, desk, &inside);
         }
@@ -166,7 +164,12 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             denoises.accessible_name("Viewport denoise");
         }
         Item::Resolution => {
-            let response = widgets::choice(ui, "header size", &mut desk.shared.viewing.resolution, &RESOLUTIONS);
+            let response = widgets::choice(
+                ui,
+                "header size",
+                &mut desk.shared.viewing.resolution,
+                &widgets::choices(),
+            );
             response
                 .accessible_name("Resolution")
                 .on_hover_text("Size of the image");
@@ -247,17 +250,18 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
     match item {
         Item::ToneMap => {
             let mut curve = desk.document.view.tone_map;
-            let choices: Vec<_> = ToneCurve::ALL
-                .iter()
-                .map(|curve| (*curve, curve.label(), curve.help()))
-                .collect();
-            if widgets::choice_menu(ui, "Tone map", &mut curve, &choices) {
+            if widgets::choice_menu(ui, "Tone map", &mut curve, &widgets::choices()) {
                 desk.document.view.tone_map = curve;
                 desk.edits.note("Tone map", "view.tone_map");
             }
         }
         Item::Resolution => {
-            widgets::choice_menu(ui, "Resolution", &mut desk.shared.viewing.resolution, &RESOLUTIONS);
+            widgets::choice_menu(
+                ui,
+                "Resolution",
+                &mut desk.shared.viewing.resolution,
+                &widgets::choices(),
+            );
         }
         Item::Shown => {
             let mut seen = seen(desk);
@@ -277,12 +281,12 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
 }
 
 fn command(ui: &mut Ui, desk: &mut Desk<'_>, command: Command) {
-    if ui.button(command.label()).on_hover_text(command.help()).clicked() {
+    if widgets::pressed(ui, command.label(), command.help()) {
         do_and_close(ui, desk.actions, Action::Do(command));
     }
 }
 
-pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+pub fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, theme::ROW_HEIGHT), layout, add);
 }

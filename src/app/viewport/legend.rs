@@ -14,7 +14,7 @@ const STEPS: u32 = 45;
 const MARGIN: f32 = 14.0;
 
 /// Shows what the colours mean in the lower left corner of the viewport.
-pub(super) fn show(ui: &Ui, area: Rect, shown: Shown, scale: Option<Scale>) {
+pub fn show(ui: &Ui, area: Rect, shown: Shown, scale: Option<Scale>) {
     match (shown, scale) {
         (Shown::Clipping, _) => marks(ui, area),
         (_, Some(scale)) => strip(ui, area, shown, scale),

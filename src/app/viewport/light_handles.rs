@@ -28,7 +28,7 @@ const AROUND: u32 = 48;
 
 /// The handle that is being dragged.
 #[derive(Default)]
-pub(super) struct LightHandles {
+pub struct LightHandles {
     held: Option<Held>,
 }
 
@@ -44,7 +44,7 @@ struct Held {
 
 impl LightHandles {
     /// Shows the lights over the image at `place` while their list is shown, and lets them be moved.
-    pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk<'_>) {
         if !desk.shared.selection.showed_lights {
             self.held = None;
             return;

@@ -13,7 +13,7 @@ const HEIGHT: f32 = 34.0;
 
 /// Says what is being loaded while the image before it stays. An image of another model than the panels show is dimmed,
 /// with what will come in the middle.
-pub(super) fn show(ui: &mut Ui, area: Rect, picture: &Picture, desk: &Desk<'_>) {
+pub fn show(ui: &mut Ui, area: Rect, picture: &Picture, desk: &Desk<'_>) {
     let (shown, document) = (&picture.document, &*desk.document);
     let is_other = (&shown.model, &shown.import) != (&document.model, &document.import);
     let text = match &desk.snapshot.activity {

@@ -10,7 +10,7 @@ use crate::render::worker::{Picture, Scene};
 const MARK_MIN: f32 = 9.0;
 
 /// Follows the pointer unless the pixel is pinned, says what is seen there, and marks a pinned pixel.
-pub(super) fn follow(
+pub fn follow(
     ui: &Ui,
     response: &Response,
     area: Rect,

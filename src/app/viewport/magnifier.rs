@@ -7,7 +7,7 @@ const PIXEL_MAX: f32 = 48.0;
 
 /// How much larger than it fits the image is shown, and which part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Magnifier {
+pub struct Magnifier {
     /// 1: as large as it fits.
     factor: f32,
     /// What is in the middle of the viewport, as shares of the image.
@@ -25,12 +25,12 @@ impl Default for Magnifier {
 
 impl Magnifier {
     /// Whether the image is shown larger than it fits.
-    pub(super) fn is_on(&self) -> bool {
+    pub fn is_on(&self) -> bool {
         self.factor > 1.0
     }
 
     /// Where the image is, of which `fitted` is the place at its usual size: it covers the area where it can.
-    pub(super) fn place(&mut self, area: Rect, fitted: Rect) -> Rect {
+    pub fn place(&mut self, area: Rect, fitted: Rect) -> Rect {
         if !self.is_on() {
             *self = Self::default();
             return fitted;
@@ -53,7 +53,7 @@ impl Magnifier {
     }
 
     /// Magnifies the image by a factor around a fixed place. `width_px` is the image's width.
-    pub(super) fn zoom(&mut self, by: f32, at: Pos2, area: Rect, fitted: Rect, width_px: u32) {
+    pub fn zoom(&mut self, by: f32, at: Pos2, area: Rect, fitted: Rect, width_px: u32) {
         let before = self.place(area, fitted);
         let share = (at - before.min) / before.size();
         let most = (PIXEL_MAX * width_px as f32 / fitted.width().max(1.0)).max(1.0);
@@ -62,7 +62,7 @@ impl Magnifier {
     }
 
     /// Moves it by a distance in points.
-    pub(super) fn pan(&mut self, by: Vec2, fitted: Rect) {
+    pub fn pan(&mut self, by: Vec2, fitted: Rect) {
         self.center -= by / (self.factor * fitted.size()).max(vec2(1.0, 1.0));
     }
 }

@@ -18,7 +18,7 @@ const OPEN_MODEL: Vec2 = vec2(132.0, theme::ROW_HEIGHT);
 const OPEN_MODEL_FROM: f32 = 320.0;
 
 /// The latest warnings, errors and what was done, until they are old or closed.
-pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     for entry in &mut desk.shared.messages {
         entry.is_open &= entry.offer == Some(Offer::ImportReport) || entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
     }
@@ -88,7 +88,7 @@ pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
 }
 
 /// A way to the user's own model, as long as one of the program's is shown.
-pub(super) fn open_model(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+pub fn open_model(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     let is_own = matches!(desk.document.model, ModelSource::File(_));
     if is_own || desk.shared.compare.is_on || area.width() < OPEN_MODEL_FROM {
         return;

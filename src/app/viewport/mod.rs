@@ -61,7 +61,7 @@ const SIDE_MAX_PX: u32 = 8192;
 
 /// The viewport's own state.
 #[derive(Default)]
-pub(super) struct Viewport {
+pub struct Viewport {
     picture: ShownTexture,
     /// B's, where two are compared.
     rival: ShownTexture,
@@ -140,23 +140,23 @@ impl ShownTexture {
 
 impl Viewport {
     /// The widget that takes the focus; `None` before the first frame.
-    pub(super) fn id(&self) -> Option<egui::Id> {
+    pub fn id(&self) -> Option<egui::Id> {
         self.id
     }
 
     /// The next drag says which part of the image is rendered.
-    pub(super) fn draw_region(&mut self) {
+    pub fn draw_region(&mut self) {
         self.region.arm();
     }
 
     /// Magnifies the image by a factor from the next frame on; 0 shows all of it.
-    pub(super) fn magnify(&mut self, by: f32) {
+    pub fn magnify(&mut self, by: f32) {
         self.magnifies = Some(by);
     }
 
     /// The size that an image that fills the viewport has; `None` before the viewport was laid out, or where the
     /// image's size is the document's.
-    pub(super) fn fill_size(&self, resolution: Resolution) -> Option<[u32; 2]> {
+    pub fn fill_size(&self, resolution: Resolution) -> Option<[u32; 2]> {
         let area = self.area?;
         let scale = match resolution {
             Resolution::Document => return None,
@@ -169,7 +169,7 @@ impl Viewport {
         Some([side(area.width()), side(area.height())])
     }
 
-    pub(super) fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let whole = ui.max_rect();
         let is_dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));

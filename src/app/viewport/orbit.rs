@@ -13,7 +13,7 @@ const DISTANCE_RADII: [f64; 2] = [0.01, 200.0];
 
 /// The camera with every number filled in, scene units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Orbit {
+pub struct Orbit {
     target: DVec3,
     yaw_deg: f64,
     pitch_deg: f64,
@@ -26,7 +26,7 @@ pub(super) struct Orbit {
 
 impl Orbit {
     /// The settings' camera; what they leave open is taken from what is being rendered.
-    pub(super) fn new(camera: &CameraSettings, job: &Job) -> Self {
+    pub fn new(camera: &CameraSettings, job: &Job) -> Self {
         let geometry = &job.geometry;
         let radius = geometry.world_units_per_unit;
         let target = camera.target.map_or(geometry.center_world, DVec3::from_array);
@@ -52,13 +52,13 @@ impl Orbit {
     }
 
     /// Turns about the target as if it were taken hold of; `points` to the right and down.
-    pub(super) fn turn(&mut self, points: [f64; 2]) {
+    pub fn turn(&mut self, points: [f64; 2]) {
         self.yaw_deg = (self.yaw_deg - DEG_PER_POINT * points[0] + 180.0).rem_euclid(360.0) - 180.0;
         self.pitch_deg = (self.pitch_deg + DEG_PER_POINT * points[1]).clamp(-90.0, 90.0);
     }
 
     /// Moves the target so that it follows a drag by `shift` heights of the image, to the right and down.
-    pub(super) fn pan(&mut self, shift: [f64; 2]) {
+    pub fn pan(&mut self, shift: [f64; 2]) {
         let (yaw, pitch) = (self.yaw_deg.to_radians(), self.pitch_deg.to_radians());
         let right = DVec3::new(yaw.cos(), 0.0, -yaw.sin());
         let up = DVec3::new(-pitch.sin() * yaw.sin(), pitch.cos(), -pitch.sin() * yaw.cos());
@@ -68,14 +68,14 @@ impl Orbit {
         self.target += height * (up * shift[1] - right * shift[0]);
     }
 
-    pub(super) fn zoom(&mut self, factor: f64) {
+    pub fn zoom(&mut self, factor: f64) {
         let [near, far] = DISTANCE_RADII.map(|radii| radii * self.radius);
         self.distance = (self.distance * factor).clamp(near, far);
     }
 
     /// Writes what was moved; the target and the distance only where they were, so that an untouched camera goes on
     /// framing any model that comes.
-    pub(super) fn write(&self, before: &Self, camera: &mut CameraSettings) {
+    pub fn write(&self, before: &Self, camera: &mut CameraSettings) {
         if self == before {
             return;
         }

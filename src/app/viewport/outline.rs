@@ -15,7 +15,7 @@ use crate::render::seen_map::{self, SeenMap, SeenMaps};
 
 /// The line as it is shown.
 #[derive(Default)]
-pub(super) struct Outline {
+pub struct Outline {
     maps: Option<SeenMaps>,
     /// What the latest map was asked of, and in what size.
     asked: Option<(Arc<Job>, [u32; 2])>,
@@ -24,7 +24,7 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Paints the lines over the image at `place`, once it is known what is seen where.
-    pub(super) fn show(&mut self, ui: &Ui, area: Rect, place: Rect, job: &Arc<Job>, desk: &Desk<'_>) {
+    pub fn show(&mut self, ui: &Ui, area: Rect, place: Rect, job: &Arc<Job>, desk: &Desk<'_>) {
         let chosen = chosen(desk);
         let lit = desk.shared.selection.lit;
         if chosen.is_empty() && lit.is_none() {

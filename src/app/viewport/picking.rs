@@ -13,7 +13,7 @@ use crate::render::worker::Scene;
 
 /// Lights up what the pointer is over while the tree of the scene is shown, and what a material would be dropped on; gives
 /// it the material where that is dropped.
-pub(super) fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+pub fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
     let is_dropping = DragAndDrop::has_payload_of_type::<MaterialSettings>(ui.ctx());
     if !(is_dropping || desk.shared.selection.was_shown) || !response.contains_pointer() {
         return;
@@ -37,7 +37,7 @@ pub(super) fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, de
 }
 
 /// Whether a click was for more than choosing: ctrl stands for the focus.
-pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> bool {
+pub fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> bool {
     let picks = if is_focus {
         Some(Pick::Focus)
     } else {
@@ -63,7 +63,7 @@ pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>)
 }
 
 /// Chooses what was clicked: its material, and while the tree of the scene is shown the object.
-pub(super) fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk<'_>) {
+pub fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk<'_>) {
     let selection = &mut desk.shared.selection;
     if let Some(object) = seen.object.filter(|_| selection.was_shown) {
         selection.choose_object(object, beside_others);

@@ -20,7 +20,7 @@ const SQUARE: f32 = 10.0;
 
 /// The map as far as it has come.
 #[derive(Default)]
-pub(super) struct PrecisionView {
+pub struct PrecisionView {
     maps: Option<PrecisionMaps>,
     /// What the latest map was asked of.
     asked: Option<Arc<Job>>,
@@ -31,7 +31,7 @@ pub(super) struct PrecisionView {
 
 impl PrecisionView {
     /// Paints the map of a job over `place` once it is there, and the legend into a corner of `area`.
-    pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
+    pub fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
         let Some(maps) = started(&mut self.maps, ui.ctx(), precision_maps::spawn) else {
             return;
         };

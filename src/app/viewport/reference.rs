@@ -15,7 +15,7 @@ fn shown_at(desk: &Desk<'_>, place: ReferencePlace) -> Option<Reference> {
 }
 
 /// The parts of the viewport for the render and for what stands beside it.
-pub(super) fn split(area: Rect, desk: &Desk<'_>) -> (Rect, Option<Rect>) {
+pub fn split(area: Rect, desk: &Desk<'_>) -> (Rect, Option<Rect>) {
     if desk.shared.compare.is_on || shown_at(desk, ReferencePlace::Beside).is_none() {
         return (area, None);
     }
@@ -28,12 +28,12 @@ pub(super) fn split(area: Rect, desk: &Desk<'_>) -> (Rect, Option<Rect>) {
 }
 
 /// Shows it beside the render.
-pub(super) fn beside(ui: &Ui, area: Rect, desk: &mut Desk<'_>) {
+pub fn beside(ui: &Ui, area: Rect, desk: &mut Desk<'_>) {
     paint(ui, (area, area), ReferencePlace::Beside, desk);
 }
 
 /// Shows it in the frame of the render, behind or over that; true where it is behind and there.
-pub(super) fn within(ui: &Ui, clip: Rect, frame: Rect, place: ReferencePlace, desk: &mut Desk<'_>) -> bool {
+pub fn within(ui: &Ui, clip: Rect, frame: Rect, place: ReferencePlace, desk: &mut Desk<'_>) -> bool {
     paint(ui, (clip.intersect(frame), frame), place, desk)
 }
 

@@ -14,7 +14,7 @@ const SIDE_MIN: f32 = 6.0;
 
 /// Drawing a region.
 #[derive(Default)]
-pub(super) struct RegionTool {
+pub struct RegionTool {
     /// The next drag is the region.
     is_armed: bool,
     /// Where the drag began, points.
@@ -24,12 +24,12 @@ pub(super) struct RegionTool {
 }
 
 impl RegionTool {
-    pub(super) fn arm(&mut self) {
+    pub fn arm(&mut self) {
         (self.is_armed, self.from) = (true, None);
     }
 
     /// Shows the region over the image at `place`; true while the viewport's drags are its own.
-    pub(super) fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) -> bool {
+    pub fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) -> bool {
         let is_wanted = self.is_armed || desk.document.render.region.is_some();
         if is_wanted && self.takes_escape(ui, response) {
             if !self.is_armed {

@@ -11,7 +11,7 @@ use crate::scene::camera::camera_ray;
 use crate::scene::surface::surface_at;
 
 /// The place in the image, in pixels, below its size.
-pub(super) fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
+pub fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
     let share = (at - place.min) / place.size();
     let is_inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);
     let [width, height] = scene.job.settings.image_size.map(f64::from);
@@ -19,7 +19,7 @@ pub(super) fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]>
 }
 
 /// The surface that is seen at a place, in pixels.
-pub(super) fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
+pub fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
     let size = scene.job.settings.image_size;
     let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
     let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);

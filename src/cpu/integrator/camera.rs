@@ -6,22 +6,25 @@ use super::paths::Paths;
 use super::results::Results;
 use super::vectors::Vectors;
 use super::wave::Tile;
-use crate::cpu::recorder::{Recorder, single};
+use crate::cpu::recorder::Recorder;
 use crate::instructions;
 use crate::job::BackgroundKind;
-use crate::optics::real::{Real, Scalar};
+use crate::optics::elementary::Single;
 use crate::scene::{Hit, PACKET, Packet};
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Adds the paths of `samples` (first, count) of all pixels of a tile, with their camera rays. Paths of a pixel block
     /// are adjacent.
-    pub(super) fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<R>) {
         let [first, count] = samples;
         paths.clear();
         for block in tile.blocks() {
             for sample in first..first + count {
                 paths.add(tile.origin, block.places, sample);
             }
+        }
+        if R::KEEPS {
+            paths.add_outputs();
         }
         T::vectorize(
             #[inline(always)]
@@ -37,7 +40,7 @@ impl<T: Real> Integrator<'_, T> {
     /// Intersects camera rays in packets of adjacent paths, for scenes without holes. `hits` is left empty if none hits.
     pub(super) fn trace_camera_rays<R: Recorder>(
         &self,
-        paths: &Paths<T::Scalar, R>,
+        paths: &Paths<R>,
         packets: &mut Vec<Packet>,
         hits: &mut Vec<Option<Hit>>,
     ) {
@@ -64,7 +67,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Results of paths whose camera rays all miss.
-    pub(super) fn shade_background<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, results: &mut Results<T::Scalar>) {
+    pub(super) fn shade_background<R: Recorder>(&self, paths: &Paths<R>, results: &mut Results) {
         let count = paths.count();
         T::vectorize(
             #[inline(always)]
@@ -82,12 +85,10 @@ impl<T: Real> Integrator<'_, T> {
 
 /// A packet's vectors from index `first` on; the fields have room past the last path.
 #[inline(always)]
-fn packet_axes<S: Scalar>(vectors: &Vectors<S>, first: usize) -> [[f32; PACKET]; 3] {
+fn packet_axes(vectors: &Vectors, first: usize) -> [[f32; PACKET]; 3] {
     let mut axes = [[0.0; PACKET]; 3];
     for (axis, numbers) in axes.iter_mut().zip([&vectors.x, &vectors.y, &vectors.z]) {
-        for (to, number) in axis.iter_mut().zip(&numbers[first..first + PACKET]) {
-            *to = single(*number);
-        }
+        axis.copy_from_slice(&numbers[first..first + PACKET]);
     }
     axes
 }

@@ -11,7 +11,8 @@ use super::paths::Paths;
 use super::{Integrator, Origin, PathVertex};
 use crate::cpu::recorder::{Event, Purpose, Recorder};
 use crate::job::Catcher;
-use crate::optics::real::{Mask, Real};
+use crate::optics::elementary::Single;
+use crate::optics::real::Mask;
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::{catcher_light, catcher_reflectance};
 use crate::scene::surface::SurfacePoint;
@@ -21,21 +22,21 @@ pub const CATCHER_DIMENSION: u32 = 12288;
 
 /// How the shadow catcher affects the lanes of a group.
 #[derive(Clone, Copy)]
-pub(super) struct CatcherMasks<T: Real> {
+pub(super) struct CatcherMasks<T: Single> {
     /// Lanes with a visible surface; the others show the background unchanged.
     pub is_visible: T::Mask,
     /// Lanes that the catcher mirrors.
     pub is_mirrored: T::Mask,
 }
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Applies the shadow catcher to hits.
     #[inline(always)]
     pub(super) fn apply_catcher<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         vertex: &mut PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> CatcherMasks<T> {
         let nothing = T::Mask::splat(false);
         let mut masks = CatcherMasks {
@@ -70,7 +71,7 @@ impl<T: Real> Integrator<'_, T> {
         catcher: Catcher,
         point: &SurfacePoint<T>,
         vertex: &mut PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> CatcherMasks<T> {
         let (zero, one) = (T::zero(), T::one());
         let (group, members) = (vertex.group, vertex.members);

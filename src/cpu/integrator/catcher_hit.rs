@@ -1,12 +1,11 @@
 //! What a path has met of the shadow catcher.
 
 use super::PathResult;
-use crate::optics::real::Scalar;
 use crate::optics::vector::Vec3;
 
 /// A path's state after its camera ray hit the shadow catcher or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum CatcherHit<S> {
+pub(super) enum CatcherHit {
     /// The camera ray did not hit the catcher, or a mirrored path has hit a surface.
     #[default]
     Miss,
@@ -18,13 +17,13 @@ pub(super) enum CatcherHit<S> {
     /// The path was mirrored: if it escapes, it shows the background with this alpha.
     Mirrored {
         /// Linear RGB.
-        background: Vec3<S>,
+        background: Vec3<f32>,
         /// See [`PathResult`].
-        alpha: S,
+        alpha: f32,
     },
 }
 
-impl<S: Scalar> CatcherHit<S> {
+impl CatcherHit {
     /// True if the path's last surface was the mirroring catcher.
     #[inline(always)]
     pub(super) fn is_mirrored(&self) -> bool {
@@ -38,14 +37,14 @@ impl<S: Scalar> CatcherHit<S> {
 
     /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
     /// light has no shadow.
-    pub(super) fn result(self, path: PathResult<S>, is_all_light: bool) -> PathResult<S> {
+    pub(super) fn result(self, path: PathResult, is_all_light: bool) -> PathResult {
         if !self.is_alpha() {
             return path;
         }
         PathResult {
             alpha: match is_all_light {
-                true => S::one() - path.radiance.luminance(),
-                false => S::zero(),
+                true => 1.0 - path.radiance.luminance(),
+                false => 0.0,
             },
             radiance: Vec3::zero(),
             ..path

@@ -5,27 +5,28 @@ use std::ops::Range;
 
 use super::paths::{PathOutput, Paths};
 use super::vectors::Vectors;
-use crate::cpu::recorder::{Event, Purpose, Recorder, single};
+use crate::cpu::recorder::{Event, Purpose, Recorder};
+use crate::optics::elementary::Single;
 use crate::optics::random::random_pairs;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::{Mask, Scalar};
 use crate::optics::vector::Vec3;
 
 /// A run of paths with consecutive indices, at most [`Real::LANES`]. Lanes beyond the run load the elements that follow;
 /// their results are ignored.
 #[derive(Clone, Copy)]
-pub(super) struct Group<T: Real> {
+pub(super) struct Group<T: Single> {
     first: usize,
     count: usize,
     of: PhantomData<T>,
 }
 
 /// Iterator over the groups of an index range.
-pub(super) struct Groups<T: Real> {
+pub(super) struct Groups<T: Single> {
     indices: Range<usize>,
     of: PhantomData<T>,
 }
 
-impl<T: Real> Groups<T> {
+impl<T: Single> Groups<T> {
     #[inline(always)]
     pub fn new(indices: Range<usize>) -> Self {
         Self {
@@ -35,7 +36,7 @@ impl<T: Real> Groups<T> {
     }
 }
 
-impl<T: Real> Iterator for Groups<T> {
+impl<T: Single> Iterator for Groups<T> {
     type Item = Group<T>;
     #[inline(always)]
     fn next(&mut self) -> Option<Group<T>> {
@@ -50,7 +51,7 @@ impl<T: Real> Iterator for Groups<T> {
     }
 }
 
-impl<T: Real> Group<T> {
+impl<T: Single> Group<T> {
     /// The group of a wave with a single path.
     pub const ALONE: Self = Self {
         first: 0,
@@ -78,7 +79,7 @@ impl<T: Real> Group<T> {
 
     /// A field's number per path.
     #[inline(always)]
-    pub fn number(&self, field: &[T::Scalar]) -> T {
+    pub fn number(&self, field: &[f32]) -> T {
         T::load(&field[self.first..])
     }
 
@@ -88,20 +89,20 @@ impl<T: Real> Group<T> {
         let field = &field[self.first..self.first + T::LANES];
         T::from_lanes(
             #[inline(always)]
-            |lane| T::Scalar::from_count(field[lane]),
+            |lane| field[lane] as f32,
         )
     }
 
     /// A field's number per path; lanes beyond the group repeat the first path's.
     #[inline(always)]
-    pub fn padded_number(&self, field: &[T::Scalar]) -> T {
+    pub fn padded_number(&self, field: &[f32]) -> T {
         let first = T::from_f64(field[self.first].to_f64());
         T::select(self.mask(), self.number(field), first)
     }
 
     /// A field's vector per path.
     #[inline(always)]
-    pub fn vector(&self, field: &Vectors<T::Scalar>) -> Vec3<T> {
+    pub fn vector(&self, field: &Vectors) -> Vec3<T> {
         Vec3 {
             x: self.number(&field.x),
             y: self.number(&field.y),
@@ -118,14 +119,14 @@ impl<T: Real> Group<T> {
 
     /// Stores a number in the masked lanes.
     #[inline(always)]
-    pub fn set_number(&self, field: &mut [T::Scalar], mask: T::Mask, value: T) {
+    pub fn set_number(&self, field: &mut [f32], mask: T::Mask, value: T) {
         let field = &mut field[self.first..];
         T::select(mask, value, T::load(field)).store(field);
     }
 
     /// Stores a vector in the masked lanes.
     #[inline(always)]
-    pub fn set_vector(&self, field: &mut Vectors<T::Scalar>, mask: T::Mask, value: Vec3<T>) {
+    pub fn set_vector(&self, field: &mut Vectors, mask: T::Mask, value: Vec3<T>) {
         self.set_number(&mut field.x, mask, value.x);
         self.set_number(&mut field.y, mask, value.y);
         self.set_number(&mut field.z, mask, value.z);
@@ -151,12 +152,7 @@ impl<T: Real> Group<T> {
 
     /// The random pair of a dimension per path; `purposes` are for the recorder.
     #[inline(always)]
-    pub fn pairs<R: Recorder>(
-        &self,
-        paths: &mut Paths<T::Scalar, R>,
-        dimension: u32,
-        purposes: [Purpose; 2],
-    ) -> [T; 2] {
+    pub fn pairs<R: Recorder>(&self, paths: &mut Paths<R>, dimension: u32, purposes: [Purpose; 2]) -> [T; 2] {
         let keys = self.each(&paths.state.keys);
         let samples = self.each(&paths.state.samples);
         let pair = random_pairs::<T>(&keys, &samples, paths.sequence, dimension);
@@ -167,7 +163,7 @@ impl<T: Real> Group<T> {
                     members.record(&mut paths.outputs, self.mask(), |lane| Event::Number {
                         dimension,
                         half,
-                        value: single(pair[half as usize].lane(lane)),
+                        value: pair[half as usize].lane(lane),
                         purpose,
                     });
                 }
@@ -179,9 +175,9 @@ impl<T: Real> Group<T> {
 
 /// The ids of a group's paths, by which results and other per-path data are indexed.
 #[derive(Clone, Copy)]
-pub(super) struct Members<T: Real>(T::Each<u16>);
+pub(super) struct Members<T: Single>(T::Each<u16>);
 
-impl<T: Real> Members<T> {
+impl<T: Single> Members<T> {
     /// The element of a lane's path.
     #[inline(always)]
     pub fn of<'f, F>(&self, per_path: &'f [F], lane: usize) -> &'f F {
@@ -209,10 +205,10 @@ impl<T: Real> Members<T> {
     #[inline(always)]
     pub fn add_to_groups(
         &self,
-        per_path: &mut [Vec3<T::Scalar>],
+        per_path: &mut [Vec3<f32>],
         groups: usize,
         mask: T::Mask,
-        of: impl Fn(usize) -> (usize, Vec3<T::Scalar>),
+        of: impl Fn(usize) -> (usize, Vec3<f32>),
     ) {
         let mut bits = mask.to_bits();
         while bits != 0 {
@@ -225,12 +221,7 @@ impl<T: Real> Members<T> {
 
     /// Records an event per path in the mask.
     #[inline(always)]
-    pub fn record<R: Recorder>(
-        &self,
-        outputs: &mut [PathOutput<T::Scalar, R>],
-        mask: T::Mask,
-        event: impl Fn(usize) -> Event,
-    ) {
+    pub fn record<R: Recorder>(&self, outputs: &mut [PathOutput<R>], mask: T::Mask, event: impl Fn(usize) -> Event) {
         if R::KEEPS {
             self.for_each(outputs, mask, |path, lane| path.record(|| event(lane)));
         }
@@ -239,7 +230,7 @@ impl<T: Real> Members<T> {
 
 /// Mask of the lanes for which a predicate holds.
 #[inline(always)]
-fn mask_of<T: Real>(is_true: impl Fn(usize) -> bool) -> T::Mask {
+fn mask_of<T: Single>(is_true: impl Fn(usize) -> bool) -> T::Mask {
     let bits = (0..T::LANES).fold(0, |bits, lane| bits | (u32::from(is_true(lane)) << lane));
     T::Mask::from_bits(bits)
 }

@@ -5,13 +5,14 @@ use super::group::Group;
 use super::paths::Paths;
 use super::shadow_rays::{ShadowRay, ShadowRays};
 use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, Origin, PathVertex};
-use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
+use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::coat_medium::coat_over_emission;
+use crate::optics::elementary::Single;
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::layer::{Layers, material_evaluate};
 use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE, Material};
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::Mask;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::{split, uniform_disc};
 use crate::scene::environment::{
@@ -22,7 +23,7 @@ use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_s
 use crate::scene::light_profile::profile_share;
 use crate::scene::surface::SurfacePoint;
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Coordinates of world directions in the environment map.
     #[inline(always)]
     fn world_environment_uv(&self, direction: Vec3<T>) -> [T; 2] {
@@ -41,7 +42,7 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         ray: &PathVertex<T>,
         uv: [T; 2],
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> Vec3<T> {
         let radiance = self.world_environment_radiance(uv);
         let mut density = T::zero();
@@ -63,7 +64,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Computes where escaped paths look up the environment map, and prefetches its texels.
     #[inline(always)]
-    pub(super) fn locate_escaped<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn locate_escaped<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
         let uv = self.escaped_uv(group.vector(&paths.state.direction), bounce);
         prefetch_texels(self.environment, uv);
         if bounce > 0 && self.samples_environment {
@@ -74,7 +75,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Computes where unoccluded shadow rays look up the environment map, and prefetches its texels.
     #[inline(always)]
-    pub(super) fn locate_unoccluded<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn locate_unoccluded<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
         let uv = self.world_environment_uv(group.vector(&paths.unoccluded_rays.direction));
         prefetch_texels(self.environment, uv);
         store_uv(group, &mut paths.unoccluded_rays.environment_uv, uv);
@@ -83,7 +84,7 @@ impl<T: Real> Integrator<'_, T> {
     /// Draws the random numbers of light sampling and prefetches the environment cells that they select. The first number
     /// chooses between environment and emitters.
     #[inline(always)]
-    pub(super) fn light_xi<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn light_xi<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
         let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
@@ -104,7 +105,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Prefetches what sampling the environment with the drawn numbers looks up next.
     #[inline(always)]
-    pub(super) fn prefetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<T::Scalar, R>) {
+    pub(super) fn prefetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<R>) {
         let numbers = group.padded_number(&paths.light_xi.x);
         prefetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
     }
@@ -116,7 +117,7 @@ impl<T: Real> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> Vec3<T> {
         let cosine = point.flat_normal().dot(point.surface.wo);
         let mut emission = material.emission;
@@ -156,7 +157,7 @@ impl<T: Real> Integrator<'_, T> {
         radiance: Vec3<T>,
         light_density: T,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> Vec3<T> {
         let is_sampled = match source {
             Source::Surface => self.samples_emitters,
@@ -182,9 +183,9 @@ impl<T: Real> Integrator<'_, T> {
                     Event::LightHit {
                         source,
                         radiance: radiance.to_each().as_ref()[lane].to_f32(),
-                        lobe_density: single(vertex.lobe_density.lane(lane)),
-                        light_density: single(density.lane(lane)),
-                        weight: single(weight.lane(lane)),
+                        lobe_density: vertex.lobe_density.lane(lane),
+                        light_density: density.lane(lane),
+                        weight: weight.lane(lane),
                     }
                 });
         }
@@ -199,7 +200,7 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         point: &SurfacePoint<T>,
         group: &Group<T>,
-        paths: &Paths<T::Scalar, R>,
+        paths: &Paths<R>,
     ) -> LightSample<T> {
         // Lanes beyond the group, too, need numbers that match their rows.
         let numbers = &paths.light_xi;
@@ -238,7 +239,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Lanes whose light sample is of the environment; arbitrary beyond the group.
     #[inline(always)]
-    fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays<T::Scalar>) -> T::Mask {
+    fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays) -> T::Mask {
         if self.samples_emitters {
             group.flags(&shadow_rays.is_environment)
         } else {
@@ -251,7 +252,7 @@ impl<T: Real> Integrator<'_, T> {
     fn sample_emitter_directions(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
         let emitters = Emitters {
             geometry: self.geometry,
-            materials: &self.scalar_materials,
+            materials: self.scalar_materials,
             textures: self.textures,
             lights: self.lights,
             tables: self.tables,
@@ -282,7 +283,7 @@ impl<T: Real> Integrator<'_, T> {
         material: &Material<T>,
         layers: &Layers<T>,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> Vec3<T> {
         let (group, zero) = (vertex.group, T::zero());
         let sampled = self.sample_light_directions(point, &group, paths);
@@ -332,7 +333,7 @@ impl<T: Real> Integrator<'_, T> {
             vertex
                 .members
                 .record(&mut paths.outputs, vertex.active & !is_lit, |lane| {
-                    light.event(unweighted.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
+                    light.event(unweighted.to_each().as_ref()[lane], 0.0, Vec3::zero())
                 });
         }
         unweighted
@@ -340,9 +341,9 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Visibility along a shadow ray in [0, 1]: 0 is blocked, values between come from holes.
     #[inline(always)]
-    pub(super) fn visibility(&self, light: &ShadowRay<T::Scalar>, rays: &mut u32) -> T::Scalar {
+    pub(super) fn visibility(&self, light: &ShadowRay, rays: &mut u32) -> f32 {
         if light.is_known_miss {
-            return T::Scalar::one();
+            return 1.0;
         }
         self.transmittance(light.origin, light.direction, light.distance, rays)
     }
@@ -355,7 +356,7 @@ impl<T: Real> Integrator<'_, T> {
         group: &Group<T>,
         bounce: u32,
         unweighted: Vec3<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         let shadow_rays = &paths.unoccluded_rays;
         let members = group.members(&shadow_rays.ids);
@@ -397,7 +398,7 @@ impl<T: Real> Integrator<'_, T> {
         direction: Vec3<T>,
         uv: [T; 2],
         dimension: u32,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> (Vec3<T>, T) {
         let BackgroundKind::Blurred(sine) = self.settings.background else {
             return self.plain_background(uv);
@@ -426,13 +427,13 @@ impl<T: Real> Integrator<'_, T> {
 
 /// Stores environment map coordinates.
 #[inline(always)]
-fn store_uv<T: Real>(group: &Group<T>, field: &mut [Vec<T::Scalar>; 2], uv: [T; 2]) {
+fn store_uv<T: Single>(group: &Group<T>, field: &mut [Vec<f32>; 2], uv: [T; 2]) {
     group.set_number(&mut field[0], group.mask(), uv[0]);
     group.set_number(&mut field[1], group.mask(), uv[1]);
 }
 
 /// Balance-heuristic weight of BSDF sampling (Veach 1997).
 #[inline(always)]
-fn mis_weight_lobe<T: Real>(lobe_density: T, light_density: T) -> T {
+fn mis_weight_lobe<T: Single>(lobe_density: T, light_density: T) -> T {
     lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
 }

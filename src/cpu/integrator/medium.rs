@@ -7,14 +7,15 @@
 
 use super::paths::Paths;
 use super::{Integrator, PathVertex};
-use crate::cpu::recorder::{Event, Recorder, single};
+use crate::cpu::recorder::{Event, Recorder};
+use crate::optics::elementary::Single;
 use crate::optics::material::Material;
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::Mask;
 use crate::optics::vector::Vec3;
 use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::SurfacePoint;
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Multiplies the throughput by the medium's transmittance over the segment that ends here. At the back of a surface
     /// that transmits, the medium is that surface's own.
     #[inline(always)]
@@ -23,7 +24,7 @@ impl<T: Real> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         vertex: &mut PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         if !self.has_absorption {
             return;
@@ -39,7 +40,7 @@ impl<T: Real> Integrator<'_, T> {
         vertex
             .members
             .record(&mut paths.outputs, active, |lane| Event::Absorption {
-                distance: single(vertex.distance.lane(lane)),
+                distance: vertex.distance.lane(lane),
                 kept: kept.to_each().as_ref()[lane].to_f32(),
             });
         vertex.throughput = Vec3::select(active, vertex.throughput * kept, vertex.throughput);
@@ -53,7 +54,7 @@ impl<T: Real> Integrator<'_, T> {
         material: &Material<T>,
         wi: Vec3<T>,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         if self.has_absorption {
             let media = media_towards(point, material, wi, vertex, paths);
@@ -70,7 +71,7 @@ impl<T: Real> Integrator<'_, T> {
         [wi, radiance]: [Vec3<T>; 2],
         distance: T,
         vertex: &PathVertex<T>,
-        paths: &Paths<T::Scalar, R>,
+        paths: &Paths<R>,
     ) -> Vec3<T> {
         if !self.has_absorption {
             return radiance;
@@ -97,12 +98,12 @@ impl<T: Real> Integrator<'_, T> {
 
 /// Slots of the media that paths enter in direction `wi`.
 #[inline(always)]
-fn media_towards<T: Real, R: Recorder>(
+fn media_towards<T: Single, R: Recorder>(
     point: &SurfacePoint<T>,
     material: &Material<T>,
     wi: Vec3<T>,
     vertex: &PathVertex<T>,
-    paths: &Paths<T::Scalar, R>,
+    paths: &Paths<R>,
 ) -> T::Each<u32> {
     let media = vertex.group.each(&paths.state.media);
     let transmits = vertex.active & material.transmits();
@@ -125,7 +126,7 @@ fn media_towards<T: Real, R: Recorder>(
 
 /// Beer–Lambert transmittance over a distance, per channel.
 #[inline(always)]
-fn transmittance_over<T: Real>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
+fn transmittance_over<T: Single>(absorption: Vec3<T>, distance: T) -> Vec3<T> {
     let thickness = absorption * distance;
     Vec3 {
         x: (-thickness.x).exp(),

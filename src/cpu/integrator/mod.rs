@@ -17,30 +17,31 @@ mod wave;
 
 use std::borrow::Cow;
 
-use super::recorder::{End, Event, Recorder, Source, single};
+use super::recorder::{End, Event, Recorder, Source};
 use crate::job::effect::EffectId;
 use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
 use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{Job, Settings, Strategy};
-use crate::optics::layer::{Layers, material_albedo, material_layers, material_normal};
+use crate::optics::elementary::Single;
+use crate::optics::layer::{Layers, material_albedo, material_normal};
 use crate::optics::material::Material;
 use crate::optics::random::Sequence;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::{Mask, Scalar};
 use crate::optics::vector::Vec3;
-use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::Lights;
 use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
+use crate::scene::{Geometry, PACKET};
 pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
 use group::{Group, Members};
 use paths::{GuideRecord, Paths, StartOptions};
 pub(in crate::cpu) use results::Results;
 pub use wave::WAVE_SAMPLES;
-pub(in crate::cpu) use wave::{BLOCK_PIXELS, Tile, Wave};
+pub(in crate::cpu) use wave::{BLOCK_PIXELS, PATHS, Tile, Wave};
 
 /// Random pairs before the first bounce: pixel and lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -59,21 +60,21 @@ pub const RADIANCE_MAX: f64 = 1e18;
 
 /// Result of one path.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PathResult<T> {
+pub struct PathResult {
     /// Linear RGB.
-    pub radiance: Vec3<T>,
+    pub radiance: Vec3<f32>,
     /// Coverage in [0, 1]: 0 if the camera ray saw transparent background.
-    pub alpha: T,
+    pub alpha: f32,
     /// Rays traced, shadow rays included.
     pub rays: u32,
     /// Luminance that the firefly clamp removed.
-    pub clamped: T,
+    pub clamped: f32,
     /// First-hit guides (albedo, normal, depth); zero for samples from [`GUIDE_SAMPLES`] on.
     pub guides: GuideSums,
 }
 
 /// A job's scene and settings, converted to the precision of shading.
-pub(in crate::cpu) struct Integrator<'a, T: Real> {
+pub(in crate::cpu) struct Integrator<'a, T: Single> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     /// Distribution from which light sampling draws environment directions.
@@ -86,7 +87,7 @@ pub(in crate::cpu) struct Integrator<'a, T: Real> {
     settings: &'a Settings,
     materials: Vec<Material<T>>,
     /// The same materials for a single lane.
-    scalar_materials: Vec<Material<T::Scalar>>,
+    scalar_materials: &'a [Material<f32>],
     camera: Camera<T>,
     rotation: [T; 2],
     lights: &'a Lights,
@@ -112,7 +113,7 @@ enum Origin<T> {
     Surface(T),
 }
 
-impl<T: Real> Origin<T> {
+impl<T: Single> Origin<T> {
     fn source(&self) -> Source {
         match self {
             Self::Environment => Source::Environment,
@@ -132,7 +133,7 @@ impl<T: Real> Origin<T> {
 
 /// Path vertices of a group: where its rays ended, on a surface or outside the scene, and how they got there.
 #[derive(Clone, Copy)]
-struct PathVertex<T: Real> {
+struct PathVertex<T: Single> {
     group: Group<T>,
     members: Members<T>,
     bounce: u32,
@@ -149,7 +150,7 @@ struct PathVertex<T: Real> {
     is_catcher_mirror: bool,
 }
 
-impl<'a, T: Real> Integrator<'a, T> {
+impl<'a, T: Single> Integrator<'a, T> {
     /// The integrator of a job.
     pub fn new(job: &'a Job) -> Self {
         let samples_light = job.settings.strategy != Strategy::Lobe;
@@ -165,7 +166,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             has_transmission: job.plan.has(EffectId::Transmission),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
-            scalar_materials: job.materials.iter().map(Material::cast).collect(),
+            scalar_materials: &job.materials,
             camera: job.settings.camera.cast(),
             rotation: job.settings.environment_rotation.map(T::from_f64),
             lights: &job.lights,
@@ -215,18 +216,13 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     /// Result of a path by its id; the path has ended.
-    fn result<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, number: usize) -> PathResult<T::Scalar> {
+    fn result<R: Recorder>(&self, paths: &Paths<R>, number: usize) -> PathResult {
         paths.result(number, self.settings.least_reflections == 0)
     }
 
     /// Surface points of a group's hits, all of one material slot.
     #[inline(always)]
-    fn surfaces<R: Recorder>(
-        &self,
-        vertex: &PathVertex<T>,
-        slot: u32,
-        paths: &mut Paths<T::Scalar, R>,
-    ) -> SurfacePoint<T> {
+    fn surfaces<R: Recorder>(&self, vertex: &PathVertex<T>, slot: u32, paths: &mut Paths<R>) -> SurfacePoint<T> {
         let hits: Hits<T> = vertex.group.each(&paths.state.hits);
         let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
         let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, vertex.direction);
@@ -240,7 +236,7 @@ impl<'a, T: Real> Integrator<'a, T> {
                 bounce: vertex.bounce,
                 triangle: hits.as_ref()[lane].triangle,
                 slot,
-                distance: single(vertex.distance.lane(lane)),
+                distance: vertex.distance.lane(lane),
                 position: point.position.to_each().as_ref()[lane].to_f32(),
                 normal: point.surface.normal.to_each().as_ref()[lane].to_f32(),
                 shading_normal: point.surface.frame.normal.to_each().as_ref()[lane].to_f32(),
@@ -284,7 +280,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         material: &Material<T>,
         layers: &Layers<T>,
         vertex: &mut PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) -> bool {
         self.absorb(point, material, vertex, paths);
         self.record_guides(point, material, layers, vertex, paths);
@@ -326,7 +322,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         material: &Material<T>,
         layers: &Layers<T>,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         let members = vertex.members;
         if paths.guides.is_empty() {
@@ -346,7 +342,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             guides.normal = normals.as_ref()[lane].to_f32();
             if vertex.bounce == 0 {
                 guides.hits = 1.0;
-                guides.depth = single(depths.as_ref()[lane]);
+                guides.depth = depths.as_ref()[lane];
             }
         });
     }
@@ -354,7 +350,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// Ends escaped paths: adds the background to camera rays and the environment to others. `uv` is where they look up the
     /// environment map.
     #[inline(always)]
-    fn escape<R: Recorder>(&self, vertex: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<T::Scalar, R>) {
+    fn escape<R: Recorder>(&self, vertex: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) {
         let PathVertex {
             group,
             members,
@@ -393,13 +389,7 @@ impl<'a, T: Real> Integrator<'a, T> {
 
     /// Ends escaped paths that the shadow catcher mirrors: they show the camera's background.
     #[inline(always)]
-    fn escape_mirrored<R: Recorder>(
-        &self,
-        members: &Members<T>,
-        active: T::Mask,
-        bounce: u32,
-        paths: &mut Paths<T::Scalar, R>,
-    ) {
+    fn escape_mirrored<R: Recorder>(&self, members: &Members<T>, active: T::Mask, bounce: u32, paths: &mut Paths<R>) {
         let background = Vec3::from_lanes(|lane| match *members.of(&paths.catcher_hits, lane) {
             CatcherHit::Mirrored { background, .. } => background,
             _ => Vec3::zero(),
@@ -424,14 +414,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         origin: Origin<T>,
         light: Vec3<T>,
         reflections: u32,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         let [added, clamped] = self.clamp_fireflies(light, reflections);
         let radiances = added.to_each();
         if self.light_groups > 0 {
             let groups = origin.group().to_each();
             members.add_to_groups(&mut paths.light_groups, self.light_groups, active, |lane| {
-                (groups.as_ref()[lane].to_f64() as usize, radiances.as_ref()[lane])
+                (groups.as_ref()[lane] as usize, radiances.as_ref()[lane])
             });
         }
         let outputs = &mut paths.outputs;
@@ -466,77 +456,33 @@ impl<'a, T: Real> Integrator<'a, T> {
             Vec3::select(is_beyond, contribution * (T::one() - kept), nothing),
         ]
     }
-}
-
-impl<S: Scalar> Integrator<'_, S> {
-    /// Traces one path through a pixel and reports its events to a recorder.
-    pub(in crate::cpu) fn record_path<R: Recorder>(
-        &self,
-        pixel: [u32; 2],
-        sample: u32,
-        recorder: &mut R,
-    ) -> PathResult<S> {
-        let settings = self.settings;
-        let mut paths = Paths::new(1, S::LANES, settings.sequence);
-        paths.add(pixel, &[[0, 0]], sample);
-        paths.set_counters(settings.seed);
-        paths.start([recorder], &self.start_options());
-        self.camera_rays(&Group::ALONE, &mut paths);
-        for bounce in 0.. {
-            let is_hit = self.intersect(bounce, 0, &mut paths);
-            let vertex = PathVertex::new(Group::ALONE, bounce, &paths);
-            if !is_hit {
-                self.escape(&vertex, self.escaped_uv(vertex.direction, bounce), &mut paths);
-                break;
-            }
-            self.shade_alone(vertex, &mut paths);
-            if !paths.is_active[0] {
-                break;
-            }
-        }
-        self.result(&paths, 0)
-    }
-
-    /// Shades a single path at its hit.
-    fn shade_alone<R: Recorder>(&self, mut vertex: PathVertex<S>, paths: &mut Paths<S, R>) {
-        let (group, bounce) = (vertex.group, vertex.bounce);
-        let slot = self.geometry.slot(paths.state.hits[0].triangle as usize);
-        let point = self.surfaces(&vertex, slot, paths);
-        let catcher = self.apply_catcher(&point, &mut vertex, paths);
-        if !catcher.is_visible {
-            self.escape(&vertex, self.escaped_uv(vertex.direction, bounce), paths);
-            return;
-        }
-        vertex.is_catcher_mirror = catcher.is_mirrored;
-        let material = &*self.material(&point, &vertex);
-        let layers = &material_layers(material, self.tables, &point.surface);
-        if !self.shade_hit(&point, material, layers, &mut vertex, paths) {
-            return;
-        }
-        if self.samples_light() && !vertex.is_catcher_mirror {
-            self.light_xi(&group, bounce, paths);
-            paths.shadow_rays.is_pending[0] = false;
-            let unweighted = self.sample_direct_light(&point, material, layers, &vertex, paths);
-            if paths.shadow_rays.is_pending[0] {
-                self.add_direct_light_alone(unweighted, bounce, paths);
-            }
-        }
-        self.scatter(&point, material, layers, &vertex, paths);
-    }
-
-    /// Traces the pending shadow ray of a single path and adds its light. `unweighted` is the result of
+    /// Traces the pending shadow ray of a recorded path and adds its light. `unweighted` is the result of
     /// [`Integrator::sample_direct_light`].
-    fn add_direct_light_alone<R: Recorder>(&self, unweighted: Vec3<S>, bounce: u32, paths: &mut Paths<S, R>) {
+    fn record_direct_light<R: Recorder>(&self, unweighted: Vec3<T>, bounce: u32, paths: &mut Paths<R>) {
+        if !std::mem::take(&mut paths.shadow_rays.is_pending[0]) {
+            return;
+        }
         let light = paths.shadow_rays.get(0);
         let visibility = self.visibility(&light, &mut paths.outputs[0].rays);
         paths.shadow_rays.visibility[0] = visibility;
-        if visibility > S::zero() {
+        if visibility > 0.0 {
             paths.gather_unoccluded(&[0], true);
             self.locate_unoccluded(&Group::ALONE, paths);
             self.add_direct_light(&Group::ALONE, bounce, unweighted, paths);
         } else {
+            let unweighted = unweighted.to_each().as_ref()[0];
             paths.outputs[0].record(|| light.event(unweighted, visibility, Vec3::zero()));
         }
+    }
+}
+
+impl Integrator<'_, f32> {
+    /// Traces one path through a pixel, a wave of its own, and appends its events.
+    pub(in crate::cpu) fn record_path(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
+        let mut wave = Wave::<Vec<Event>>::new(PACKET, 1, self.sequence());
+        self.trace_wave(&Tile::new(pixel, [1; 2]), [sample, 1], &mut wave);
+        events.append(&mut wave.paths.outputs[0].recorder);
+        self.result(&wave.paths, 0)
     }
 }
 

@@ -13,34 +13,33 @@ use super::vectors::{Vectors, gather};
 use crate::cpu::recorder::{Event, Recorder};
 use crate::job::guides::GuideSums;
 use crate::optics::random::{RandomState, Sequence, path_state};
-use crate::optics::real::Scalar;
 use crate::optics::vector::Vec3;
 use crate::scene::Hit;
 
 /// What paths need to continue, by index.
-pub(super) struct State<S> {
+pub(super) struct State {
     pub ids: Vec<u16>,
     /// Keys of the random sequences, see [`RandomState`].
     pub keys: Vec<u32>,
     pub samples: Vec<u32>,
     /// Path throughput: weight of the light that arrives along the ray.
-    pub throughput: Vectors<S>,
+    pub throughput: Vectors,
     /// Unit directions of the rays.
-    pub direction: Vectors<S>,
+    pub direction: Vectors,
     /// Density of the direction per steradian, for the MIS weight.
-    pub lobe_density: Vec<S>,
+    pub lobe_density: Vec<f32>,
     /// True if light sampling could not have drawn the direction (a specular bounce or a camera ray).
     pub is_mirror: Vec<bool>,
     /// Bounces that were not specular; empty if nothing refracts.
     pub rough_bounces: Vec<u32>,
     pub hits: Vec<Hit>,
     /// Distances of the hits from the rays' origins. More than in `hits` if the ray passed transparent surfaces.
-    pub distance: Vec<S>,
+    pub distance: Vec<f32>,
     /// Slots of the media that the paths are in; empty if none absorbs.
     pub media: Vec<u32>,
 }
 
-impl<S: Scalar> State<S> {
+impl State {
     fn new(count: usize) -> Self {
         Self {
             ids: vec![0; count],
@@ -48,11 +47,11 @@ impl<S: Scalar> State<S> {
             samples: vec![0; count],
             throughput: Vectors::new(count),
             direction: Vectors::new(count),
-            lobe_density: vec![S::zero(); count],
+            lobe_density: vec![0.0; count],
             is_mirror: vec![false; count],
             rough_bounces: Vec::new(),
             hits: vec![Hit::default(); count],
-            distance: vec![S::zero(); count],
+            distance: vec![0.0; count],
             media: Vec::new(),
         }
     }
@@ -86,43 +85,43 @@ pub(super) struct StartOptions {
 }
 
 /// The paths of a wave.
-pub(super) struct Paths<S, R> {
+pub(super) struct Paths<R> {
     pub sequence: Sequence,
-    pub state: State<S>,
+    pub state: State,
     /// Target of [`Paths::reorder`], which then swaps it with `state`.
-    scratch: State<S>,
-    pub origin: Vectors<S>,
+    scratch: State,
+    pub origin: Vectors,
     /// True if the ray is known to miss: no traversal needed.
     pub is_known_miss: Vec<bool>,
     /// True until the path ends.
     pub is_active: Vec<bool>,
     /// Environment map coordinates of escaped rays.
-    pub environment_uv: [Vec<S>; 2],
+    pub environment_uv: [Vec<f32>; 2],
     /// Random numbers of light sampling, each in [0, 1).
-    pub light_xi: Vectors<S>,
+    pub light_xi: Vectors,
     /// Rows of environment cells that `light_xi` selects.
     pub light_rows: Vec<u32>,
     /// Shadow rays, by index.
-    pub shadow_rays: ShadowRays<S>,
+    pub shadow_rays: ShadowRays,
     /// The unoccluded shadow rays, compacted.
-    pub unoccluded_rays: ShadowRays<S>,
+    pub unoccluded_rays: ShadowRays,
     count: usize,
     /// Pixel coordinates (x, y), by path id; `samples` are sample numbers.
     pub pixels: [Vec<u32>; 2],
     pub samples: Vec<u32>,
     /// Accumulated results, by path id.
-    pub outputs: Vec<PathOutput<S, R>>,
+    pub outputs: Vec<PathOutput<R>>,
     /// First-hit guides by path id; empty if no path records them.
     pub guides: Vec<GuideRecord>,
     /// Light of each group, those of a path in a row by its id; empty if they are not summed apart.
-    pub light_groups: Vec<Vec3<S>>,
+    pub light_groups: Vec<Vec3<f32>>,
     /// Shadow-catcher hits by path id; empty without a catcher.
-    pub catcher_hits: Vec<CatcherHit<S>>,
+    pub catcher_hits: Vec<CatcherHit>,
     /// Sum over paths of the throughput's luminance where the bounce limit ended them.
     pub cut: f64,
 }
 
-impl<S: Scalar, R: Recorder> Paths<S, R> {
+impl<R: Recorder> Paths<R> {
     /// Compacts the unoccluded shadow rays, in the given order, see [`ShadowRays::gather_unoccluded`].
     pub(super) fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
         let (rays, ids) = (&self.shadow_rays, &self.state.ids);
@@ -141,7 +140,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             origin: Vectors::new(count),
             is_known_miss: vec![false; count],
             is_active: vec![false; count],
-            environment_uv: [vec![S::zero(); count], vec![S::zero(); count]],
+            environment_uv: [vec![0.0; count], vec![0.0; count]],
             light_xi: Vectors::new(count),
             light_rows: vec![0; count],
             shadow_rays: ShadowRays::new(count),
@@ -198,16 +197,20 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         }
     }
 
-    /// Initialises the added paths for their camera rays, with one recorder each.
-    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, start_options: &StartOptions) {
+    /// Makes empty results for the added paths.
+    pub fn add_outputs(&mut self) {
+        self.outputs.resize_with(self.count, PathOutput::new);
+    }
+
+    /// Initialises the added paths for their camera rays.
+    pub fn start(&mut self, start_options: &StartOptions) {
         let guide_samples = start_options.guide_samples;
-        self.state.throughput.fill(S::one());
-        self.state.lobe_density.fill(S::zero());
+        self.state.throughput.fill(1.0);
+        self.state.lobe_density.fill(0.0);
         self.state.is_mirror.fill(true);
         self.is_known_miss.fill(false);
         self.is_active.fill(true);
-        self.outputs
-            .extend(recorders.into_iter().take(self.count).map(PathOutput::new));
+        self.add_outputs();
         let samples = &self.samples[..self.count];
         if samples.iter().any(|sample| *sample < guide_samples) {
             self.guides
@@ -251,7 +254,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
     }
 
     /// Result of a path by id; `is_all_light` is false if only a part of the light is rendered.
-    pub fn result(&self, number: usize, is_all_light: bool) -> PathResult<S> {
+    pub fn result(&self, number: usize, is_all_light: bool) -> PathResult {
         let output = &self.outputs[number];
         let result = PathResult {
             radiance: output.radiance,
@@ -279,7 +282,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
 
     /// Accumulated result of the path at an index.
     #[inline(always)]
-    pub fn output_at(&mut self, index: usize) -> &mut PathOutput<S, R> {
+    pub fn output_at(&mut self, index: usize) -> &mut PathOutput<R> {
         &mut self.outputs[usize::from(self.state.ids[index])]
     }
 
@@ -289,22 +292,22 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         self.output_at(index).rays += 1;
         if let Some(hit) = hit {
             self.state.hits[index] = hit;
-            self.state.distance[index] = S::from_f64(f64::from(hit.t));
+            self.state.distance[index] = hit.t;
         }
         hit.is_some()
     }
 }
 
 /// Accumulated result of a path.
-pub(super) struct PathOutput<S, R> {
-    pub radiance: Vec3<S>,
+pub(super) struct PathOutput<R> {
+    pub radiance: Vec3<f32>,
     /// Luminance that the firefly clamp removed.
-    pub clamped: S,
+    pub clamped: f32,
     /// Coverage in [0, 1].
-    pub alpha: S,
+    pub alpha: f32,
     /// Rays traced, shadow rays included.
     pub rays: u32,
-    recorder: R,
+    pub recorder: R,
 }
 
 /// First-hit guides of a path.
@@ -323,16 +326,16 @@ impl GuideRecord {
     }
 }
 
-impl<S: Scalar, R: Recorder> PathOutput<S, R> {
+impl<R: Recorder> PathOutput<R> {
     /// An empty result.
     #[inline(always)]
-    pub fn new(recorder: R) -> Self {
+    pub fn new() -> Self {
         Self {
             radiance: Vec3::zero(),
-            clamped: S::zero(),
-            alpha: S::one(),
+            clamped: 0.0,
+            alpha: 1.0,
             rays: 0,
-            recorder,
+            recorder: R::default(),
         }
     }
 

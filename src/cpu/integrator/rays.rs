@@ -3,17 +3,18 @@
 use super::group::Group;
 use super::paths::Paths;
 use super::{Integrator, OPACITY_DIMENSION, PASSES_MAX};
-use crate::cpu::recorder::{Event, Purpose, Recorder, single};
+use crate::cpu::recorder::{Event, Purpose, Recorder};
+use crate::optics::elementary::Single;
 use crate::optics::random::random_pair;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::Mask;
 use crate::optics::vector::Vec3;
 use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::surface::{hit_opacity, passed_origin};
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Generates the camera rays.
     #[inline(always)]
-    pub(super) fn camera_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
+    pub(super) fn camera_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
         let has_lens = T::zero().less(self.camera.lens_radius).any();
         let for_pixel = group.pairs(paths, PIXEL_DIMENSION, [Purpose::Pixel; 2]);
         let for_lens = if has_lens {
@@ -37,39 +38,35 @@ impl<T: Real> Integrator<'_, T> {
     /// on it.
     pub(super) fn transmittance(
         &self,
-        mut origin: Vec3<T::Scalar>,
-        direction: Vec3<T::Scalar>,
-        distance: T::Scalar,
+        mut origin: Vec3<f32>,
+        direction: Vec3<f32>,
+        distance: f32,
         rays: &mut u32,
-    ) -> T::Scalar {
-        let (zero, one) = (T::Scalar::zero(), T::Scalar::one());
+    ) -> f32 {
         if !self.has_holes {
             *rays += 1;
-            let distance = distance.to_f64() as f32;
             let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
-            return if is_occluded { zero } else { one };
+            return if is_occluded { 0.0 } else { 1.0 };
         }
-        let (mut transmittance, mut remaining) = (one, distance);
+        let (mut transmittance, mut remaining) = (1.0, distance);
         for _ in 0..PASSES_MAX {
             *rays += 1;
-            let t_max = remaining.to_f64() as f32;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), t_max) else {
+            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), remaining) else {
                 return transmittance;
             };
-            transmittance =
-                transmittance * (one - hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit));
-            if transmittance <= zero {
+            transmittance *= 1.0 - hit_opacity(self.geometry, self.scalar_materials, self.textures, &hit);
+            if transmittance <= 0.0 {
                 break;
             }
-            remaining = remaining - T::Scalar::from_f64(f64::from(hit.t));
+            remaining -= hit.t;
             origin = passed_origin(self.geometry, &hit, direction);
         }
-        zero
+        0.0
     }
 
     /// Intersects the ray of the path at `index`, passing surfaces at random by their opacity. Returns false for a miss.
     #[inline(always)]
-    pub(super) fn intersect<R: Recorder>(&self, bounce: u32, index: usize, paths: &mut Paths<T::Scalar, R>) -> bool {
+    pub(super) fn intersect<R: Recorder>(&self, bounce: u32, index: usize, paths: &mut Paths<R>) -> bool {
         if paths.is_known_miss[index] {
             return false;
         }
@@ -79,27 +76,27 @@ impl<T: Real> Integrator<'_, T> {
             return paths.record_hit(index, hit);
         }
         let dimension = OPACITY_DIMENSION + bounce;
-        let [mut xi, _]: [T::Scalar; 2] = random_pair(paths.random_state(index), dimension);
+        let [mut xi, _]: [f32; 2] = random_pair(paths.random_state(index), dimension);
         paths.output_at(index).record(|| Event::Number {
             dimension,
             half: 0,
-            value: single(xi),
+            value: xi,
             purpose: Purpose::Opacity,
         });
-        let mut distance = T::Scalar::zero();
+        let mut distance = 0.0;
         for _ in 0..PASSES_MAX {
             let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
             if !paths.record_hit(index, hit) {
                 return false;
             }
             let hit = paths.state.hits[index];
-            distance += T::Scalar::from_f64(f64::from(hit.t));
+            distance += hit.t;
             paths.state.distance[index] = distance;
             let slot = self.geometry.slot(hit.triangle as usize);
             let opacity = if bounce == 0 && slot >= self.settings.first_hidden_slot {
-                T::Scalar::zero()
+                0.0
             } else {
-                hit_opacity(self.geometry, &self.scalar_materials, self.textures, &hit)
+                hit_opacity(self.geometry, self.scalar_materials, self.textures, &hit)
             };
             if xi < opacity {
                 return true;
@@ -107,11 +104,10 @@ impl<T: Real> Integrator<'_, T> {
             paths.output_at(index).record(|| Event::Passed {
                 slot,
                 distance: hit.t,
-                opacity: single(opacity),
+                opacity,
             });
             // Uniform again, given that the surface did not stop the ray.
-            let one = T::Scalar::one();
-            xi = (xi - opacity) / (one - opacity).max(T::Scalar::from_f64(1e-20));
+            xi = (xi - opacity) / (1.0 - opacity).max(1e-20);
             origin = passed_origin(self.geometry, &hit, direction);
         }
         false

@@ -4,27 +4,28 @@ use super::PathResult;
 use super::group::Group;
 use super::vectors::Vectors;
 use crate::job::guides::GuideSums;
-use crate::optics::real::{Real, Scalar};
+use crate::optics::elementary::Single;
+use crate::optics::real::Scalar;
 use crate::optics::vector::Vec3;
 
 /// Results by path id. The fields have room for one more group of lanes.
-pub struct Results<S> {
+pub struct Results {
     count: usize,
     /// See [`Results::has_extras`].
     has_extras: bool,
     /// Sum over paths of the throughput's luminance where the bounce limit ended them.
     pub cut: f64,
-    radiance: Vectors<S>,
-    alpha: Vec<S>,
-    clamped: Vec<S>,
+    radiance: Vectors,
+    alpha: Vec<f32>,
+    clamped: Vec<f32>,
     rays: Vec<u32>,
     /// First-hit guides; empty if no path records them.
     guides: Vec<GuideSums>,
     /// Light of each group, those of a path in a row; empty if they are not summed apart.
-    light_groups: Vec<Vec3<S>>,
+    light_groups: Vec<Vec3<f32>>,
 }
 
-impl<S: Scalar> Results<S> {
+impl Results {
     /// Fields for `count` paths.
     pub(super) fn new(count: usize) -> Self {
         Self {
@@ -32,8 +33,8 @@ impl<S: Scalar> Results<S> {
             has_extras: false,
             cut: 0.0,
             radiance: Vectors::new(count),
-            alpha: vec![S::zero(); count],
-            clamped: vec![S::zero(); count],
+            alpha: vec![0.0; count],
+            clamped: vec![0.0; count],
             rays: vec![0; count],
             guides: Vec::with_capacity(count),
             light_groups: Vec::new(),
@@ -41,7 +42,7 @@ impl<S: Scalar> Results<S> {
     }
 
     /// The result of one path.
-    pub fn get(&self, path: usize) -> PathResult<S> {
+    pub fn get(&self, path: usize) -> PathResult {
         PathResult {
             radiance: self.radiance.get(path),
             alpha: self.alpha[path],
@@ -89,7 +90,7 @@ impl<S: Scalar> Results<S> {
     }
 
     /// Stores the results of all paths.
-    pub(super) fn fill(&mut self, results: impl Iterator<Item = PathResult<S>>) {
+    pub(super) fn fill(&mut self, results: impl Iterator<Item = PathResult>) {
         for (path, result) in results.enumerate() {
             self.radiance.set(path, result.radiance);
             self.alpha[path] = result.alpha;
@@ -102,14 +103,14 @@ impl<S: Scalar> Results<S> {
     }
 
     /// Stores the light of the groups of all paths.
-    pub(super) fn set_groups(&mut self, lights: &[Vec3<S>]) {
+    pub(super) fn set_groups(&mut self, lights: &[Vec3<f32>]) {
         self.light_groups.clear();
         self.light_groups.extend_from_slice(lights);
     }
 
     /// Stores the results of a group of consecutive paths.
     #[inline(always)]
-    pub(super) fn set<T: Real<Scalar = S>>(&mut self, group: &Group<T>, radiance: Vec3<T>, alpha: T, clamped: T) {
+    pub(super) fn set<T: Single>(&mut self, group: &Group<T>, radiance: Vec3<T>, alpha: T, clamped: T) {
         let mask = group.mask();
         group.set_vector(&mut self.radiance, mask, radiance);
         group.set_number(&mut self.alpha, mask, alpha);

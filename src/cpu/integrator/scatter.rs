@@ -3,17 +3,18 @@
 use super::group::Group;
 use super::paths::Paths;
 use super::{BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex, ROULETTE_START};
-use crate::cpu::recorder::{End, Event, LayerChance, Purpose, Recorder, single};
+use crate::cpu::recorder::{End, Event, LayerChance, Purpose, Recorder};
 use crate::job::Strategy;
+use crate::optics::elementary::Single;
 use crate::optics::layer::{
     Layer, Layers, MaterialNumbers, MaterialSample, decides_by_facet, material_sample, passes_on,
 };
 use crate::optics::material::Material;
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::Mask;
 use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Samples the next direction of each path, or ends it.
     #[inline(always)]
     pub(super) fn scatter<R: Recorder>(
@@ -22,7 +23,7 @@ impl<T: Real> Integrator<'_, T> {
         material: &Material<T>,
         layers: &Layers<T>,
         vertex: &PathVertex<T>,
-        paths: &mut Paths<T::Scalar, R>,
+        paths: &mut Paths<R>,
     ) {
         let group = vertex.group;
         let numbers = material_numbers(material, vertex, paths);
@@ -62,12 +63,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Counts non-specular bounces.
     #[inline(always)]
-    fn count_rough<R: Recorder>(
-        &self,
-        vertex: &PathVertex<T>,
-        sampled: &MaterialSample<T>,
-        paths: &mut Paths<T::Scalar, R>,
-    ) {
+    fn count_rough<R: Recorder>(&self, vertex: &PathVertex<T>, sampled: &MaterialSample<T>, paths: &mut Paths<R>) {
         if self.settings.roulette_floor < 1.0 {
             let counts = vertex.group.each(&paths.state.rough_bounces);
             let rough = (vertex.active & !sampled.is_mirror).to_bits();
@@ -81,12 +77,12 @@ impl<T: Real> Integrator<'_, T> {
 }
 
 #[inline(always)]
-fn record_scattered<T: Real, R: Recorder>(
+fn record_scattered<T: Single, R: Recorder>(
     layers: &Layers<T>,
     vertex: &PathVertex<T>,
     sampled: &MaterialSample<T>,
     throughput: Vec3<T>,
-    paths: &mut Paths<T::Scalar, R>,
+    paths: &mut Paths<R>,
 ) {
     if !R::KEEPS {
         return;
@@ -94,7 +90,7 @@ fn record_scattered<T: Real, R: Recorder>(
     let probability = |lane| {
         move |(layer, probability): (&Layer, T)| LayerChance {
             layer: *layer,
-            probability: single(probability.lane(lane)),
+            probability: probability.lane(lane),
         }
     };
     let probabilities = layers.probabilities();
@@ -105,7 +101,7 @@ fn record_scattered<T: Real, R: Recorder>(
             probabilities: Layer::ALL.iter().zip(probabilities).map(probability(lane)).collect(),
             direction: sampled.wi.to_each().as_ref()[lane].to_f32(),
             factor: sampled.throughput.to_each().as_ref()[lane].to_f32(),
-            density: single(sampled.density.lane(lane)),
+            density: sampled.density.lane(lane),
             is_mirror: sampled.is_mirror.to_bits() >> lane & 1 == 1,
             throughput: throughput.to_each().as_ref()[lane].to_f32(),
         });
@@ -113,10 +109,10 @@ fn record_scattered<T: Real, R: Recorder>(
 
 /// Random numbers of material sampling.
 #[inline(always)]
-fn material_numbers<T: Real, R: Recorder>(
+fn material_numbers<T: Single, R: Recorder>(
     material: &Material<T>,
     vertex: &PathVertex<T>,
-    paths: &mut Paths<T::Scalar, R>,
+    paths: &mut Paths<R>,
 ) -> MaterialNumbers<T> {
     let PathVertex { group, bounce, .. } = *vertex;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
@@ -141,11 +137,11 @@ fn material_numbers<T: Real, R: Recorder>(
 
 /// Paths that survive Russian roulette; their throughput is divided by the survival probability.
 #[inline(always)]
-fn russian_roulette<T: Real, R: Recorder>(
+fn russian_roulette<T: Single, R: Recorder>(
     vertex: &PathVertex<T>,
     throughput: &mut Vec3<T>,
     floor: f64,
-    paths: &mut Paths<T::Scalar, R>,
+    paths: &mut Paths<R>,
 ) -> T::Mask {
     let PathVertex {
         group,
@@ -170,7 +166,7 @@ fn russian_roulette<T: Real, R: Recorder>(
             #[inline(always)]
             |lane| {
                 let is_early = counts.as_ref()[lane] < ROULETTE_START;
-                T::Scalar::from_f64(if is_early { floor } else { 1.0 })
+                (if is_early { floor } else { 1.0 }) as f32
             },
         );
     }
@@ -182,8 +178,8 @@ fn russian_roulette<T: Real, R: Recorder>(
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
     let [_, number] = group.pairs(paths, dimension, [Purpose::Unused, Purpose::Roulette]);
     members.record(&mut paths.outputs, plays, |lane| Event::Roulette {
-        survival: single(survival.lane(lane)),
-        number: single(number.lane(lane)),
+        survival: survival.lane(lane),
+        number: number.lane(lane),
     });
     let is_out = plays & !number.less(survival);
     members.record(&mut paths.outputs, is_out, |_| Event::Ended { why: End::Roulette });
@@ -192,10 +188,10 @@ fn russian_roulette<T: Real, R: Recorder>(
     is_left & !is_out
 }
 
-impl<T: Real> PathVertex<T> {
+impl<T: Single> PathVertex<T> {
     /// The path vertices of a group after `bounce` bounces.
     #[inline(always)]
-    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<T::Scalar, R>) -> Self {
+    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<R>) -> Self {
         let state = &paths.state;
         Self {
             group,

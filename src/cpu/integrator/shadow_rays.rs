@@ -1,44 +1,43 @@
 //! Shadow rays of the paths of a wave.
 
 use super::vectors::{Vectors, gather};
-use crate::cpu::recorder::{Event, Source, single};
-use crate::optics::real::Scalar;
+use crate::cpu::recorder::{Event, Source};
 use crate::optics::vector::Vec3;
 
 /// Shadow rays as structure of arrays, by path index.
-pub(super) struct ShadowRays<S> {
+pub(super) struct ShadowRays {
     /// Path ids; only of unoccluded rays.
     pub ids: Vec<u16>,
     /// Environment map coordinates; only of unoccluded rays.
-    pub environment_uv: [Vec<S>; 2],
+    pub environment_uv: [Vec<f32>; 2],
     /// True if the ray is to be traced; the other fields are arbitrary otherwise.
     pub is_pending: Vec<bool>,
     /// See [`LightSample`](crate::scene::light::LightSample).
-    pub direction: Vectors<S>,
-    pub density: Vec<S>,
-    pub distance: Vec<S>,
+    pub direction: Vectors,
+    pub density: Vec<f32>,
+    pub distance: Vec<f32>,
     /// Of the emitter; unused for the environment.
-    pub radiance: Vectors<S>,
+    pub radiance: Vectors,
     /// Numbers of the emitters' light groups; only where these are summed apart.
-    pub groups: Vec<S>,
+    pub groups: Vec<f32>,
     /// True for a sample of the environment, whose radiance is looked up later. Always true if no emitters are sampled. Set
     /// together with the random numbers, for all hits.
     pub is_environment: Vec<bool>,
     /// The material's value (cosine included) times the MIS weight of light sampling.
-    pub value: Vectors<S>,
+    pub value: Vectors,
     /// Path throughput before the surface.
-    pub throughput: Vectors<S>,
-    pub origin: Vectors<S>,
+    pub throughput: Vectors,
+    pub origin: Vectors,
     /// True if the ray is known to be unoccluded: no traversal needed.
     pub is_known_miss: Vec<bool>,
     /// Share of the light in [0, 1] that passes.
-    pub visibility: Vec<S>,
+    pub visibility: Vec<f32>,
 }
 
-impl<S: Scalar> ShadowRays<S> {
+impl ShadowRays {
     /// Fields for `count` paths.
     pub fn new(count: usize) -> Self {
-        let numbers = || vec![S::zero(); count];
+        let numbers = || vec![0.0; count];
         Self {
             ids: vec![0; count],
             environment_uv: [numbers(), numbers()],
@@ -58,7 +57,7 @@ impl<S: Scalar> ShadowRays<S> {
     }
 
     /// The shadow ray of one path.
-    pub fn get(&self, index: usize) -> ShadowRay<S> {
+    pub fn get(&self, index: usize) -> ShadowRay {
         ShadowRay {
             origin: self.origin.get(index),
             direction: self.direction.get(index),
@@ -90,18 +89,18 @@ impl<S: Scalar> ShadowRays<S> {
 
 /// The shadow ray of one path; see [`ShadowRays`] for the fields.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ShadowRay<S> {
-    pub origin: Vec3<S>,
-    pub direction: Vec3<S>,
-    pub distance: S,
-    pub density: S,
-    pub value: Vec3<S>,
+pub(super) struct ShadowRay {
+    pub origin: Vec3<f32>,
+    pub direction: Vec3<f32>,
+    pub distance: f32,
+    pub density: f32,
+    pub value: Vec3<f32>,
     pub is_environment: bool,
     pub is_known_miss: bool,
-    pub visibility: S,
+    pub visibility: f32,
 }
 
-impl<S: Scalar> ShadowRay<S> {
+impl ShadowRay {
     /// Where its light comes from.
     pub fn source(&self) -> Source {
         if self.is_environment {
@@ -112,15 +111,15 @@ impl<S: Scalar> ShadowRay<S> {
     }
 
     /// The recorded event of this ray; `unweighted` is its value without the MIS weight.
-    pub fn event(&self, unweighted: Vec3<S>, visibility: S, radiance: Vec3<S>) -> Event {
+    pub fn event(&self, unweighted: Vec3<f32>, visibility: f32, radiance: Vec3<f32>) -> Event {
         let (unweighted, kept) = (unweighted.to_f32(), self.value.to_f32());
         Event::Light {
             source: self.source(),
             direction: self.direction.to_f32(),
-            density: single(self.density),
+            density: self.density,
             value: unweighted,
             weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / unweighted[i] } else { 0.0 }),
-            visible: single(visibility),
+            visible: visibility,
             radiance: radiance.to_f32(),
         }
     }

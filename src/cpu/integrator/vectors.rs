@@ -1,36 +1,35 @@
 //! Vectors of the paths of a wave as structure of arrays.
 
-use crate::optics::real::Scalar;
 use crate::optics::vector::{Vec3, vec3};
 
 /// A vector per path, axis by axis.
-pub(super) struct Vectors<S> {
-    pub x: Vec<S>,
-    pub y: Vec<S>,
-    pub z: Vec<S>,
+pub(super) struct Vectors {
+    pub x: Vec<f32>,
+    pub y: Vec<f32>,
+    pub z: Vec<f32>,
 }
 
-impl<S: Scalar> Vectors<S> {
+impl Vectors {
     /// Zero vectors.
     pub fn new(count: usize) -> Self {
         Self {
-            x: vec![S::zero(); count],
-            y: vec![S::zero(); count],
-            z: vec![S::zero(); count],
+            x: vec![0.0; count],
+            y: vec![0.0; count],
+            z: vec![0.0; count],
         }
     }
 
     #[inline(always)]
-    pub fn get(&self, index: usize) -> Vec3<S> {
+    pub fn get(&self, index: usize) -> Vec3<f32> {
         vec3(self.x[index], self.y[index], self.z[index])
     }
 
     #[inline(always)]
-    pub fn set(&mut self, index: usize, value: Vec3<S>) {
+    pub fn set(&mut self, index: usize, value: Vec3<f32>) {
         (self.x[index], self.y[index], self.z[index]) = (value.x, value.y, value.z);
     }
 
-    pub fn fill(&mut self, value: S) {
+    pub fn fill(&mut self, value: f32) {
         self.x.fill(value);
         self.y.fill(value);
         self.z.fill(value);

@@ -12,12 +12,13 @@ use super::group::{Group, Groups};
 use super::paths::Paths;
 use super::results::Results;
 use super::{Integrator, PathVertex};
-use crate::cpu::recorder::Unrecorded;
+use crate::cpu::recorder::{Recorder, Unrecorded};
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
+use crate::optics::elementary::Single;
 use crate::optics::layer::material_layers;
 use crate::optics::random::Sequence;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::real::Mask;
 use crate::optics::vector::Vec3;
 use crate::scene::{Hit, OCTANTS, PACKET, Packet, ray_octant};
 
@@ -26,7 +27,7 @@ const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
 /// Samples per pixel of a wave at most.
 pub const WAVE_SAMPLES: u32 = 8;
 /// Paths of a wave at most.
-const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
+pub const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
 /// Pixels of a block, 2 × 2: four samples of each make one ray packet.
 pub const BLOCK_PIXELS: usize = 4;
 /// Fewer shadow rays than this are traced one by one.
@@ -43,8 +44,8 @@ pub struct Tile {
 }
 
 /// The buffers of a wavefront, reused from tile to tile. A `u16` is the index of a path in the fields of [`Paths`].
-pub struct Wave<T: Real> {
-    paths: Paths<T::Scalar, Unrecorded>,
+pub struct Wave<R = Unrecorded> {
+    pub(super) paths: Paths<R>,
     /// Paths that have not ended.
     active: Vec<u16>,
     /// Paths whose rays hit a surface, with the material slot as sort key.
@@ -60,23 +61,23 @@ pub struct Wave<T: Real> {
     octants: OctantBins,
     /// Paths whose shadow ray is not blocked.
     unoccluded: Vec<u16>,
-    results: Results<T::Scalar>,
+    results: Results,
 }
 
-impl<T: Real> Wave<T> {
-    /// Buffers for a tile of any size; the paths draw from `sequence`.
-    pub fn new(sequence: Sequence) -> Self {
+impl<R: Recorder> Wave<R> {
+    /// Buffers for so many paths in groups of `lanes`, a packet's at least; the paths draw from `sequence`.
+    pub fn new(paths: usize, lanes: usize, sequence: Sequence) -> Self {
         Self {
-            paths: Paths::new(PATHS, T::LANES, sequence),
-            active: Vec::with_capacity(PATHS),
-            hits: Vec::with_capacity(PATHS),
-            escaped: Vec::with_capacity(PATHS),
-            order: Vec::with_capacity(PATHS),
-            packets: Vec::with_capacity(PATHS / PACKET),
-            intersections: Vec::with_capacity(PATHS),
+            paths: Paths::new(paths, lanes, sequence),
+            active: Vec::with_capacity(paths),
+            hits: Vec::with_capacity(paths),
+            escaped: Vec::with_capacity(paths),
+            order: Vec::with_capacity(paths),
+            packets: Vec::with_capacity(paths / PACKET),
+            intersections: Vec::with_capacity(paths),
             octants: OctantBins::default(),
-            unoccluded: Vec::with_capacity(PATHS),
-            results: Results::new(PATHS + T::LANES),
+            unoccluded: Vec::with_capacity(paths),
+            results: Results::new(paths + lanes),
         }
     }
 
@@ -91,15 +92,15 @@ impl<T: Real> Wave<T> {
     }
 }
 
-impl<T: Real> Integrator<'_, T> {
+impl<T: Single> Integrator<'_, T> {
     /// Renders `count` samples per pixel of a tile, from sample `first` on. Calls `report` once per wave with that wave's first
     /// sample, its number of samples per pixel, and their results.
     pub fn trace_tile(
         &self,
         tile: &Tile,
-        wave: &mut Wave<T>,
+        wave: &mut Wave,
         [first, count]: [u32; 2],
-        mut report: impl FnMut([u32; 2], &Results<T::Scalar>),
+        mut report: impl FnMut([u32; 2], &Results),
     ) {
         for from in (first..first + count).step_by(WAVE_SAMPLES as usize) {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
@@ -117,7 +118,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Traces the paths of `samples` (first, count) to their ends. Returns true if every camera ray missed: then `wave.results`
     /// is already complete.
-    fn trace_wave(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<T>) -> bool {
+    pub(super) fn trace_wave<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<R>) -> bool {
         // One path per pixel and sample, with its camera ray.
         self.add_paths(tile, samples, &mut wave.paths);
         let has_extras = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
@@ -126,14 +127,14 @@ impl<T: Real> Integrator<'_, T> {
         // is cheaper, because no path state is set up. Surfaces with holes need a random number per hit instead (`intersect`).
         if !self.has_holes {
             self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.intersections);
-            let is_short = self.has_plain_background() && self.light_groups == 0;
+            let is_short = !R::KEEPS && self.has_plain_background() && self.light_groups == 0;
             if is_short && wave.intersections.iter().all(Option::is_none) {
                 self.shade_background(&wave.paths, &mut wave.results);
                 return true;
             }
             wave.intersections.resize(wave.paths.count(), None);
         }
-        wave.paths.start(std::iter::repeat(Unrecorded), &self.start_options());
+        wave.paths.start(&self.start_options());
         wave.active.clear();
         wave.active.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {
@@ -163,7 +164,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Intersects the continuation rays of the active paths, in packets by octant. For scenes without holes.
-    fn trace_rays(&self, wave: &mut Wave<T>) {
+    fn trace_rays<R: Recorder>(&self, wave: &mut Wave<R>) {
         let Wave {
             paths,
             active,
@@ -202,7 +203,7 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Splits the active paths into hits, sorted by material slot, and escaped ones, and puts the paths' state in that order.
     /// Traces the rays first if surfaces have holes.
-    fn sort_hits(&self, bounce: u32, wave: &mut Wave<T>) {
+    fn sort_hits<R: Recorder>(&self, bounce: u32, wave: &mut Wave<R>) {
         let Wave {
             paths,
             active,
@@ -237,11 +238,12 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Ends escaped paths with the environment's light, and shades the hits slot by slot.
-    fn shade(&self, bounce: u32, wave: &mut Wave<T>) {
+    fn shade<R: Recorder>(&self, bounce: u32, wave: &mut Wave<R>) {
         let (hits, escaped) = (wave.hit_range(), wave.escaped_range());
         let paths = &mut wave.paths;
         paths.shadow_rays.is_pending[hits.clone()].fill(false);
-        let samples_light = self.samples_light() && bounce < self.settings.bounces;
+        // A recorded path draws them later (`shade_group`), so that its events are in order.
+        let samples_light = !R::KEEPS && self.samples_light() && bounce < self.settings.bounces;
         // Look-ups into the environment miss the cache. So each group's addresses are computed and prefetched in one pass and
         // read in a later one; the numbers of light sampling are drawn in between.
         T::vectorize(
@@ -279,7 +281,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Shades hits of one slot, but for direct light.
-    fn shade_slot(&self, slot: u32, indices: Range<usize>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
+    fn shade_slot<R: Recorder>(&self, slot: u32, indices: Range<usize>, bounce: u32, paths: &mut Paths<R>) {
         T::vectorize(
             #[inline(always)]
             || {
@@ -291,7 +293,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     #[inline(always)]
-    fn shade_group(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
+    fn shade_group<R: Recorder>(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<R>) {
         let mut vertex = PathVertex::new(group, bounce, paths);
         let point = T::out_of_line(
             #[inline(always)]
@@ -329,10 +331,16 @@ impl<T: Real> Integrator<'_, T> {
             if self.shade_hit(&point, material, layers, &mut vertex, paths) {
                 // A mirror of the catcher reflects in one direction, which light sampling cannot hit.
                 if self.samples_light() && !is_catcher_mirror {
-                    T::out_of_line(
+                    if R::KEEPS {
+                        self.light_xi(&group, bounce, paths);
+                    }
+                    let unweighted = T::out_of_line(
                         #[inline(always)]
                         || self.sample_direct_light(&point, material, layers, &vertex, paths),
                     );
+                    if R::KEEPS {
+                        self.record_direct_light(unweighted, bounce, paths);
+                    }
                 }
                 T::out_of_line(
                     #[inline(always)]
@@ -343,7 +351,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Traces the pending shadow rays and clears the visibility of those that are blocked.
-    fn trace_shadow_rays(&self, wave: &mut Wave<T>) {
+    fn trace_shadow_rays<R: Recorder>(&self, wave: &mut Wave<R>) {
         let hits = wave.hit_range();
         let Wave { paths, octants, .. } = wave;
         octants.clear();
@@ -365,14 +373,13 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// Traces shadow rays of one octant, at most a packet.
-    fn trace_shadow_packet(&self, indices: &[u16], paths: &mut Paths<T::Scalar, Unrecorded>) {
+    fn trace_shadow_packet<R: Recorder>(&self, indices: &[u16], paths: &mut Paths<R>) {
         let shadow_rays = &mut paths.shadow_rays;
         let ray = |index: usize| {
-            let distance = shadow_rays.distance[index].to_f64() as f32;
             (
                 shadow_rays.origin.get(index).to_f32(),
                 shadow_rays.direction.get(index).to_f32(),
-                distance,
+                shadow_rays.distance[index],
             )
         };
         let rays = indices.iter().map(|&index| ray(usize::from(index)));
@@ -386,19 +393,19 @@ impl<T: Real> Integrator<'_, T> {
         }
         for (&index, is_occluded) in indices.iter().zip(is_occluded) {
             if is_occluded {
-                shadow_rays.visibility[usize::from(index)] = T::Scalar::zero();
+                shadow_rays.visibility[usize::from(index)] = 0.0;
             }
         }
     }
 
     /// Adds the light of the shadow rays that are not blocked.
-    fn shade_direct_light(&self, bounce: u32, wave: &mut Wave<T>) {
+    fn shade_direct_light<R: Recorder>(&self, bounce: u32, wave: &mut Wave<R>) {
         let hits = wave.hit_range();
         let Wave { paths, unoccluded, .. } = wave;
         let shadow_rays = &paths.shadow_rays;
         let is_unoccluded = |index: &u16| {
             let index = usize::from(*index);
-            shadow_rays.is_pending[index] && shadow_rays.visibility[index] > T::Scalar::zero()
+            shadow_rays.is_pending[index] && shadow_rays.visibility[index] > 0.0
         };
         // Compacted, so that no lane evaluates the environment in vain.
         unoccluded.clear();

@@ -16,6 +16,7 @@ use crate::job::plan::Plan;
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
+use crate::scene::texture::TextureTarget;
 
 pub use super::switches::{EffectSwitches, Switch, SwitchError};
 pub use table::EFFECTS;
@@ -27,10 +28,29 @@ pub struct Effect {
     pub label: &'static str,
     /// What it is, in a sentence.
     pub help: &'static str,
-    /// Whether a scene calls for it.
-    pub decide: fn(&Facts<'_>) -> Decision,
-    /// Takes it out of the scene, so that it is no longer called for; `None` where nothing could be rendered without.
-    pub remove: Option<fn(&mut Document)>,
+    needs: Needs,
+    remove: Remove,
+}
+
+/// Whether a scene calls for an effect.
+enum Needs {
+    /// Where some material does; the text completes "the material …" and "no material …".
+    AnyMaterial(fn(&Material<f32>) -> bool, &'static str),
+    /// Where this holds; why it is called for, and why not.
+    When(fn(&Facts<'_>) -> bool, &'static str, &'static str),
+    Scene(fn(&Facts<'_>) -> Decision),
+}
+
+/// What takes an effect out of a scene, so that it is no longer called for.
+enum Remove {
+    /// Nothing could be rendered without it.
+    Never,
+    /// The switch alone.
+    Switched,
+    EachMaterial(fn(&mut MaterialSettings)),
+    /// Switches off the textures on these targets.
+    Textures(&'static [TextureTarget]),
+    Document(fn(&mut Document)),
 }
 
 impl Effect {
@@ -58,7 +78,11 @@ pub fn plan(facts: &Facts<'_>) -> Plan {
     Plan::new(|id| match (switches.get(id), id.constant()) {
         (Switch::Off, _) => Decision::off("switched off by you"),
         (Switch::On, Some(constant)) => Decision::which(constant.general, "switched on by you"),
-        _ => (Effect::of(id).decide)(facts),
+        _ => match Effect::of(id).needs {
+            Needs::AnyMaterial(needs, what) => facts.needed_by(needs, what),
+            Needs::When(is_on, why, why_not) => Decision::when(is_on(facts), if is_on(facts) { why } else { why_not }),
+            Needs::Scene(decide) => decide(facts),
+        },
     })
 }
 
@@ -67,8 +91,20 @@ pub fn without_what_is_off(document: &Document) -> Cow<'_, Document> {
     let switches: EffectSwitches = document.render.effects;
     let mut document = Cow::Borrowed(document);
     for effect in EFFECTS {
-        if let (Switch::Off, Some(remove)) = (switches.get(effect.id), effect.remove) {
-            remove(document.to_mut());
+        if switches.get(effect.id) != Switch::Off {
+            continue;
+        }
+        match effect.remove {
+            Remove::Never | Remove::Switched => {}
+            Remove::EachMaterial(change) => document.to_mut().materials.iter_mut().for_each(change),
+            Remove::Textures(targets) => {
+                for material in &mut document.to_mut().materials {
+                    targets
+                        .iter()
+                        .for_each(|target| material.textures[*target] = false);
+                }
+            }
+            Remove::Document(change) => change(document.to_mut()),
         }
     }
     document

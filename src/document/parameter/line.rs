@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Accessors, Kind, Parameter, RowStyle, Stage};
+use super::{Kind, Parameter, RowStyle, Stage, Takes};
 
 impl<T> Parameter<T> {
     /// A parameter in no group, which always has an effect.
@@ -10,9 +10,8 @@ impl<T> Parameter<T> {
         key: &'static str,
         label: &'static str,
         help: &'static str,
-        kind: Kind,
+        (kind, (get, set)): Takes<T>,
         stage: Stage,
-        (get, set): Accessors<T>,
     ) -> Self {
         Self {
             key,

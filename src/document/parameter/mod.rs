@@ -323,8 +323,8 @@ fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
     (low..=high).contains(&value)
 }
 
-/// Reads and writes a field through the variant of [`Value`] that holds it.
-type Accessors<T> = (fn(&T) -> Value, fn(&mut T, Value));
+/// What a parameter takes, and how the field is read and written through the variant of [`Value`] that holds it.
+type Takes<T> = (Kind, (fn(&T) -> Value, fn(&mut T, Value)));
 
 impl<T> Parameter<T> {
     /// What it is called in the whole window, for the history, the palette, screen readers and tests.

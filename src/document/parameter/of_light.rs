@@ -2,45 +2,33 @@
 
 use std::sync::LazyLock;
 
-use super::accessors::{choice, field};
+use super::accessors::{choice, color, field, rows, toggle};
 use super::line::{ends, real, single};
-use super::{Kind, Parameter, Stage, Value, choices};
+use super::{Kind, Parameter, Stage, Takes, Value};
 use crate::document::{AreaLight, AreaLightShape, range};
 
 /// Every parameter of an area light, in the order of its rows; the keys are those of project files.
-pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new(all);
-
-type Accessors = super::Accessors<AreaLight>;
-
-#[rustfmt::skip]
-fn all() -> Vec<Parameter<AreaLight>> {
-    vec![
-        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), choice!(shape), |_| None),
-        of("lighting.area_lights.yaw_deg", "Yaw", "Turns the light around its target.", real(range::YAW_DEG, "°"), field!(Real yaw_deg), |_| None)
-            .bar(-180.0, 180.0).decimals(1),
-        of("lighting.area_lights.pitch_deg", "Pitch", "Height of the light above the horizon of its target.", real(range::PITCH_DEG, "°"), field!(Real pitch_deg), |_| None)
-            .bar(-90.0, 90.0).decimals(1),
-        of("lighting.area_lights.distance", "Distance", "From its target, in bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real distance), of_lamps)
-            .bar(0.0, 10.0),
-        of("lighting.area_lights.target", "Target", "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii.", Kind::Place { range: ends(range::LIGHT_TARGET) }, field!(Place target), of_lamps),
-        of("lighting.area_lights.turn_deg", "Turn", "About the line to its target, clockwise seen from there.", real(range::YAW_DEG, "°"), field!(Real turn_deg), of_lamps)
-            .bar(-180.0, 180.0).decimals(1),
-        of("lighting.area_lights.width", "Width", "In bounding radii of the model. A small light makes sharp shadows.", real(range::AREA_LENGTH, ""), field!(Real width), of_lamps)
-            .bar(0.0, 4.0),
-        of("lighting.area_lights.height", "Height", "In bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real height), of_flat)
-            .bar(0.0, 4.0),
-        of("lighting.area_lights.cone_deg", "Cone", "The angle across the cone into which a spot shines.", real(range::CONE_DEG, "°"), field!(Real cone_deg), of_spots)
-            .bar(1.0, 120.0).decimals(1),
-        of("lighting.area_lights.softness", "Softness", "The share of the cone over which a spot fades to its edge.", real(range::SOFTNESS, ""), field!(Real softness), of_spots)
-            .bar(0.0, 1.0),
-        of("lighting.area_lights.angle_deg", "Angle", "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows.", real(range::SUN_ANGLE_DEG, "°"), field!(Real angle_deg), of_suns)
-            .bar(0.05, 10.0),
-        of("lighting.area_lights.color", "Colour", "Colour of the light.", Kind::Color, field!(Color color), |_| None),
-        of("lighting.area_lights.strength", "Strength", "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it.", single(range::STRENGTH, ""), field!(Number strength), |_| None)
-            .bar(0.0, 100.0),
-        of("lighting.area_lights.hidden_from_camera", "Hidden", "It shines, but the camera doesn't see it: only mirrors and glass show it.", Kind::Toggle, field!(Toggle is_hidden), |_| None),
-    ]
-}
+pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new(|| {
+    rows! {
+        "lighting.area_lights.shape" "Shape" "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away." choice(AreaLightShape shape);
+        "lighting.area_lights.yaw_deg" "Yaw" "Turns the light around its target." field(Real yaw_deg, real(range::YAW_DEG, "°"))
+            .bar(-180.0, 180.0).decimals(1);
+        "lighting.area_lights.pitch_deg" "Pitch" "Height of the light above the horizon of its target." field(Real pitch_deg, real(range::PITCH_DEG, "°"))
+            .bar(-90.0, 90.0).decimals(1);
+        "lighting.area_lights.distance" "Distance" "From its target, in bounding radii of the model." field(Real distance, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 10.0);
+        "lighting.area_lights.target" "Target" "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii." field(Place target, Kind::Place { range: ends(range::LIGHT_TARGET) }).idle(of_lamps);
+        "lighting.area_lights.turn_deg" "Turn" "About the line to its target, clockwise seen from there." field(Real turn_deg, real(range::YAW_DEG, "°")).idle(of_lamps).bar(-180.0, 180.0).decimals(1);
+        "lighting.area_lights.width" "Width" "In bounding radii of the model. A small light makes sharp shadows." field(Real width, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 4.0);
+        "lighting.area_lights.height" "Height" "In bounding radii of the model." field(Real height, real(range::AREA_LENGTH, "")).idle(of_flat).bar(0.0, 4.0);
+        "lighting.area_lights.cone_deg" "Cone" "The angle across the cone into which a spot shines." field(Real cone_deg, real(range::CONE_DEG, "°")).idle(of_spots).bar(1.0, 120.0).decimals(1);
+        "lighting.area_lights.softness" "Softness" "The share of the cone over which a spot fades to its edge." field(Real softness, real(range::SOFTNESS, "")).idle(of_spots).bar(0.0, 1.0);
+        "lighting.area_lights.angle_deg" "Angle" "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows." field(Real angle_deg, real(range::SUN_ANGLE_DEG, "°")).idle(of_suns).bar(0.05, 10.0);
+        "lighting.area_lights.color" "Colour" "Colour of the light." color(color);
+        "lighting.area_lights.strength" "Strength" "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it." field(Number strength, single(range::STRENGTH, ""))
+            .bar(0.0, 100.0);
+        "lighting.area_lights.hidden_from_camera" "Hidden" "It shines, but the camera doesn't see it: only mirrors and glass show it." toggle(is_hidden);
+    }
+});
 
 fn of_lamps(light: &AreaLight) -> Option<&'static str> {
     light.is_sun().then_some("A sun is too far away for this to matter.")
@@ -59,18 +47,10 @@ fn of_suns(light: &AreaLight) -> Option<&'static str> {
     (!light.is_sun()).then_some("The size of other lights is their width and height.")
 }
 
-fn of(
-    key: &'static str,
-    label: &'static str,
-    help: &'static str,
-    kind: Kind,
-    accessors: Accessors,
-    idle: fn(&AreaLight) -> Option<&'static str>,
-) -> Parameter<AreaLight> {
+fn of(key: &'static str, label: &'static str, help: &'static str, takes: Takes<AreaLight>) -> Parameter<AreaLight> {
     Parameter {
         group: "Area light",
-        idle,
-        ..Parameter::plain(key, label, help, kind, Stage::Geometry, accessors)
+        ..Parameter::plain(key, label, help, takes, Stage::Geometry)
     }
 }
 

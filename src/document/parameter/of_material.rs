@@ -1,160 +1,118 @@
 //! The parameters of a material.
 
-mod coat;
-
 use std::sync::LazyLock;
 
-use super::accessors::{choice, field};
-use super::{Choice, Kind, Parameter, Stage, Value, choices};
+use super::accessors::{choice, color, field, own, rows, toggle};
+use super::{Choice, Kind, Parameter, Stage, Value};
 use crate::document::custom_curve::CustomCurve;
 use crate::document::material::FILM_THICKNESS_MAX;
-use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
+use crate::document::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::scene::texture::TextureTarget as On;
 
-type Accessors = super::Accessors<MaterialSettings>;
-
 /// Every parameter, in the order of the panels. In files they are read in this order too: a conductor before the η and
 /// k that may replace its own.
 pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
-    let mut all = base();
-    all.extend(specular_shape());
-    all.extend(specular_fresnel());
-    all.extend(coat::parameters());
-    all.extend(fuzz());
-    all.extend(thin_film());
-    all.extend(transmission());
-    all.extend(emission());
-    all.extend(geometry());
-    all
+    rows! {
+        "base.weight" "Weight" "Darkens the base: its colour is multiplied by it." field(Number base_weight, UNIT);
+        "base.color" "Colour" "Colour of the diffuse base; of a metal, its reflection seen head-on." color(base_color)
+            .idle(of_indices);
+        "base.color_texture" "Colour texture" "Multiplies the colour by a texture, the model's or one of your own." toggle(textures[On::BaseColor]);
+        "base.diffuse_roughness" "Diffuse roughness" "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base." field(Number diffuse_roughness, UNIT)
+            .applies(|material| material.metalness < 1.0);
+        "base.metalness" "Metalness" "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured." field(Number metalness, UNIT);
+        "specular.weight" "Weight" "How much of the reflection is kept; at 0 only the base is left." field(Number specular_weight, UNIT)
+            .applies(|_| true);
+        "specular.weight_in_index" "Weight by index" "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF." toggle(specular_in_index)
+            .applies(may_weigh_index);
+        "specular.on_metal" "Metals too" "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF." toggle(specular_on_metal)
+            .applies(|material| material.metalness > 0.0 && has_metalness(material));
+        "specular.lobe" "Lobe" "The model of how reflected light is spread." choice(Lobe lobe);
+        "specular.roughness" "Roughness" "0 is a mirror; 1 is fully diffuse for the geometric lobe." field(Number roughness, UNIT)
+            .symbol("R").applies(|material| has_specular(material) && material.lobe.has_roughness());
+        "specular.roughness_texture" "Roughness texture" "Multiplies roughness and metalness by textures." toggle(textures[On::Roughness]);
+        "specular.multiple_scattering" "Multiple scattering" "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness." toggle(multiple_scattering)
+            .applies(|material| has_specular(material) && material.lobe.traits().loses_light);
+        "specular.curve" "Curve" "The profile of the geometric lobe's highlight, from its middle to its edge." choice(Curve curve)
+            .symbol("D(ξ)").applies(has_curves);
+        "specular.custom_curve" "Custom curve" "Custom quantile function D(ξ)." own(custom_curve)
+            .symbol("D(ξ)").applies(|material| has_curves(material) && material.curve.has_table());
+        "specular.anisotropy" "Anisotropy" "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin." field(Number anisotropy, number([-1.0, 1.0], ""))
+            .symbol("Rx, Ry").bar(-1.0, 1.0).applies(|material| has_specular(material) && material.lobe.is_anisotropic());
+        "specular.rotation" "Rotation" "Turns the direction of the stretch about the normal, anticlockwise seen from outside." field(Number rotation_deg, number([-360.0, 360.0], "°"))
+            .bar(-180.0, 180.0).decimals(1).applies(|material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0);
+        "specular.horizon" "Below horizon" "What happens to samples that point into the surface." choice(Horizon horizon)
+            .applies(|material| has_specular(material) && !material.lobe.is_hemispherical());
+        "specular.fresnel" "Fresnel" "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric." choice(Fresnel fresnel)
+            .symbol("F").applies(|material| has_specular(material) && !transmits(material));
+        "specular.ior" "Index of refraction" "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4." field(Number ior, number([1.0, 4.0], ""))
+            .symbol("n").bar(1.0, 2.5).applies(has_index);
+        "specular.color" "Tint" "Colours the reflection. Above 1 it raises Schlick's reflectance of a dielectric seen head-on, up to 1." field(Color specular_color, Kind::Tint { most: SPECULAR_COLOR_MAX });
+        "specular.edge_tint" "Edge tint" "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone." color(edge_tint)
+            .applies(|material| has_specular(material) && has_metalness(material) && material.metalness > 0.0);
+        "specular.conductor" "Metal" "Takes the index of refraction of a measured metal." own(conductor)
+            .applies(is_conductor);
+        "specular.eta" "η" "Real part of the metal's index of refraction for red, green and blue, as measured unless changed." own(eta)
+            .symbol("η").applies(is_conductor);
+        "specular.k" "k" "Imaginary part: how strongly the metal absorbs red, green and blue, as measured unless changed." own(k)
+            .symbol("k").applies(is_conductor);
+        "coat.weight" "Weight" "A layer of clear lacquer over everything else." field(Number coat_weight, UNIT)
+            .applies(|_| true);
+        "coat.weight_texture" "Weight texture" "Multiplies the weight by a texture." toggle(textures[On::Coat]);
+        "coat.lobe" "Lobe" "The model of how the coat spreads reflected light." choice(CoatLobe coat_lobe);
+        "coat.roughness" "Roughness" "How far the coat spreads its reflection." field(Number coat_roughness, UNIT)
+            .symbol("R");
+        "coat.roughness_texture" "Roughness texture" "Multiplies GGX's roughness of the coat by a texture." toggle(textures[On::CoatRoughness]);
+        "coat.anisotropy" "Anisotropy" "Stretches the coat's reflection along the tangent of what lies below, or across it below 0." field(Number coat_anisotropy, number([-1.0, 1.0], ""));
+        "coat.ior" "Index of refraction" "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing." field(Number coat_ior, number([1.0, 4.0], ""))
+            .symbol("n").bar(1.0, 2.5);
+        "coat.color" "Colour" "Colours what is seen through the coat." color(coat_color);
+        "coat.color_texture" "Colour texture" "Multiplies the colour of the coat by a texture." toggle(textures[On::CoatColor]);
+        "coat.darkening" "Darkening" "How much darker a base gets by light that the coat reflects back onto it: varnish on wood. A white base stays white." field(Number coat_darkening, UNIT);
+        "coat.on_base" "On the base" "The coat changes what lies below, as in OpenPBR: its reflection, roughness, emission and colour by angle. Off, as in glTF, it does not." toggle(coat_on_base);
+        "coat.normal_strength" "Normal strength" "Scales the slopes of the coat's normal texture." field(Number coat_normal_strength, number([-10.0, 10.0], ""))
+            .applies(|material| material.coat_weight > 0.0 && material.textures[On::CoatNormal]).bar(0.0, 2.0);
+        "coat.normal_texture" "Normal texture" "Bends the coat's normal by a texture." toggle(textures[On::CoatNormal]);
+        "fuzz.weight" "Weight" "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust." field(Number fuzz_weight, UNIT)
+            .applies(|_| true);
+        "fuzz.weight_texture" "Weight texture" "Multiplies the weight by a texture." toggle(textures[On::Fuzz]);
+        "fuzz.color" "Colour" "Colours what the fibres reflect; what lies below loses as much light of every colour." color(fuzz_color);
+        "fuzz.color_texture" "Colour texture" "Multiplies the colour by a texture." toggle(textures[On::FuzzColor]);
+        "fuzz.roughness" "Roughness" "How far the fibres spread the light: low only at the edge, high as dust all over." field(Number fuzz_roughness, UNIT)
+            .symbol("R");
+        "fuzz.roughness_texture" "Roughness texture" "Multiplies the roughness by a texture." toggle(textures[On::FuzzRoughness]);
+        "thin_film.weight" "Weight" "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours." field(Number film_weight, UNIT)
+            .applies(|material| has_specular(material) && material.fresnel_model() != Fresnel::None);
+        "thin_film.weight_texture" "Weight texture" "Multiplies the weight by a texture." toggle(textures[On::Film]);
+        "thin_film.thickness" "Thickness" "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1." field(Number film_thickness, number([0.0, FILM_THICKNESS_MAX], "µm"))
+            .symbol("d").bar(0.0, 1.0);
+        "thin_film.thickness_texture" "Thickness texture" "Multiplies the thickness by a texture." toggle(textures[On::FilmThickness]);
+        "thin_film.ior" "Index of refraction" "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see." field(Number film_ior, number([1.0, 3.0], ""))
+            .symbol("n").bar(1.0, 3.0);
+        "transmission.weight" "Weight" "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed." field(Number transmission_weight, UNIT)
+            .applies(|material| material.metalness < 1.0);
+        "transmission.color" "Colour" "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside." color(transmission_color);
+        "transmission.depth" "Depth" "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead." field(Number transmission_depth, number([0.0, 1000.0], ""))
+            .bar(0.0, 2.0);
+        "transmission.roughness" "Transmission roughness offset" "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough." field(Number transmission_roughness, number([-1.0, 1.0], ""))
+            .symbol("R").bar(-1.0, 1.0);
+        "emission.color" "Colour" "Colour of the light that the surface gives off." color(emission_color)
+            .applies(|material| material.emission_strength > 0.0);
+        "emission.color_texture" "Colour texture" "Multiplies the emission by a texture, the model's or one of your own." toggle(textures[On::Emission]);
+        "emission.strength" "Strength" "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace." field(Number emission_strength, number([0.0, 1e6], ""))
+            .bar(0.0, 20.0).applies(|_| true);
+        "geometry.opacity" "Opacity" "The share of light that the surface stops; the rest goes straight on, as if nothing were there." field(Number opacity, UNIT);
+        "geometry.opacity_texture" "Opacity texture" "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff." toggle(textures[On::Opacity]);
+        "geometry.normal_strength" "Normal strength" "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps." field(Number normal_strength, number([-10.0, 10.0], ""))
+            .bar(0.0, 2.0).applies(|material| material.textures[On::Normal]);
+        "geometry.normal_texture" "Normal texture" "Bends the surface's normal by a texture." toggle(textures[On::Normal]);
+    }
 });
 
-#[rustfmt::skip]
-fn base() -> Vec<Parameter> {
-    vec![
-        of("base.weight", "Weight", "Darkens the base: its colour is multiplied by it.", unit_number(), field!(Number base_weight)),
-        of("base.color", "Colour", "Colour of the diffuse base; of a metal, its reflection seen head-on.", Kind::Color, field!(Color base_color))
-            .idle(of_indices),
-        of("base.color_texture", "Colour texture", "Multiplies the colour by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures[On::BaseColor])),
-        of("base.diffuse_roughness", "Diffuse roughness", "Scatters more of the base's light back to where it comes from: plaster, clay, cloth. 0 is Lambert's base.", unit_number(), field!(Number diffuse_roughness))
-            .applies(|material| material.metalness < 1.0),
-        of("base.metalness", "Metalness", "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.", unit_number(), field!(Number metalness)),
-    ]
-}
-
-#[rustfmt::skip]
-fn specular_shape() -> Vec<Parameter> {
-    vec![
-        of("specular.weight", "Weight", "How much of the reflection is kept; at 0 only the base is left.", unit_number(), field!(Number specular_weight))
-            .applies(|_| true),
-        of("specular.weight_in_index", "Weight by index", "The weight scales a dielectric's reflectance head-on, through the index, as in OpenPBR; off, at every angle, as in glTF.", Kind::Toggle, field!(Toggle specular_in_index))
-            .applies(may_weigh_index),
-        of("specular.on_metal", "Metals too", "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF.", Kind::Toggle, field!(Toggle specular_on_metal))
-            .applies(|material| material.metalness > 0.0 && has_metalness(material)),
-        of("specular.lobe", "Lobe", "The model of how reflected light is spread.", choices::<Lobe>(), choice!(lobe)),
-        of("specular.roughness", "Roughness", "0 is a mirror; 1 is fully diffuse for the geometric lobe.", unit_number(), field!(Number roughness))
-            .symbol("R").applies(|material| has_specular(material) && material.lobe.has_roughness()),
-        of("specular.roughness_texture", "Roughness texture", "Multiplies roughness and metalness by textures.", Kind::Toggle, field!(Toggle textures[On::Roughness])),
-        of("specular.multiple_scattering", "Multiple scattering", "Keeps the light that meets a second facet of rough GGX: metals and clear glass. Off, they darken with roughness.", Kind::Toggle, field!(Toggle multiple_scattering))
-            .applies(|material| has_specular(material) && material.lobe.traits().loses_light),
-        of("specular.curve", "Curve", "The profile of the geometric lobe's highlight, from its middle to its edge.", choices::<Curve>(), choice!(curve))
-            .symbol("D(ξ)").applies(has_curves),
-        of("specular.custom_curve", "Custom curve", "Custom quantile function D(ξ).", Kind::Curve, custom_curve())
-            .symbol("D(ξ)").applies(|material| has_curves(material) && material.curve.has_table()),
-        of("specular.anisotropy", "Anisotropy", "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.", number([-1.0, 1.0], ""), field!(Number anisotropy))
-            .symbol("Rx, Ry").bar(-1.0, 1.0).applies(|material| has_specular(material) && material.lobe.is_anisotropic()),
-        of("specular.rotation", "Rotation", "Turns the direction of the stretch about the normal, anticlockwise seen from outside.", number([-360.0, 360.0], "°"), field!(Number rotation_deg))
-            .bar(-180.0, 180.0).decimals(1).applies(|material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0),
-        of("specular.horizon", "Below horizon", "What happens to samples that point into the surface.", choices::<Horizon>(), choice!(horizon))
-            .applies(|material| has_specular(material) && !material.lobe.is_hemispherical()),
-    ]
-}
-
-#[rustfmt::skip]
-fn specular_fresnel() -> Vec<Parameter> {
-    vec![
-        of("specular.fresnel", "Fresnel", "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.", choices::<Fresnel>(), choice!(fresnel))
-            .symbol("F").applies(|material| has_specular(material) && !transmits(material)),
-        of("specular.ior", "Index of refraction", "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4.", number([1.0, 4.0], ""), field!(Number ior))
-            .symbol("n").bar(1.0, 2.5).applies(has_index),
-        of("specular.color", "Tint", "Colours the reflection. Above 1 it raises Schlick's reflectance of a dielectric seen head-on, up to 1.", Kind::Tint { most: SPECULAR_COLOR_MAX }, field!(Color specular_color)),
-        of("specular.edge_tint", "Edge tint", "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.", Kind::Color, field!(Color edge_tint))
-            .applies(|material| has_specular(material) && has_metalness(material) && material.metalness > 0.0),
-        of("specular.conductor", "Metal", "Takes the index of refraction of a measured metal.", conductor_choices(), conductor())
-            .applies(is_conductor),
-        of("specular.eta", "η", "Real part of the metal's index of refraction for red, green and blue, as measured unless changed.", Kind::Triple { range: [0.0, 20.0] }, eta())
-            .symbol("η").applies(is_conductor),
-        of("specular.k", "k", "Imaginary part: how strongly the metal absorbs red, green and blue, as measured unless changed.", Kind::Triple { range: [0.0, 20.0] }, k())
-            .symbol("k").applies(is_conductor),
-    ]
-}
-
-#[rustfmt::skip]
-fn fuzz() -> Vec<Parameter> {
-    vec![
-        of("fuzz.weight", "Weight", "A layer of small fibres over everything else, brightest at the edge: velvet, peach, dust.", unit_number(), field!(Number fuzz_weight))
-            .applies(|_| true),
-        of("fuzz.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures[On::Fuzz])),
-        of("fuzz.color", "Colour", "Colours what the fibres reflect; what lies below loses as much light of every colour.", Kind::Color, field!(Color fuzz_color)),
-        of("fuzz.color_texture", "Colour texture", "Multiplies the colour by a texture.", Kind::Toggle, field!(Toggle textures[On::FuzzColor])),
-        of("fuzz.roughness", "Roughness", "How far the fibres spread the light: low only at the edge, high as dust all over.", unit_number(), field!(Number fuzz_roughness))
-            .symbol("R"),
-        of("fuzz.roughness_texture", "Roughness texture", "Multiplies the roughness by a texture.", Kind::Toggle, field!(Toggle textures[On::FuzzRoughness])),
-    ]
-}
-
-#[rustfmt::skip]
-fn thin_film() -> Vec<Parameter> {
-    vec![
-        of("thin_film.weight", "Weight", "A film that is thin as light's wavelength: soap, oil, oxide on hot steel. What its sides reflect interferes in colours.", unit_number(), field!(Number film_weight))
-            .applies(|material| has_specular(material) && material.fresnel_model() != Fresnel::None),
-        of("thin_film.weight_texture", "Weight texture", "Multiplies the weight by a texture.", Kind::Toggle, field!(Toggle textures[On::Film])),
-        of("thin_film.thickness", "Thickness", "Decides the colours: oxide on steel is straw at 0.02 and blue at 0.05, soap films have 0.1 to 1.", number([0.0, FILM_THICKNESS_MAX], "µm"), field!(Number film_thickness))
-            .symbol("d").bar(0.0, 1.0),
-        of("thin_film.thickness_texture", "Thickness texture", "Multiplies the thickness by a texture.", Kind::Toggle, field!(Toggle textures[On::FilmThickness])),
-        of("thin_film.ior", "Index of refraction", "How strongly the film reflects: soap 1.33, oil 1.47, oxide of steel 2.4; at the base's own there is none to see.", number([1.0, 3.0], ""), field!(Number film_ior))
-            .symbol("n").bar(1.0, 3.0),
-    ]
-}
-
-#[rustfmt::skip]
-fn transmission() -> Vec<Parameter> {
-    vec![
-        of("transmission.weight", "Weight", "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed.", unit_number(), field!(Number transmission_weight))
-            .applies(|material| material.metalness < 1.0),
-        of("transmission.color", "Colour", "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside.", Kind::Color, field!(Color transmission_color)),
-        of("transmission.depth", "Depth", "Distance at which white light reaches this colour, in bounding radii of the model. 0 tints the surface instead.", number([0.0, 1000.0], ""), field!(Number transmission_depth))
-            .bar(0.0, 2.0),
-        of("transmission.roughness", "Transmission roughness offset", "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.", number([-1.0, 1.0], ""), field!(Number transmission_roughness))
-            .symbol("R").bar(-1.0, 1.0),
-    ]
-}
-
-#[rustfmt::skip]
-fn emission() -> Vec<Parameter> {
-    vec![
-        of("emission.color", "Colour", "Colour of the light that the surface gives off.", Kind::Color, field!(Color emission_color))
-            .applies(|material| material.emission_strength > 0.0),
-        of("emission.color_texture", "Colour texture", "Multiplies the emission by a texture, the model's or one of your own.", Kind::Toggle, field!(Toggle textures[On::Emission])),
-        of("emission.strength", "Strength", "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.", number([0.0, 1e6], ""), field!(Number emission_strength))
-            .bar(0.0, 20.0).applies(|_| true),
-    ]
-}
-
-#[rustfmt::skip]
-fn geometry() -> Vec<Parameter> {
-    vec![
-        of("geometry.opacity", "Opacity", "The share of light that the surface stops; the rest goes straight on, as if nothing were there.", unit_number(), field!(Number opacity)),
-        of("geometry.opacity_texture", "Opacity texture", "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, honouring the model's alpha cutoff.", Kind::Toggle, field!(Toggle textures[On::Opacity])),
-        of("geometry.normal_strength", "Normal strength", "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.", number([-10.0, 10.0], ""), field!(Number normal_strength))
-            .bar(0.0, 2.0).applies(|material| material.textures[On::Normal]),
-        of("geometry.normal_texture", "Normal texture", "Bends the surface's normal by a texture.", Kind::Toggle, field!(Toggle textures[On::Normal])),
-    ]
-}
-
 type Applies = fn(&MaterialSettings) -> bool;
+type Takes = super::Takes<MaterialSettings>;
 
 /// The groups of the panel by the first part of their parameters' keys, and when the rows of a group apply.
 const GROUPS: [(&str, &str, Applies); 8] = [
@@ -168,11 +126,11 @@ const GROUPS: [(&str, &str, Applies); 8] = [
     ("geometry", "Geometry", |_| true),
 ];
 
-fn of(key: &'static str, label: &'static str, help: &'static str, kind: Kind, accessors: Accessors) -> Parameter {
+fn of(key: &'static str, label: &'static str, help: &'static str, takes: Takes) -> Parameter {
     let prefix = key.split('.').next();
     let group = GROUPS.iter().find(|(of_keys, ..)| Some(*of_keys) == prefix);
     let &(_, group, applies) = group.expect("a parameter's key begins with that of a group");
-    Parameter::plain(key, label, help, kind, Stage::Materials, accessors)
+    Parameter::plain(key, label, help, takes, Stage::Materials)
         .group(group)
         .applies(applies)
         .bar(0.0, 1.0)
@@ -182,9 +140,10 @@ fn number(range: [f32; 2], unit: &'static str) -> Kind {
     Kind::Number { range, unit }
 }
 
-fn unit_number() -> Kind {
-    number([0.0, 1.0], "")
-}
+const UNIT: Kind = Kind::Number {
+    range: [0.0, 1.0],
+    unit: "",
+};
 
 fn has_specular(material: &MaterialSettings) -> bool {
     material.reflects()
@@ -224,7 +183,7 @@ fn has_index(material: &MaterialSettings) -> bool {
     transmits(material) || (has_specular(material) && of_dielectric && material.metalness < 1.0)
 }
 
-fn conductor_choices() -> Kind {
+fn conductor() -> Takes {
     let choice = |conductor: Conductor| Choice {
         name: conductor.name(),
         label: conductor.name(),
@@ -233,51 +192,61 @@ fn conductor_choices() -> Kind {
             Conductor::Metal(_) => "η and k as measured.",
         },
     };
-    Kind::Choice(Conductor::all().map(choice).collect())
-}
-
-fn conductor() -> Accessors {
     (
-        |material| Value::Choice(material.conductor.name()),
-        |material, value| {
-            if let Value::Choice(name) = value {
-                material.set_conductor(Conductor::named(name));
-            }
-        },
+        Kind::Choice(Conductor::all().map(choice).collect()),
+        (
+            |material| Value::Choice(material.conductor.name()),
+            |material, value| {
+                if let Value::Choice(name) = value {
+                    material.set_conductor(Conductor::named(name));
+                }
+            },
+        ),
     )
 }
 
-fn eta() -> Accessors {
+const INDEX: Kind = Kind::Triple { range: [0.0, 20.0] };
+
+fn eta() -> Takes {
     (
-        |material| Value::Triple(material.eta),
-        |material, value| {
-            if let Value::Triple(eta) = value {
-                material.set_eta_and_k(eta, material.k);
-            }
-        },
+        INDEX,
+        (
+            |material| Value::Triple(material.eta),
+            |material, value| {
+                if let Value::Triple(eta) = value {
+                    material.set_eta_and_k(eta, material.k);
+                }
+            },
+        ),
     )
 }
 
-fn k() -> Accessors {
+fn k() -> Takes {
     (
-        |material| Value::Triple(material.k),
-        |material, value| {
-            if let Value::Triple(k) = value {
-                material.set_eta_and_k(material.eta, k);
-            }
-        },
+        INDEX,
+        (
+            |material| Value::Triple(material.k),
+            |material, value| {
+                if let Value::Triple(k) = value {
+                    material.set_eta_and_k(material.eta, k);
+                }
+            },
+        ),
     )
 }
 
-fn custom_curve() -> Accessors {
+fn custom_curve() -> Takes {
     (
-        |material| Value::Curve(material.custom_curve.points().to_vec()),
-        |material, value| {
-            if let Value::Curve(points) = value
-                && let Ok(curve) = CustomCurve::try_from(points)
-            {
-                material.custom_curve = curve;
-            }
-        },
+        Kind::Curve,
+        (
+            |material| Value::Curve(material.custom_curve.points().to_vec()),
+            |material, value| {
+                if let Value::Curve(points) = value
+                    && let Ok(curve) = CustomCurve::try_from(points)
+                {
+                    material.custom_curve = curve;
+                }
+            },
+        ),
     )
 }

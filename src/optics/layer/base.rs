@@ -4,7 +4,7 @@
 //! sines divided by the index of refraction. So it fills the cone from which light gets out again, and none is trapped by
 //! total reflection.
 
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, Layers};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe, LobeSample, LobeShape, raw_sample};
 use crate::optics::material::{Material, Surface};
@@ -21,10 +21,6 @@ pub struct Base;
 
 impl<T: Real> LayerModel<T> for Base {
     const LAYER: Layer = Layer::Base;
-    const TRAITS: LayerTraits = LayerTraits {
-        refines: true,
-        ..LayerTraits::PLAIN
-    };
 
     #[inline(always)]
     fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {

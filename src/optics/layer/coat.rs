@@ -8,7 +8,7 @@
 //! own; here are its darkening by light that it reflects back inside, and its absorption along the way of the light. Any
 //! other coat is glTF's: its colour is that of every direction.
 
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, Layers};
 use crate::optics::albedo::{albedo_lookup, rough_albedo_lookup};
 use crate::optics::coat_medium::{color_over, way_length};
 use crate::optics::curve::Curve;
@@ -29,11 +29,7 @@ pub struct Coat;
 
 impl<T: Real> LayerModel<T> for Coat {
     const LAYER: Layer = Layer::Coat;
-    const TRAITS: LayerTraits = LayerTraits {
-        is_cover: true,
-        refines: true,
-        ..LayerTraits::PLAIN
-    };
+    const IS_COVER: bool = true;
 
     #[inline(always)]
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {
@@ -178,6 +174,6 @@ pub fn coat_tint<T: Real>(material: &Material<T>, layers: &Layers<T>, surface: &
 
 /// True if the coat takes light of a layer below by the way through it.
 #[inline(always)]
-pub fn absorbs_over<T: Real, L: LayerModel<T>>(material: &Material<T>) -> bool {
-    L::LAYER as u32 > Layer::Coat as u32 && material.has_flag(COAT_ABSORBS)
+pub fn absorbs_over<T: Real>(material: &Material<T>, layer: Layer) -> bool {
+    layer as u32 > Layer::Coat as u32 && material.has_flag(COAT_ABSORBS)
 }

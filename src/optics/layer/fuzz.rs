@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 use super::base::base_shape;
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, Layers};
 use crate::optics::frame::{Frame, frame_from_tangent, local_from_world, world_from_local};
 use crate::optics::lobe::{LobeSample, LobeShape, raw_sample};
 use crate::optics::material::{Material, Surface};
@@ -48,11 +48,7 @@ pub struct Fuzz;
 
 impl<T: Real> LayerModel<T> for Fuzz {
     const LAYER: Layer = Layer::Fuzz;
-    const TRAITS: LayerTraits = LayerTraits {
-        is_cover: true,
-        refines: true,
-        ..LayerTraits::PLAIN
-    };
+    const IS_COVER: bool = true;
 
     #[inline(always)]
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask {

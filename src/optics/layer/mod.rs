@@ -8,21 +8,53 @@
 //! Covers lie over all layers after them and are sampled by their albedo. The layers below share the light that the covers
 //! transmit: the specular lobe reflects some, the base and the refracting lobe share the rest.
 //!
-//! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below.
+//! To add a layer: one Rust file with its [`LayerModel`], one WGSL file of the same name, one line in the registry below
+//! and its cases in `shaders/optics/layer/registry.wgsl`.
 
+/// A block of code for each layer `L`, from the outermost inwards, or outwards.
+macro_rules! each_layer {
+    ($walk:block) => {
+        each_layer!(Fuzz Coat Specular Base Transmission: $walk)
+    };
+    (outwards, $walk:block) => {
+        each_layer!(Transmission Base Specular Coat Fuzz: $walk)
+    };
+    ($($layer:ident)*: $walk:block) => {
+        $(
+            #[allow(unused, reason = "not every walk asks for each")]
+            {
+                use super::$layer as L;
+                const LAYER: Layer = Layer::$layer;
+                const IS_COVER: bool = <L as LayerModel<f32>>::IS_COVER;
+                $walk
+            }
+        )*
+    };
+}
+
+pub mod base;
+pub mod coat;
 mod density;
 mod evaluate;
 mod facet;
+pub mod fuzz;
 mod sample;
 mod seen;
 mod shares;
+pub mod specular;
+pub mod transmission;
 
+use base::Base;
+use coat::Coat;
 pub use density::material_density;
 pub use evaluate::{layer_evaluate, material_evaluate, material_is_mirror};
 pub use facet::{decides_by_facet, passes_on};
+use fuzz::Fuzz;
 pub use sample::{MaterialNumbers, MaterialSample, material_sample};
 pub use seen::{material_albedo, material_normal};
 pub use shares::{LayerShare, Layers, material_layers};
+use specular::Specular;
+use transmission::Transmission;
 
 use super::frame::Frame;
 use super::lobe::{LobeSample, LobeShape};
@@ -32,82 +64,16 @@ use super::real::{Mask, Real};
 use super::vector::Vec3;
 use crate::named::named;
 
-/// Visits types in reverse order.
-macro_rules! visit_upwards {
-    ($visitor:ident;) => {};
-    ($visitor:ident; $first:ty, $($rest:ty,)*) => {
-        visit_upwards!($visitor; $($rest,)*);
-        $visitor.visit::<$first>();
-    };
-}
-
-macro_rules! layers {
-    ($($module:ident $variant:ident, $name:literal, $label:literal, $help:literal;)*) => {
-        $(pub mod $module;)*
-
-        named! {
-            /// A layer of a material, in the order in which light from outside arrives.
-            Layer {
-                $($variant, $name, $label, $help;)*
-            }
-        }
-
-        impl Layer {
-            /// The name of its Rust module and WGSL file, and the prefix of its WGSL functions.
-            pub fn module(self) -> &'static str {
-                match self { $(Layer::$variant => stringify!($module),)* }
-            }
-            pub const fn traits(self) -> LayerTraits {
-                match self { $(Layer::$variant => <$module::$variant as LayerModel<f32>>::TRAITS,)* }
-            }
-        }
-
-        /// Visits each layer, from the outermost inwards.
-        #[inline(always)]
-        fn each_layer<T: Real>(visitor: &mut impl LayerVisitor<T>) {
-            $(visitor.visit::<$module::$variant>();)*
-        }
-
-        /// Visits each layer, from the innermost outwards.
-        #[inline(always)]
-        fn each_layer_upwards<T: Real>(visitor: &mut impl LayerVisitor<T>) {
-            visit_upwards!(visitor; $($module::$variant,)*);
-        }
-    };
-}
-
-// Module, type, name, label, help. The effect of the same name has the code in the kernels that call for it.
-layers! {
-    fuzz Fuzz, "fuzz", "fuzz", "A layer of small fibres over everything else: velvet, dust.";
-    coat Coat, "coat", "coat", "A clear dielectric coat over everything else.";
-    specular Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
-    base Base, "base", "base", "The Lambertian base below the specular lobe.";
-    transmission Transmission, "transmission", "transmission", "The lobe that refracts light into the solid.";
-}
-
-/// Something that is done with each layer.
-trait LayerVisitor<T: Real> {
-    fn visit<L: LayerModel<T>>(&mut self);
-}
-
-/// Properties of a layer, stated in its own file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LayerTraits {
-    /// True if it covers all layers after it; the others share the light that covers transmit.
-    pub is_cover: bool,
-    /// True if it modifies its lobe's samples and values ([`LayerModel::refined_sample`], [`LayerModel::refined`]).
-    pub refines: bool,
-    /// The Fresnel factor of a direction that is drawn may decide whether it is sampled ([`LayerModel::decides_by_facet`]).
-    pub decides: bool,
-}
-
-impl LayerTraits {
-    /// A layer like any other below the covers.
-    pub const PLAIN: Self = Self {
-        is_cover: false,
-        refines: false,
-        decides: false,
-    };
+// The effect of the same name has the code in the kernels that call for it.
+named! {
+    /// A layer of a material, in the order in which light from outside arrives.
+    Layer {
+        Fuzz, "fuzz", "fuzz", "A layer of small fibres over everything else: velvet, dust.";
+        Coat, "coat", "coat", "A clear dielectric coat over everything else.";
+        Specular, "specular", "specular lobe", "The lobe that reflects the Fresnel share.";
+        Base, "base", "base", "The Lambertian base below the specular lobe.";
+        Transmission, "transmission", "transmission", "The lobe that refracts light into the solid.";
+    }
 }
 
 /// A layer's lobe and its frame.
@@ -140,7 +106,8 @@ pub struct LayerToward<T> {
 pub trait LayerModel<T: Real> {
     /// Its entry in the registry.
     const LAYER: Layer;
-    const TRAITS: LayerTraits;
+    /// True if it covers all layers after it; the others share the light that covers transmit.
+    const IS_COVER: bool = false;
 
     /// Lanes where this side of the surface has the layer.
     fn is_there(material: &Material<T>, surface: &Surface<T>) -> T::Mask;

@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use super::{Layer, LayerAlbedo, LayerModel, LayerVisitor, each_layer, each_layer_upwards};
+use super::{Layer, LayerAlbedo, LayerModel};
 use crate::optics::material::{Material, Surface};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
@@ -58,94 +58,36 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
                 reached: one,
                 probability: T::zero(),
             };
-            let mut albedos = Albedos {
-                material,
-                tables,
-                surface,
-                layers: Layers([nothing; Layer::ALL.len()]),
-                transmittance: white,
-                left: white,
-            };
-            each_layer(&mut albedos);
-            let mut probabilities = Probabilities {
-                material,
-                layers: albedos.layers,
-                below: T::zero(),
-            };
-            each_layer_upwards(&mut probabilities);
-            let mut reached = Reached {
-                layers: probabilities.layers,
-                reached: one,
-            };
-            each_layer(&mut reached);
-            reached.layers
+            let mut layers = Layers([nothing; Layer::ALL.len()]);
+            // Transmittance of the covers so far, and light left by the other layers.
+            let [mut through, mut left] = [white; 2];
+            each_layer!({
+                let share = &mut layers[LAYER];
+                share.transmittance = through;
+                let is_there = L::is_there(material, surface);
+                if is_there.any() {
+                    let LayerAlbedo {
+                        reflected,
+                        transmittance,
+                    } = L::albedo(material, tables, surface, left);
+                    share.albedo = Vec3::select(is_there, reflected, Vec3::zero());
+                    let behind = if IS_COVER { &mut through } else { &mut left };
+                    *behind = Vec3::select(is_there, *behind * transmittance, *behind);
+                }
+            });
+            let mut below = T::zero();
+            each_layer!(outwards, {
+                below = L::choose(material, &mut layers, below);
+            });
+            let mut reached = one;
+            each_layer!({
+                let share = &mut layers[LAYER];
+                share.reached = reached;
+                if IS_COVER {
+                    reached = reached * (one - share.probability);
+                }
+            });
+            layers
         },
     )
-}
-
-/// The walk inwards that finds albedos.
-struct Albedos<'a, T: Real> {
-    material: &'a Material<T>,
-    tables: &'a [f32],
-    surface: &'a Surface<T>,
-    layers: Layers<T>,
-    /// Transmittance of the covers so far.
-    transmittance: Vec3<T>,
-    /// Light left by the other layers so far.
-    left: Vec3<T>,
-}
-
-impl<T: Real> LayerVisitor<T> for Albedos<'_, T> {
-    #[inline(always)]
-    fn visit<L: LayerModel<T>>(&mut self) {
-        let share = &mut self.layers[L::LAYER];
-        share.transmittance = self.transmittance;
-        let is_there = L::is_there(self.material, self.surface);
-        if !is_there.any() {
-            return;
-        }
-        let LayerAlbedo {
-            reflected,
-            transmittance,
-        } = L::albedo(self.material, self.tables, self.surface, self.left);
-        share.albedo = Vec3::select(is_there, reflected, Vec3::zero());
-        let behind = if L::TRAITS.is_cover {
-            &mut self.transmittance
-        } else {
-            &mut self.left
-        };
-        *behind = Vec3::select(is_there, *behind * transmittance, *behind);
-    }
-}
-
-/// The walk outwards that finds how often each layer is sampled.
-struct Probabilities<'a, T: Real> {
-    material: &'a Material<T>,
-    layers: Layers<T>,
-    /// The luminance of the layers so far.
-    below: T,
-}
-
-impl<T: Real> LayerVisitor<T> for Probabilities<'_, T> {
-    #[inline(always)]
-    fn visit<L: LayerModel<T>>(&mut self) {
-        self.below = L::choose(self.material, &mut self.layers, self.below);
-    }
-}
-
-/// The walk inwards that finds how often each layer is reached.
-struct Reached<T> {
-    layers: Layers<T>,
-    reached: T,
-}
-
-impl<T: Real> LayerVisitor<T> for Reached<T> {
-    #[inline(always)]
-    fn visit<L: LayerModel<T>>(&mut self) {
-        let share = &mut self.layers[L::LAYER];
-        share.reached = self.reached;
-        if L::TRAITS.is_cover {
-            self.reached = self.reached * (T::one() - share.probability);
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! The specular lobe: it reflects the Fresnel share; base and transmission share the rest.
 
 use super::facet::{decides_by_facet, left_by_facet, mirrored_share, passes_on, shares_facets};
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerShare, LayerToward, LayerTraits, Layers};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerShare, LayerToward, Layers};
 use crate::optics::albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
 use crate::optics::fresnel::{fresnel, fresnel_f0, half_vector_cosine};
 use crate::optics::lobe::LobeShape;
@@ -18,10 +18,6 @@ pub struct Specular;
 
 impl<T: Real> LayerModel<T> for Specular {
     const LAYER: Layer = Layer::Specular;
-    const TRAITS: LayerTraits = LayerTraits {
-        decides: true,
-        ..LayerTraits::PLAIN
-    };
 
     #[inline(always)]
     fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {

@@ -2,7 +2,7 @@
 //! specular lobe leaves.
 
 use super::facet::{left_by_facet, mirrored_share, shares_facets};
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, LayerTraits, Layers};
+use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, Layers};
 use crate::optics::fresnel::fresnel;
 use crate::optics::lobe::{LobeShape, refracts_at_facets};
 use crate::optics::material::{Material, Surface};
@@ -17,7 +17,6 @@ pub struct Transmission;
 
 impl<T: Real> LayerModel<T> for Transmission {
     const LAYER: Layer = Layer::Transmission;
-    const TRAITS: LayerTraits = LayerTraits::PLAIN;
 
     #[inline(always)]
     fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {

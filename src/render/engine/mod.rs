@@ -77,7 +77,7 @@ impl fmt::Display for EngineInfo {
     }
 }
 
-/// Precision of shading on the CPU; the GPU has f32 only. Sums are f64 in either case.
+/// Precision in which `evaluate` asks for a material on the CPU; the engines shade in f32.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
 pub enum Precision {
     /// f32.
@@ -107,13 +107,10 @@ impl Engine {
     }
 
     /// Renders for about `budget` towards a number of samples per pixel for each tile.
-    pub(super) fn step(&mut self, budget: Duration, goals: &[u32], precision: Precision) -> Result<(), GpuError> {
+    pub(super) fn step(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
-                match precision {
-                    Precision::Single => engine.step_towards(budget, goals),
-                    Precision::Double => engine.step_double_towards(budget, goals),
-                }
+                engine.step_towards(budget, goals);
                 Ok(())
             }
             Engine::Gpu(engine) => engine.step_towards(budget, goals),

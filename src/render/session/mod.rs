@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, choice};
+use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, choice};
 use super::error::SessionError;
 use super::frame::FilmId;
 use super::memory;
@@ -43,7 +43,6 @@ pub struct Session {
     keeps_fallback: bool,
     /// True if the engine failed at this render, which stays as it is.
     is_stuck: bool,
-    precision: Precision,
     denoised: Option<Distance>,
     /// Reason to keep guides for any document.
     guides_wanted: Option<&'static str>,
@@ -93,7 +92,6 @@ impl Session {
             workshop: None,
             keeps_fallback: false,
             is_stuck: false,
-            precision: Precision::default(),
             denoised: None,
             guides_wanted: None,
             memory_limit: memory::limit(),
@@ -150,12 +148,6 @@ impl Session {
     /// The engine in use, and why it was chosen.
     pub fn engine(&self) -> &EngineInfo {
         &self.info
-    }
-
-    /// Sets the CPU's shading precision from the next submission on; the GPU stays in f32.
-    pub fn set_precision(&mut self, precision: Precision) {
-        self.precision = precision;
-        self.reset();
     }
 
     /// Keeps guides from the next submission on, also without denoising, because layers may be requested. `why` is the
@@ -295,7 +287,7 @@ impl Session {
                 left = left.min(limit.saturating_sub(self.render_time));
             }
             let step_begun = Instant::now();
-            self.engine.step(left, &self.convergence.goals, self.precision)?;
+            self.engine.step(left, &self.convergence.goals)?;
             self.step_time += step_begun.elapsed();
             self.render_time = before + begun.elapsed();
             if self.engine.schedule().is_at_goal() || self.progress().is_done {

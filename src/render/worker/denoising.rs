@@ -181,7 +181,7 @@ impl Drop for Denoising {
 fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Responder<'_, Request, Outcome>) {
     let denoised = match caught(|| denoise(denoiser, &request)) {
         Ok(Err(LibraryError::Cancelled)) => return,
-        Ok(done) => done.map_err(|error| error.to_string()),
+        Ok(done) => done.map_err(crate::in_words),
         Err(panic) => Err(panic),
     };
     responder.publish(Outcome {

@@ -217,44 +217,21 @@ impl Pack {
         size_of_val(&self.words[..])
     }
 
-    /// Index of a user's map.
-    fn user_texture_index(&self, file: &Path, is_srgb: bool) -> Option<usize> {
-        let is_it = |user: &&PackedUserTexture| user.is_srgb == is_srgb && user.source.file == file;
-        self.user_textures.iter().find(is_it)?.index
-    }
-
-    fn is_translucent(&self, picture: usize) -> bool {
-        self.pictures[picture].is_translucent
-    }
-
-    /// Whether a slot's triangles have texture coordinates.
-    fn has_coordinates(&self, slot: usize) -> bool {
-        self.has_coordinates.get(slot).copied().unwrap_or(false)
-    }
-
     /// Texture uses per slot. A user's map replaces the model's, even if unreadable.
     fn uses(&self, model: &Model, assigned: &[TextureAssignment]) -> Vec<SlotUses> {
-        let is_translucent = |picture: usize| self.is_translucent(picture);
+        let is_translucent = |picture: usize| self.pictures[picture].is_translucent;
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
+            let (file, is_srgb) = assignment.picture();
+            let is_it = |user: &&PackedUserTexture| user.is_srgb == is_srgb && user.source.file == file;
+            let picture = self.user_textures.iter().find(is_it).and_then(|user| user.index);
+            let has_coordinates = self.has_coordinates.get(assignment.slot) == Some(&true);
+            let used = |picture| of_user_texture(assignment, picture, is_translucent(picture), has_coordinates);
             if let Some(slot) = uses.get_mut(assignment.slot) {
-                slot[assignment.target as usize] = self.use_of_user_texture(assignment);
+                slot[assignment.target as usize] = picture.map(used);
             }
         }
         uses
-    }
-
-    /// A use of a user's map; `None` if unreadable.
-    fn use_of_user_texture(&self, assigned: &TextureAssignment) -> Option<Use> {
-        let (file, is_srgb) = assigned.picture();
-        let picture = self.user_texture_index(&file, is_srgb)?;
-        let has_coordinates = self.has_coordinates(assigned.slot);
-        Some(of_user_texture(
-            assigned,
-            picture,
-            self.is_translucent(picture),
-            has_coordinates,
-        ))
     }
 
     /// Texture data for the same users' maps with any mapping.

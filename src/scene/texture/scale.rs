@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
-use crate::optics::vector::Vec3;
+use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::Texture;
 
 /// A channel of a texel, in [0, 1]; `place` counts channels from the first texel on.
@@ -15,81 +15,23 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
 }
 
 /// A number of a channel as texture maps store it.
-trait Code: Copy + PartialEq {
+trait Code: Copy + PartialEq + Into<usize> {
     const MOST: usize;
-    /// The number as an index.
-    fn index(self) -> usize;
-    /// The number nearest to a fraction in [0, 1].
-    fn nearest(fraction: f64) -> Self;
+    /// The number nearest to one within its range.
+    fn nearest(number: f64) -> Self;
 }
 
 impl Code for u8 {
     const MOST: usize = 255;
-    fn index(self) -> usize {
-        self.into()
-    }
-    fn nearest(fraction: f64) -> Self {
-        (255.0 * fraction).round().clamp(0.0, 255.0) as Self
+    fn nearest(number: f64) -> Self {
+        number.round() as Self
     }
 }
 
 impl Code for u16 {
     const MOST: usize = 65535;
-    fn index(self) -> usize {
-        self.into()
-    }
-    fn nearest(fraction: f64) -> Self {
-        (65535.0 * fraction).round().clamp(0.0, 65535.0) as Self
-    }
-}
-
-/// Conversion between codes and the values whose mean is taken: linear for colours.
-struct Scale<C> {
-    /// Value of each code.
-    values: Vec<f64>,
-    /// Code of the darkest value in each of equal intervals; empty if values are proportional to codes.
-    starts: Vec<C>,
-    /// Smallest value of each code but the first.
-    limits: Vec<f64>,
-}
-
-impl<C: Code> Scale<C> {
-    fn new(is_color: bool) -> Self {
-        let fraction = |code: usize| code as f64 / C::MOST as f64;
-        if !is_color {
-            return Self {
-                values: (0..=C::MOST).map(fraction).collect(),
-                starts: Vec::new(),
-                limits: Vec::new(),
-            };
-        }
-        let linear = |fraction: f64| linear_from_srgb(Vec3::<f64>::splat(fraction)).x;
-        let intervals = 16 * (C::MOST + 1);
-        let start = |place: usize| {
-            let value = place as f64 / intervals as f64;
-            C::nearest(srgb_from_linear(Vec3::<f64>::splat(value)).x)
-        };
-        Self {
-            values: (0..=C::MOST).map(|code| linear(fraction(code))).collect(),
-            starts: (0..=intervals).map(start).collect(),
-            limits: (0..C::MOST)
-                .map(|code| linear((code as f64 + 0.5) / C::MOST as f64))
-                .collect(),
-        }
-    }
-
-    fn value(&self, code: C) -> f64 {
-        self.values[code.index()]
-    }
-
-    /// The code nearest to a value in [0, 1].
-    fn code(&self, value: f64) -> C {
-        let Some(last) = self.starts.len().checked_sub(1) else {
-            return C::nearest(value);
-        };
-        let start = self.starts[((last as f64 * value) as usize).min(last)].index();
-        let above = self.limits[start..].iter().take_while(|limit| value >= **limit).count();
-        C::nearest((start + above) as f64 / C::MOST as f64)
+    fn nearest(number: f64) -> Self {
+        number.round() as Self
     }
 }
 
@@ -130,7 +72,14 @@ fn halved_codes<C: Code>(codes: &[C], size: [u32; 2], is_color: bool) -> Vec<C> 
     if codes.is_empty() {
         return Vec::new();
     }
-    let (colors, alphas) = (Scale::new(is_color), Scale::new(false));
+    let decoded = |code: usize| {
+        let fraction = code as f64 / C::MOST as f64;
+        match is_color {
+            true => linear_from_srgb(Vec3::splat(fraction)).x,
+            false => fraction,
+        }
+    };
+    let values: Vec<f64> = (0..=C::MOST).map(decoded).collect();
     let [width, height] = size.map(|side| side as usize);
     let [to_width, to_height] = half(size).map(|side| side as usize);
     let texels = codes.as_chunks::<4>().0;
@@ -140,16 +89,16 @@ fn halved_codes<C: Code>(codes: &[C], size: [u32; 2], is_color: bool) -> Vec<C> 
             span(place / to_width, height, to_height),
         );
         let of_row = |row: usize| &texels[row * width..][columns.clone()];
-        mean(|| rows.clone().flat_map(of_row), &colors, &alphas)
+        mean(|| rows.clone().flat_map(of_row), &values, is_color)
     };
     (0..to_width * to_height).flat_map(texel).collect()
 }
 
-/// Mean of some texels, of which there is one at least.
+/// Mean of some texels, of which there is one at least; `values` are the colours' by code.
 fn mean<'a, C: Code + 'a, I: Iterator<Item = &'a [C; 4]>>(
     texels: impl Fn() -> I,
-    colors: &Scale<C>,
-    alphas: &Scale<C>,
+    values: &[f64],
+    is_color: bool,
 ) -> [C; 4] {
     let mut others = texels();
     // Large maps of little content mostly have equal texels.
@@ -159,15 +108,18 @@ fn mean<'a, C: Code + 'a, I: Iterator<Item = &'a [C; 4]>>(
         return *first;
     }
     let (mut sums, mut count) = ([0.0; 4], 0.0);
-    for [r, g, b, a] in texels() {
-        let color = [*r, *g, *b].map(|code| colors.value(code));
-        sums.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
-        sums[3] += alphas.value(*a);
+    for texel in texels() {
+        let [r, g, b, a] = texel.map(Into::<usize>::into);
+        let of_texel = [values[r], values[g], values[b], a as f64 / C::MOST as f64];
+        sums.iter_mut().zip(of_texel).for_each(|(sum, value)| *sum += value);
         count += 1.0;
     }
     let [r, g, b, a] = sums.map(|sum| sum / count);
-    let [r, g, b] = [r, g, b].map(|value| colors.code(value));
-    [r, g, b, alphas.code(a)]
+    let mut color = vec3(r, g, b);
+    if is_color {
+        color = srgb_from_linear(color);
+    }
+    [color.x, color.y, color.z, a].map(|value| C::nearest(C::MOST as f64 * value))
 }
 
 /// A map halved until its sides are at most `side_max`, and the original size if it was larger.

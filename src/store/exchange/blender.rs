@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value as Json;
 
 use super::surface::{Surface, Takes};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+use super::{ExchangeError, Format, Subject, Written, carried, shown};
 
 /// Scripts for Blender 4 and later.
 pub struct Blender;
@@ -37,10 +37,6 @@ impl Format for Blender {
             reports.push(report);
         }
         Ok(Written::text(text, reports))
-    }
-
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        carried::in_comments(path)
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::surface::{Law, Surface, Takes};
 use super::xml::{Element, identifier, numbers};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+use super::{ExchangeError, Format, Subject, Written, carried, shown};
 use crate::document::MaterialSettings;
 use crate::optics::fresnel::Fresnel;
 
@@ -107,10 +107,6 @@ impl Format for Mitsuba {
         let scene = scene(bsdf.with("id", name.clone()), &name, surface.emission());
         let text = scene.document(Some(&carried::comment(material)));
         Ok(Written::text(text, vec![report]))
-    }
-
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        carried::in_comments(path)
     }
 }
 

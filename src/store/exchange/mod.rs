@@ -40,15 +40,12 @@ pub use self::snippet::Language;
 /// A format that materials are written in or read from.
 pub trait Format: Sync {
     /// The bytes of the file that `path` names.
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let _ = subject;
-        Err(ExchangeError::NotWritten { path: path.to_owned() })
-    }
+    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError>;
 
-    /// What a file holds.
+    /// What a file holds, where the format is read; as a rule the exact parameters in its comments.
     fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
         let _ = options;
-        Err(ExchangeError::NotRead { path: path.to_owned() })
+        carried::in_comments(path)
     }
 
     /// Whether its files are text, which fits a clipboard.
@@ -337,7 +334,11 @@ pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialS
 
 /// What a file holds.
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-    by_ending(path)?.format.read(path, options)
+    let registered = by_ending(path)?;
+    if !registered.is_read {
+        return Err(ExchangeError::NotRead { path: path.to_owned() });
+    }
+    registered.format.read(path, options)
 }
 
 /// A file that is made and not written yet, with what it loses.

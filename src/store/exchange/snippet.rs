@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried};
+use super::{ExchangeError, Format, Subject, Written, carried};
 use crate::document::MaterialSettings;
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::{Horizon, Lobe, stretch_from_anisotropy};
@@ -46,10 +46,6 @@ impl Format for Language {
             self.function(material),
             vec![MaterialReport::of(material, entries)],
         ))
-    }
-
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        carried::in_comments(path)
     }
 }
 

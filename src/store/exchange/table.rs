@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried};
+use super::{ExchangeError, Format, Subject, Written, carried};
 use crate::matching::lobe_of_material;
 use crate::optics::vector::vec3;
 
@@ -46,10 +46,6 @@ impl Format for Table {
             Entry::exact("the lobe's values at the table's directions"),
         ];
         Ok(Written::text(text, vec![MaterialReport::of(material, entries)]))
-    }
-
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        carried::in_comments(path)
     }
 }
 

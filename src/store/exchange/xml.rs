@@ -13,7 +13,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, String> {
     if text.split('<').any(|tag| attributes(tag) > ATTRIBUTES_MAX) {
         return Err(format!("an element has more than {ATTRIBUTES_MAX} attributes"));
     }
-    Document::parse(text).map_err(|error| error.to_string())
+    Document::parse(text).map_err(crate::in_words)
 }
 
 /// How often something is set equal to a text in quotes; in a tag that is how many attributes it has.

@@ -2,7 +2,7 @@
 //! amplitudes in f64.
 
 use super::fresnel::COSINES;
-use super::{HardCase, HardError, Stage};
+use super::{HardError, Stage};
 use crate::job::probe::FresnelQuestion;
 use crate::optics::fresnel::METALS;
 use crate::optics::thin_film::film_path;
@@ -11,37 +11,28 @@ const WEIGHTS: [f32; 3] = [0.0, 1e-6, 1.0];
 const THICKNESSES_UM: [f32; 6] = [0.0, 1e-6, 0.05, 0.3, 1.0, 10.0];
 const FILM_IORS: [f32; 5] = [1.0, 1.33, 1.5, 2.4, 3.0];
 
-pub(super) const CASES: &[HardCase] = &[
-    HardCase {
-        name: "film-over-glass",
-        group: "fresnel",
-        danger: "the two sides of a film are 0/0 at grazing angles, and its phase has dozens of turns",
-        made: "films of 0 to 10 µm, index 1 to 3, weights 0, 1e-6, 1, over indices 1, 1.33, 1.5 and 2.42, and from within them",
-        must: "the share reflected is that of complex amplitudes in f64",
-        naive: || {
+cases! {
+    "fresnel"
+    "film-over-glass"
+        "the two sides of a film are 0/0 at grazing angles, and its phase has dozens of turns"
+        "films of 0 to 10 µm, index 1 to 3, weights 0, 1e-6, 1, over indices 1, 1.33, 1.5 and 2.42, and from within them"
+        "the share reflected is that of complex amplitudes in f64"
+        || {
             let bad = over_glass().iter().filter(|q| !naive(q).is_finite()).count();
             format!("{bad} of {} are NaN", over_glass().len())
         },
-        measure: "error",
-        // The rounding of the thickest film's phase, 350 rad.
-        limit: 2e-4,
-        find: |stage| worst(stage, &over_glass()),
-    },
-    HardCase {
-        name: "film-over-metal",
-        group: "fresnel",
-        danger: "the amplitude behind the film is complex, and its root loses all digits of the smaller part",
-        made: "the same films over each of the measured metals",
-        must: "the share reflected is that of complex amplitudes in f64",
-        naive: || {
+        "error" // The rounding of the thickest film's phase, 350 rad.
+        2e-4, |stage| worst(stage, &over_glass());
+    "film-over-metal"
+        "the amplitude behind the film is complex, and its root loses all digits of the smaller part"
+        "the same films over each of the measured metals"
+        "the share reflected is that of complex amplitudes in f64"
+        || {
             let bad = over_metals().iter().filter(|q| !naive(q).is_finite()).count();
             format!("{bad} of {} are NaN", over_metals().len())
         },
-        measure: "error",
-        limit: 2e-4,
-        find: |stage| worst(stage, &over_metals()),
-    },
-];
+        "error" 2e-4, |stage| worst(stage, &over_metals());
+}
 
 /// Every film at every cosine over such media.
 fn films(model: u32, media: &[(f32, f32, f32)]) -> Vec<FresnelQuestion> {

@@ -1,6 +1,6 @@
 //! Hard cases of the Fresnel equations: cancellation, overflow, changes of form; against complex arithmetic in f64.
 
-use super::{HardCase, HardError, Stage};
+use super::{HardError, Stage};
 use crate::job::probe::FresnelQuestion;
 
 /// Cosines from grazing to head-on.
@@ -23,17 +23,14 @@ pub(super) const COSINES: [f32; 14] = [
 /// The largest error in the share that is reflected; four roundings of 1.
 const LIMIT: f64 = 2.5e-7;
 
-pub(super) const CASES: &[HardCase] = &[
-    HardCase {
-        name: "fresnel-grazing-and-normal",
-        group: "fresnel",
-        danger: "at grazing and at normal incidence numerators and denominators vanish together: 0/0",
-        made: "14 cosines from 0 to 1, glass, water and diamond, from both sides, and six metals",
-        must: "the share reflected is that of complex arithmetic in f64",
-        naive: || format!("{} at cosine 0, index 1", naive_dielectric(0.0, 1.0)),
-        measure: "error",
-        limit: LIMIT,
-        find: |stage| {
+cases! {
+    "fresnel"
+    "fresnel-grazing-and-normal"
+        "at grazing and at normal incidence numerators and denominators vanish together: 0/0"
+        "14 cosines from 0 to 1, glass, water and diamond, from both sides, and six metals"
+        "the share reflected is that of complex arithmetic in f64"
+        || format!("{} at cosine 0, index 1", naive_dielectric(0.0, 1.0)),
+        "error" LIMIT, |stage| {
             let dielectrics = [1.33_f32, 1.5, 2.42].into_iter().flat_map(|ior| [ior, 1.0 / ior]);
             let mut terms: Vec<_> = dielectrics.map(|ior| (0, ior, 0.0)).collect();
             for metal in crate::optics::fresnel::METALS {
@@ -41,25 +38,20 @@ pub(super) const CASES: &[HardCase] = &[
                 terms.extend(channels.map(|(eta, k)| (1, eta as f32, k as f32)));
             }
             worst(stage, &with_cosines(&terms))
-        },
-    },
-    HardCase {
-        name: "fresnel-total-reflection",
-        group: "fresnel",
-        danger: "just beyond the critical angle the square of the refracted cosine is below 0: NaN",
-        made: "from within glass, the critical cosine and its 40 neighbours in f32 on either side",
-        must: "the share is 1 beyond, that of f64 before, with nothing in between",
-        naive: || {
+        };
+    "fresnel-total-reflection"
+        "just beyond the critical angle the square of the refracted cosine is below 0: NaN"
+        "from within glass, the critical cosine and its 40 neighbours in f32 on either side"
+        "the share is 1 beyond, that of f64 before, with nothing in between"
+        || {
             let ior = 1.0 / 1.5;
             let bad = around_critical(ior)
                 .filter(|&c| !naive_dielectric(c, ior).is_finite())
                 .count();
             format!("{bad} of 81 are NaN")
         },
-        measure: "error",
-        // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
-        limit: 2e-3,
-        find: |stage| {
+        "error" // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
+        2e-3, |stage| {
             let question = |cosine| FresnelQuestion {
                 model: 0,
                 cosine,
@@ -68,15 +60,12 @@ pub(super) const CASES: &[HardCase] = &[
                 film: [0.0; 3],
             };
             worst(stage, &around_critical(1.0 / 1.5).map(question).collect::<Vec<_>>())
-        },
-    },
-    HardCase {
-        name: "fresnel-index-of-one",
-        group: "fresnel",
-        danger: "with both sides alike η² − 1 + cos² cancels: an invisible surface reflects",
-        made: "η = 1 and up to 1e-3 beside it, at every cosine",
-        must: "nothing is reflected by η = 1, and the share is that of f64 beside it",
-        naive: || {
+        };
+    "fresnel-index-of-one"
+        "with both sides alike η² − 1 + cos² cancels: an invisible surface reflects"
+        "η = 1 and up to 1e-3 beside it, at every cosine"
+        "nothing is reflected by η = 1, and the share is that of f64 beside it"
+        || {
             let error =
                 |(cosine, ior): (f32, f32)| (f64::from(naive_dielectric(cosine, ior)) - exact(cosine, ior, 0.0)).abs();
             let pairs = COSINES
@@ -87,20 +76,15 @@ pub(super) const CASES: &[HardCase] = &[
                 .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
             format!("{worst:.1e}")
         },
-        measure: "error",
-        limit: 1e-5,
-        find: |stage| {
+        "error" 1e-5, |stage| {
             let terms = NEARLY_ONE.map(|ior| (0, ior, 0.0));
             worst(stage, &with_cosines(&terms))
-        },
-    },
-    HardCase {
-        name: "fresnel-no-absorption",
-        group: "fresnel",
-        danger: "a conductor with k = 0 is a dielectric: √(… − …) of two equal numbers",
-        made: "conductors of k = 0, 1e-20 and 1e-7 with η from 0 to 20",
-        must: "the share reflected is that of complex arithmetic in f64",
-        naive: || {
+        };
+    "fresnel-no-absorption"
+        "a conductor with k = 0 is a dielectric: √(… − …) of two equal numbers"
+        "conductors of k = 0, 1e-20 and 1e-7 with η from 0 to 20"
+        "the share reflected is that of complex arithmetic in f64"
+        || {
             let error = |(c, eta, k): (f32, f32, f32)| (f64::from(naive_conductor(c, eta, k)) - exact(c, eta, k)).abs();
             let worst = conductors(&ETAS, &[0.0, 1e-20, 1e-7]).into_iter().map(error);
             format!(
@@ -108,28 +92,20 @@ pub(super) const CASES: &[HardCase] = &[
                 worst.fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
             )
         },
-        measure: "error",
-        limit: 1e-3,
-        find: |stage| worst(stage, &asked(&conductors(&ETAS, &[0.0, 1e-20, 1e-7]))),
-    },
-    HardCase {
-        name: "fresnel-huge-absorption",
-        group: "fresnel",
-        danger: "k² overflows f32 from k = 4e9 on: inf − inf is NaN",
-        made: "conductors of k = 20, 1e3, 1e6, 1e10 and 1e18 with η from 0 to 20",
-        must: "the share reflected is that of complex arithmetic in f64",
-        naive: || {
+        "error" 1e-3, |stage| worst(stage, &asked(&conductors(&ETAS, &[0.0, 1e-20, 1e-7])));
+    "fresnel-huge-absorption"
+        "k² overflows f32 from k = 4e9 on: inf − inf is NaN"
+        "conductors of k = 20, 1e3, 1e6, 1e10 and 1e18 with η from 0 to 20"
+        "the share reflected is that of complex arithmetic in f64"
+        || {
             let all = conductors(&ETAS, &HUGE);
             let bad = all
                 .iter()
                 .filter(|&&(c, eta, k)| !naive_conductor(c, eta, k).is_finite());
             format!("{} of {} are NaN", bad.count(), all.len())
         },
-        measure: "error",
-        limit: 1e-6,
-        find: |stage| worst(stage, &asked(&conductors(&ETAS, &HUGE))),
-    },
-];
+        "error" 1e-6, |stage| worst(stage, &asked(&conductors(&ETAS, &HUGE)));
+}
 
 const NEARLY_ONE: [f32; 9] = [
     1.0,

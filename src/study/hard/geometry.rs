@@ -10,7 +10,7 @@ use super::rays::{
     axis_rays, direction, edge_aim, edge_aims, leaks, leaving_rays, naive_leaks, naive_misses, ray, unit,
 };
 use super::stage::document;
-use super::{HardCase, HardError, Stage, over_zero};
+use super::{HardError, Stage, over_zero};
 use crate::document::Document;
 use crate::job::film::Film;
 use crate::optics::fresnel::Fresnel;
@@ -25,70 +25,52 @@ const SAME_PICTURE: f64 = 1e-3;
 /// The most that a pixel of the white furnace may be off.
 const WHITE: f64 = 5e-3;
 
-pub(super) const CASES: &[HardCase] = &[
-    HardCase {
-        name: "scene-scaled",
-        group: "geometry",
-        danger: "a ray offset of a fixed length swallows a model of 1e-6 and does nothing for one of 1e6",
-        made: "a teapot scaled by 1e-6, 1e-3, 1e3 and 1e6 through its node",
-        must: "the image of the unscaled one, numbers drawn alike: mean difference over mean",
-        naive: || format!("an offset of 1e-4 is {:.0} radii", 1e-4 / 1e-6),
-        measure: "error",
-        limit: SAME_PICTURE,
-        find: |stage| {
+cases! {
+    "geometry"
+    "scene-scaled"
+        "a ray offset of a fixed length swallows a model of 1e-6 and does nothing for one of 1e6"
+        "a teapot scaled by 1e-6, 1e-3, 1e3 and 1e6 through its node"
+        "the image of the unscaled one, numbers drawn alike: mean difference over mean"
+        || format!("an offset of 1e-4 is {:.0} radii", 1e-4 / 1e-6),
+        "error" SAME_PICTURE, |stage| {
             let scaled = [1e-6, 1e-3, 1e3, 1e6].map(|scale| json!({"scale": [scale, scale, scale]}));
             picture_difference(stage, &scaled)
-        },
-    },
-    HardCase {
-        name: "scene-moved",
-        group: "geometry",
-        danger: "f32 places 1e5 from the origin are 0.008 apart: the model crumbles",
-        made: "a teapot moved by 1e5 along each axis and along all through its node",
-        must: "the image of the unmoved one, numbers drawn alike: mean difference over mean",
-        naive: || {
+        };
+    "scene-moved"
+        "f32 places 1e5 from the origin are 0.008 apart: the model crumbles"
+        "a teapot moved by 1e5 along each axis and along all through its node"
+        "the image of the unmoved one, numbers drawn alike: mean difference over mean"
+        || {
             format!(
                 "vertices off by {:.1e}",
                 f64::from((1e5_f32 + 0.123_456).fract() - 0.123_456).abs()
             )
         },
-        measure: "error",
-        limit: SAME_PICTURE,
-        find: |stage| {
+        "error" SAME_PICTURE, |stage| {
             let far = 1e5;
             let places = [[far, 0.0, 0.0], [0.0, -far, 0.0], [0.0, 0.0, far], [far, far, far]];
             picture_difference(stage, &places.map(|place| json!({"translation": place})))
-        },
-    },
-    HardCase {
-        name: "scene-scaled-and-moved",
-        group: "geometry",
-        danger: "a model of 1e-6 at 1e5: places differ in their twelfth digit, f64 transforms leave four of them",
-        made: "a teapot scaled by 1e-6 or 1e6 and moved by 1e5 along all axes through its node",
-        must: "the image of the unscaled, unmoved one, numbers drawn alike: mean difference over mean",
-        naive: || format!("vertices off by {:.0} radii", 0.004 / 1e-6),
-        measure: "error",
-        limit: SAME_PICTURE,
-        find: |stage| {
+        };
+    "scene-scaled-and-moved"
+        "a model of 1e-6 at 1e5: places differ in their twelfth digit, f64 transforms leave four of them"
+        "a teapot scaled by 1e-6 or 1e6 and moved by 1e5 along all axes through its node"
+        "the image of the unscaled, unmoved one, numbers drawn alike: mean difference over mean"
+        || format!("vertices off by {:.0} radii", 0.004 / 1e-6),
+        "error" SAME_PICTURE, |stage| {
             let moved = [1e-6, 1e6].map(|s| json!({"scale": [s, s, s], "translation": [1e5, 1e5, 1e5]}));
             picture_difference(stage, &moved)
-        },
-    },
-    HardCase {
-        name: "triangles-of-a-millionth",
-        group: "geometry",
-        danger: "a triangle of 1e-6 beside one of 1: its area is rounding noise, rays slip through",
-        made: "a closed ball of radius 1e-6 in a scene of radius 1; rays from within, and from outside to its middle",
-        must: "no ray leaks out of it or misses it; those that do are counted",
-        naive: || {
+        };
+    "triangles-of-a-millionth"
+        "a triangle of 1e-6 beside one of 1: its area is rounding noise, rays slip through"
+        "a closed ball of radius 1e-6 in a scene of radius 1; rays from within, and from outside to its middle"
+        "no ray leaks out of it or misses it; those that do are counted"
+        || {
             format!(
                 "{} of 10 000 rays",
                 naive_leaks(&small_ball(), DVec3::new(0.4, 0.3, 0.2), 10_000)
             )
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let middle = DVec3::new(0.4, 0.3, 0.2);
             let mut mesh = small_ball();
             mesh.append(shapes::plane());
@@ -98,30 +80,22 @@ pub(super) const CASES: &[HardCase] = &[
             let outwards: Vec<_> = directions().map(|d| ray(middle, d)).collect();
             let inwards: Vec<_> = directions().map(|d| ray(middle + d * 0.7, -d)).collect();
             Ok(leaks(stage, &geometry, &outwards, 1e-5)? + leaks(stage, &geometry, &inwards, 0.700_01)?)
-        },
-    },
-    HardCase {
-        name: "needles",
-        group: "geometry",
-        danger: "triangles 1e5 times as long as wide: normals and areas cancel, rays slip through",
-        made: "a closed rod of 1 × 1e-5 × 1e-5, turned off the axes; rays from within",
-        must: "no ray leaks out; those that do are counted",
-        naive: || format!("{} of 10 000 rays", naive_leaks(&needle(), DVec3::ZERO, 10_000)),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "needles"
+        "triangles 1e5 times as long as wide: normals and areas cancel, rays slip through"
+        "a closed rod of 1 × 1e-5 × 1e-5, turned off the axes; rays from within"
+        "no ray leaks out; those that do are counted"
+        || format!("{} of 10 000 rays", naive_leaks(&needle(), DVec3::ZERO, 10_000)),
+        "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(needle()), false);
             let rays: Vec<_> = (0..stage.rays() / 10).map(|i| ray(Vec3::ZERO, direction(i))).collect();
             leaks(stage, &geometry, &rays, f32::INFINITY)
-        },
-    },
-    HardCase {
-        name: "closed-mesh-leaks-nothing",
-        group: "geometry",
-        danger: "a ray at a shared edge or vertex is outside both triangles by rounding: black or bright specks",
-        made: "a sphere of 18 000 triangles; a million rays (100 000 in a quick run) from within to its edges and vertices",
-        must: "no ray leaks out; those that do are counted",
-        naive: || {
+        };
+    "closed-mesh-leaks-nothing"
+        "a ray at a shared edge or vertex is outside both triangles by rounding: black or bright specks"
+        "a sphere of 18 000 triangles; a million rays (100 000 in a quick run) from within to its edges and vertices"
+        "no ray leaks out; those that do are counted"
+        || {
             let sphere = shapes::sphere(24, 12);
             let aims = edge_aims(&sphere, 10_000);
             format!(
@@ -129,9 +103,7 @@ pub(super) const CASES: &[HardCase] = &[
                 naive_misses(&sphere, DVec3::new(0.1, 0.2, 0.05), &aims)
             )
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let mesh = shapes::sphere(96, 96);
             let geometry = Geometry::build(&model(mesh), false);
             let rays: Vec<_> = (0..stage.rays())
@@ -141,33 +113,23 @@ pub(super) const CASES: &[HardCase] = &[
                 })
                 .collect();
             leaks(stage, &geometry, &rays, f32::INFINITY)
-        },
-    },
-    HardCase {
-        name: "rays-along-axes-and-in-planes",
-        group: "geometry",
-        danger: "a direction with zeros makes 0 · inf = NaN in the test against boxes; in a triangle's plane the distance \
-                 is 0/0",
-        made: "a cube of 6 × 8 × 8 squares; rays from places of its grid along axes (±0), diagonals, and in its planes",
-        must: "each leaves at the wall that it must; others are counted",
-        naive: || {
+        };
+    "rays-along-axes-and-in-planes"
+        "a direction with zeros makes 0 · inf = NaN in the test against boxes; in a triangle's plane the distance \
+                 is 0/0"
+        "a cube of 6 × 8 × 8 squares; rays from places of its grid along axes (±0), diagonals, and in its planes"
+        "each leaves at the wall that it must; others are counted"
+        || {
             let (origin, inverse) = (0.5_f32, 1.0 / 0.0_f32);
             format!("(0.5 − {origin}) · {inverse} = {}", (0.5 - origin) * inverse)
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| axis_rays(stage),
-    },
-    HardCase {
-        name: "seen-from-afar",
-        group: "geometry",
-        danger: "the places of boxes and triangles relative to a far eye round apart: triangles vanish from their boxes",
-        made: "a sphere seen from 30, 1e3 and 3e4 radii away; rays into its inner part, at edges and vertices too",
-        must: "no ray misses it; those that do are counted",
-        naive: || format!("relative places round by {:.0e} radii", 3e4 * f32::EPSILON),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| axis_rays(stage);
+    "seen-from-afar"
+        "the places of boxes and triangles relative to a far eye round apart: triangles vanish from their boxes"
+        "a sphere seen from 30, 1e3 and 3e4 radii away; rays into its inner part, at edges and vertices too"
+        "no ray misses it; those that do are counted"
+        || format!("relative places round by {:.0e} radii", 3e4 * f32::EPSILON),
+        "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(shapes::sphere(192, 96)), false);
             let mut rays = Vec::new();
             for i in 0..stage.rays() / 2 {
@@ -178,33 +140,23 @@ pub(super) const CASES: &[HardCase] = &[
                 rays.push(ray(aim + away * distance, -away));
             }
             leaks(stage, &geometry, &rays, f32::INFINITY)
-        },
-    },
-    HardCase {
-        name: "rays-leave-their-surface",
-        group: "geometry",
-        danger: "a place on a surface is rounded to beside it: a ray from there meets the surface that it left",
-        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1. Rays leave hits at all \
-               angles down to 1e-5 from the plane, outwards and inwards",
-        must: "outwards nothing is met, inwards the mesh is; others are counted",
-        naive: || {
+        };
+    "rays-leave-their-surface"
+        "a place on a surface is rounded to beside it: a ray from there meets the surface that it left"
+        "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1. Rays leave hits at all \
+               angles down to 1e-5 from the plane, outwards and inwards"
+        "outwards nothing is met, inwards the mesh is; others are counted"
+        || {
             let (place, offset) = (0.7_f32, 1e-8_f32);
             format!("0.7 + 1e-8 is 0.7: {}", place + offset == place)
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| leaving_rays(stage),
-    },
-    HardCase {
-        name: "deep-hierarchy",
-        group: "geometry",
-        danger: "a stack of fixed size drops boxes that do not fit: parts of the model vanish",
-        made: "20 000 triangles in spirals, each 0.968 times the last, down to 1e-8; those above 3e-6 are aimed at",
-        must: "each triangle is found by a ray at its middle, or one before it; those that are not are counted",
-        naive: || "boxes beyond the 32nd level dropped".to_owned(),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| leaving_rays(stage);
+    "deep-hierarchy"
+        "a stack of fixed size drops boxes that do not fit: parts of the model vanish"
+        "20 000 triangles in spirals, each 0.968 times the last, down to 1e-8; those above 3e-6 are aimed at"
+        "each triangle is found by a ray at its middle, or one before it; those that are not are counted"
+        || "boxes beyond the 32nd level dropped".to_owned(),
+        "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(spirals()), false);
             let rays: Vec<_> = (0..geometry.triangle_count())
                 .map(|triangle| geometry.corners(triangle).map(Vec3::from_array))
@@ -217,18 +169,13 @@ pub(super) const CASES: &[HardCase] = &[
                 })
                 .collect();
             leaks(stage, &geometry, &rays, 0.5001)
-        },
-    },
-    HardCase {
-        name: "zero-area-and-duplicates",
-        group: "geometry",
-        danger: "no normal, 0/0 in the weights; thousands of equal boxes take the builder for ever",
-        made: "a sphere whose triangles are there three times, with 1000 of no area; white furnace",
-        must: "the furnace is white: worst pixel",
-        naive: || format!("a normal of {}", over_zero(0.0)),
-        measure: "error",
-        limit: WHITE,
-        find: |stage| {
+        };
+    "zero-area-and-duplicates"
+        "no normal, 0/0 in the weights; thousands of equal boxes take the builder for ever"
+        "a sphere whose triangles are there three times, with 1000 of no area; white furnace"
+        "the furnace is white: worst pixel"
+        || format!("a normal of {}", over_zero(0.0)),
+        "error" WHITE, |stage| {
             let mut mesh = shapes::sphere(48, 24);
             let once = mesh.triangles.clone();
             for [a, b, c] in once {
@@ -242,19 +189,14 @@ pub(super) const CASES: &[HardCase] = &[
             }
             let model = Glb::of(&mesh, json!({})).write(stage, "duplicates.glb")?;
             furnace(stage, model)
-        },
-    },
-    HardCase {
-        name: "broken-normals-and-tangents",
-        group: "geometry",
-        danger: "zero, opposite, endless or missing normals and tangents: NaN frames, black patches",
-        made: "a sphere whose normals are by turns right, 0, opposite, NaN and 1e30 long, its tangents 0, NaN or along the \
-               normal; anisotropy 1; white furnace",
-        must: "the furnace is white: worst pixel",
-        naive: || format!("a frame of {}", (Vec3::ZERO / 0.0).x.to_string().to_lowercase()),
-        measure: "error",
-        limit: WHITE,
-        find: |stage| {
+        };
+    "broken-normals-and-tangents"
+        "zero, opposite, endless or missing normals and tangents: NaN frames, black patches"
+        "a sphere whose normals are by turns right, 0, opposite, NaN and 1e30 long, its tangents 0, NaN or along the \
+               normal; anisotropy 1; white furnace"
+        "the furnace is white: worst pixel"
+        || format!("a frame of {}", (Vec3::ZERO / 0.0).x.to_string().to_lowercase()),
+        "error" WHITE, |stage| {
             let mut mesh = shapes::sphere(32, 16);
             for (i, normal) in mesh.normals.iter_mut().enumerate() {
                 *normal = [*normal, Vec3::ZERO, -*normal, Vec3::NAN, *normal * 1e30][i % 5];
@@ -265,18 +207,13 @@ pub(super) const CASES: &[HardCase] = &[
             glb.tangents(0, &tangents);
             let model = glb.write(stage, "normals.glb")?;
             furnace(stage, model)
-        },
-    },
-    HardCase {
-        name: "non-manifold-and-coplanar",
-        group: "geometry",
-        danger: "faces in one place hide each other by turns; a fan of faces on one edge has no inside",
-        made: "eight squares in one plane, turned against each other, and seven on one edge; white furnace",
-        must: "the furnace is white: worst pixel",
-        naive: || "rays that start inside the other face: dark".to_owned(),
-        measure: "error",
-        limit: WHITE,
-        find: |stage| {
+        };
+    "non-manifold-and-coplanar"
+        "faces in one place hide each other by turns; a fan of faces on one edge has no inside"
+        "eight squares in one plane, turned against each other, and seven on one edge; white furnace"
+        "the furnace is white: worst pixel"
+        || "rays that start inside the other face: dark".to_owned(),
+        "error" WHITE, |stage| {
             let mut mesh = Mesh::default();
             for i in 0..8 {
                 let (sin, cos) = (f64::from(i) * 0.4).sin_cos();
@@ -291,18 +228,13 @@ pub(super) const CASES: &[HardCase] = &[
             }
             let model = Glb::of(&mesh, json!({})).write(stage, "coplanar.glb")?;
             furnace(stage, model)
-        },
-    },
-    HardCase {
-        name: "ten-glasses-in-each-other",
-        group: "geometry",
-        danger: "rays caught between surfaces that nearly touch, offsets into the next glass, paths of 64 bounces cut off",
-        made: "ten instances of a clear sphere of index 1.1 inside each other, each 0.95 of the last; white furnace",
-        must: "the mean of the image is white",
-        naive: || "0.96²⁰ = 0.44 where reflected light is dropped".to_owned(),
-        measure: "error",
-        limit: WHITE,
-        find: |stage| {
+        };
+    "ten-glasses-in-each-other"
+        "rays caught between surfaces that nearly touch, offsets into the next glass, paths of 64 bounces cut off"
+        "ten instances of a clear sphere of index 1.1 inside each other, each 0.95 of the last; white furnace"
+        "the mean of the image is white"
+        || "0.96²⁰ = 0.44 where reflected light is dropped".to_owned(),
+        "error" WHITE, |stage| {
             let mut glb = Glb::default();
             let ball = glb.mesh(&shapes::sphere(64, 32), true);
             for i in 0..10 {
@@ -323,9 +255,8 @@ pub(super) const CASES: &[HardCase] = &[
             let image = film.image();
             let mean = image.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / image.pixels.len() as f64;
             Ok((mean - 1.0).abs() + film.dropped() as f64)
-        },
-    },
-];
+        };
+}
 
 /// Relative mean difference of images of the same model at other nodes.
 fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<f64, HardError> {

@@ -1,6 +1,6 @@
 //! Layers at the ends of their parameters, in f32 against f64.
 
-use super::{HardCase, HardError, Stage};
+use super::{HardError, Stage};
 use crate::compile::compile;
 use crate::cpu::probe::probe_material;
 use crate::document::{CoatLobe, MaterialSettings};
@@ -11,22 +11,20 @@ use crate::optics::vector::{Vec3, vec3};
 /// Cosines of views and lights.
 const COSINES: [f32; 5] = [1.0, 0.7, 0.2, 1e-3, 1e-6];
 
-pub(super) const CASES: &[HardCase] = &[HardCase {
-    name: "coat-at-its-ends",
-    group: "lobe",
-    danger: "a coat that reflects all over a white base is 0/0, and its way at index 1 has no end at the horizon",
-    made: "coats of weight 0, 1e-6 and 1, roughness 0 and 1, index 1 and 3, white to black. Metal, gloss and glass below; \
-           cosines from 1 to 1e-6",
-    must: "every value is finite and not negative, and that of f64",
-    naive: || {
+cases! {
+    "lobe"
+    "coat-at-its-ends"
+        "a coat that reflects all over a white base is 0/0, and its way at index 1 has no end at the horizon"
+        "coats of weight 0, 1e-6 and 1, roughness 0 and 1, index 1 and 3, white to black. Metal, gloss and glass below; \
+           cosines from 1 to 1e-6"
+        "every value is finite and not negative, and that of f64"
+        || {
         let (inner, base) = (1.0_f32, 1.0_f32);
         let darkened = (1.0 - inner) / (1.0 - inner * base);
         format!("{darkened}")
     },
-    measure: "error",
-    limit: ERROR_BOUND,
-    find: largest_error,
-}];
+        "error" ERROR_BOUND, largest_error;
+}
 
 /// Every coat over every base.
 fn coated() -> Vec<MaterialSettings> {

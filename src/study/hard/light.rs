@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::glb::Glb;
 use super::stage::document;
-use super::{HardCase, HardError, Stage, over_zero};
+use super::{HardError, Stage, over_zero};
 use crate::document::{AreaLight, Background, Document, MaterialSettings};
 use crate::job::Settings;
 use crate::optics::random::{path_state, random_pair};
@@ -16,14 +16,13 @@ use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
 use crate::scene::{Geometry, ModelSource, shapes};
 
-pub(super) const CASES: &[HardCase] = &[
-    HardCase {
-        name: "sun-in-one-pixel",
-        group: "light",
-        danger: "a sun of 1e6 in one pixel beside a sky of 1e-2: found once in 10 000 samples, a speck 1e4 times too bright",
-        made: "a white plane under a map of 64 × 32 with one such pixel, 45° up",
-        must: "the mean radiance is the integral in f64: difference in standard deviations, and 1e-4 for roundings",
-        naive: || {
+cases! {
+    "light"
+    "sun-in-one-pixel"
+        "a sun of 1e6 in one pixel beside a sky of 1e-2: found once in 10 000 samples, a speck 1e4 times too bright"
+        "a white plane under a map of 64 × 32 with one such pixel, 45° up"
+        "the mean radiance is the integral in f64: difference in standard deviations, and 1e-4 for roundings"
+        || {
             // Sampling the lobe alone: the variance of a texel of 0.005 steradians that is 1e8 times as bright.
             let share = 0.0068_f64 * 0.7 / PI;
             format!(
@@ -31,9 +30,7 @@ pub(super) const CASES: &[HardCase] = &[
                 ((1.0 - share) / share / 64.0).sqrt()
             )
         },
-        measure: "sigma",
-        limit: 4.0,
-        find: |stage| {
+        "sigma" 4.0, |stage| {
             let sky = |x, y| if (x, y) == (40, 8) { [1e6; 3] } else { [1e-2; 3] };
             let light = stage.environment("sun.exr", [64, 32], sky)?;
             let expected = irradiance(&stage.load_environment(&light)?) / PI;
@@ -42,34 +39,24 @@ pub(super) const CASES: &[HardCase] = &[
             let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;
             let variance = film.variance_of_mean().iter().sum::<f64>() / (pixels.len() as f64).powi(2);
             Ok((mean - expected).abs() / (variance + (1e-4 * expected).powi(2)).sqrt() + film.dropped() as f64)
-        },
-    },
-    HardCase {
-        name: "black-environment",
-        group: "light",
-        danger: "a density of 0/0: NaN for every sample of the light",
-        made: "a sphere under a map of zeros",
-        must: "black, nothing dropped: largest pixel and samples dropped",
-        naive: || over_zero(0.0),
-        measure: "error",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "black-environment"
+        "a density of 0/0: NaN for every sample of the light"
+        "a sphere under a map of zeros"
+        "black, nothing dropped: largest pixel and samples dropped"
+        || over_zero(0.0),
+        "error" 0.0, |stage| {
             let light = stage.environment("black.exr", [16, 8], |_, _| [0.0; 3])?;
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 4))?;
             let largest = film.colors().map(|c| c[0].abs().max(c[1].abs()).max(c[2].abs()));
             Ok(largest.fold(0.0, f64::max) + film.dropped() as f64)
-        },
-    },
-    HardCase {
-        name: "one-pixel-environment",
-        group: "light",
-        danger: "neighbours of the only texel lie outside: the look-up reads beyond the map",
-        made: "a white furnace of 1 × 1 texels, coloured; a sphere that reflects all",
-        must: "that colour everywhere: worst relative error of a pixel",
-        naive: || "reads texel −1".to_owned(),
-        measure: "error",
-        limit: 1e-4,
-        find: |stage| {
+        };
+    "one-pixel-environment"
+        "neighbours of the only texel lie outside: the look-up reads beyond the map"
+        "a white furnace of 1 × 1 texels, coloured; a sphere that reflects all"
+        "that colour everywhere: worst relative error of a pixel"
+        || "reads texel −1".to_owned(),
+        "error" 1e-4, |stage| {
             let color = [0.5, 0.25, 0.125];
             let light = stage.environment("one.exr", [1, 1], |_, _| color)?;
             let mut document = document(ModelSource::Sphere, light, 16, 4);
@@ -81,18 +68,13 @@ pub(super) const CASES: &[HardCase] = &[
                     .fold(0.0, f64::max)
             };
             Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
-        },
-    },
-    HardCase {
-        name: "poles-and-seam",
-        group: "light",
-        danger: "at the poles the azimuth is atan2(0, 0), at the seam −1e-9 turns round to a whole one: beyond the map",
-        made: "a map of 64 × 32 random texels seen straight up, straight down and along the seam",
-        must: "each pixel is the look-up in f64 in the same direction: worst relative error",
-        naive: || format!("column {} of 64", (64.0 * (1.0 + -1e-9_f32)) as u32),
-        measure: "error",
-        limit: 1e-3,
-        find: |stage| {
+        };
+    "poles-and-seam"
+        "at the poles the azimuth is atan2(0, 0), at the seam −1e-9 turns round to a whole one: beyond the map"
+        "a map of 64 × 32 random texels seen straight up, straight down and along the seam"
+        "each pixel is the look-up in f64 in the same direction: worst relative error"
+        || format!("column {} of 64", (64.0 * (1.0 + -1e-9_f32)) as u32),
+        "error" 1e-3, |stage| {
             let noise = |x: u32, y: u32| {
                 let bits = crate::optics::random::hash_bits(x + 64 * y);
                 [0, 10, 20].map(|shift| 0.1 + ((bits >> shift) & 0x3ff) as f32 / 1023.0)
@@ -111,18 +93,13 @@ pub(super) const CASES: &[HardCase] = &[
                 worst = worst.max(background_error(stage, &document, &environment)?);
             }
             Ok(worst)
-        },
-    },
-    HardCase {
-        name: "no-radiance-in-a-file",
-        group: "light",
-        danger: "NaN, infinity or a negative number in a file spreads over everything that it lights",
-        made: "an .exr with 3 values that are NaN, 2 infinite and 4 negative; a sphere under it",
-        must: "each is replaced and reported, the image is clean: what is not reported or dropped is counted",
-        naive: || format!("a mean of {}", (f32::NAN + 1.0).to_string().to_lowercase()),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "no-radiance-in-a-file"
+        "NaN, infinity or a negative number in a file spreads over everything that it lights"
+        "an .exr with 3 values that are NaN, 2 infinite and 4 negative; a sphere under it"
+        "each is replaced and reported, the image is clean: what is not reported or dropped is counted"
+        || format!("a mean of {}", (f32::NAN + 1.0).to_string().to_lowercase()),
+        "count" 0.0, |stage| {
             let odd = |x: u32, y: u32| match (x, y) {
                 (0..3, 0) => [f32::NAN, 1.0, 1.0],
                 (3..5, 3) => [1.0, f32::INFINITY, 1.0],
@@ -138,36 +115,26 @@ pub(super) const CASES: &[HardCase] = &[
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 8))?;
             let unsound = film.colors().flatten().filter(|x| !(x.is_finite() && *x >= 0.0));
             Ok((missing.count() + unsound.count()) as f64 + film.dropped() as f64)
-        },
-    },
-    HardCase {
-        name: "radiance-above-half",
-        group: "light",
-        danger: "half floats end at 65 504: brighter light is infinite, and infinity times 0 is NaN",
-        made: "a map of 1e6 everywhere, seen itself and in a sphere that reflects all",
-        must: "1e6 everywhere: worst relative error of a pixel",
-        naive: || format!("{} as a half float", half::f16::from_f32(1e6)),
-        measure: "error",
-        limit: 1e-4,
-        find: |stage| {
+        };
+    "radiance-above-half"
+        "half floats end at 65 504: brighter light is infinite, and infinity times 0 is NaN"
+        "a map of 1e6 everywhere, seen itself and in a sphere that reflects all"
+        "1e6 everywhere: worst relative error of a pixel"
+        || format!("{} as a half float", half::f16::from_f32(1e6)),
+        "error" 1e-4, |stage| {
             let light = stage.environment("bright.exr", [16, 8], |_, _| [1e6; 3])?;
             let mut document = document(ModelSource::Sphere, light, 16, 4);
             document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
             let film = stage.film(&document)?;
             let off = |pixel: &[f32; 4]| f64::from((pixel[1] / 1e6 - 1.0).abs());
             Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
-        },
-    },
-    HardCase {
-        name: "shadow-terminator",
-        group: "light",
-        danger: "the triangles of a coarse smooth ball cut off light that still shines on the ball: black triangles",
-        made: "a ball of 6 × 12 segments with smooth normals under a sun from the side",
-        must: "no place is darker than half of what its normal implies, but for the last tenth: pixels that are",
-        naive: || "below the horizon of the triangle there is no light".to_owned(),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "shadow-terminator"
+        "the triangles of a coarse smooth ball cut off light that still shines on the ball: black triangles"
+        "a ball of 6 × 12 segments with smooth normals under a sun from the side"
+        "no place is darker than half of what its normal implies, but for the last tenth: pixels that are"
+        || "below the horizon of the triangle there is no light".to_owned(),
+        "count" 0.0, |stage| {
             let ball = Glb::of(&shapes::sphere(12, 6), json!({})).write(stage, "ball.glb")?;
             let mut document = document(ball, EnvironmentSource::Furnace, 64, 64);
             document.lighting.strength = 0.0;
@@ -190,9 +157,8 @@ pub(super) const CASES: &[HardCase] = &[
                 cosine.is_some_and(|cosine| film.luminance()[*pixel] < 0.5 * 0.8 * 3.0 / PI * cosine)
             });
             Ok(dark.count() as f64 + film.dropped() as f64)
-        },
-    },
-];
+        };
+}
 
 /// Smallest cosine between a direction and the smooth normals within a pixel, if above a tenth and the pixel shows only the
 /// model.

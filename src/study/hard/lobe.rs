@@ -1,7 +1,7 @@
 //! Hard cases of lobes: extremes of roughness, random numbers, curves, anisotropy, horizon, and densities with vanishing
 //! terms.
 
-use super::{HardCase, HardError, Stage};
+use super::{HardError, Stage};
 use crate::document::CustomCurve;
 use crate::job::probe::{LobeAnswer, LobeQuestion, ProbeScene};
 use crate::optics::curve::Curve;
@@ -35,29 +35,23 @@ const LENGTH_ERROR: f32 = 1e-5;
 /// A number in the interior of every range.
 const ANY_XI: [f32; 3] = [0.37, 0.61, 0.53];
 
-pub(super) const CASES: &[HardCase] = &[
-    HardCase {
-        name: "roughness-at-its-ends",
-        group: "lobe",
-        danger: "R → 0: the density goes to infinity; R → 1: k → 0 is divided by",
-        made: "R = 0, 1e-7, 1e-4, 1e-3 … 1 − 1e-4, 1 − 1e-7, 1, every lobe, curve and horizon, five views",
-        must: "unit directions, finite weights and densities, none negative; answers that are not are counted",
-        naive: || {
+cases! {
+    "lobe"
+    "roughness-at-its-ends"
+        "R → 0: the density goes to infinity; R → 1: k → 0 is divided by"
+        "R = 0, 1e-7, 1e-4, 1e-3 … 1 − 1e-4, 1 − 1e-7, 1, every lobe, curve and horizon, five views"
+        "unit directions, finite weights and densities, none negative; answers that are not are counted"
+        || {
             let naive = |r: f32| naive_density(r, vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0));
             let bad = ROUGHNESS.iter().filter(|&&r| !naive(r).is_finite()).count();
             format!("{bad} of {} densities at r are not finite", ROUGHNESS.len())
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| count_broken(stage, &grid(&shapes(), &ROUGHNESS, &VIEW_ANGLES_DEG, &[ANY_XI])),
-    },
-    HardCase {
-        name: "random-numbers-at-their-ends",
-        group: "lobe",
-        danger: "ξ = 0 and 1 − 2⁻²⁴ come up sixty times a second: √ of −0, ln 0, 0/0",
-        made: "each of three numbers 0, 2⁻²⁴, 2⁻³² or 1 − 2⁻²⁴, every lobe and curve, R at 0.03, 0.3, 0.97, 1",
-        must: "unit directions, finite weights and densities, none negative; answers that are not are counted",
-        naive: || {
+        "count" 0.0, |stage| count_broken(stage, &grid(&shapes(), &ROUGHNESS, &VIEW_ANGLES_DEG, &[ANY_XI]));
+    "random-numbers-at-their-ends"
+        "ξ = 0 and 1 − 2⁻²⁴ come up sixty times a second: √ of −0, ln 0, 0/0"
+        "each of three numbers 0, 2⁻²⁴, 2⁻³² or 1 − 2⁻²⁴, every lobe and curve, R at 0.03, 0.3, 0.97, 1"
+        "unit directions, finite weights and densities, none negative; answers that are not are counted"
+        || {
             let all = xi_ends();
             let bad = all
                 .iter()
@@ -65,30 +59,23 @@ pub(super) const CASES: &[HardCase] = &[
                 .count();
             format!("{bad} of {} directions are NaN at R = 1", all.len())
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             count_broken(
                 stage,
                 &grid(&shapes(), &[0.03, 0.3, 0.97, 1.0], &[0.0, 60.0, 89.99], &xi_ends()),
             )
-        },
-    },
-    HardCase {
-        name: "nothing-left-to-normalise",
-        group: "lobe",
-        danger: "R = 1 with D = 0 or V = −n: w = 0, and 0/0 is NaN in the image for ever",
-        made: "R = 1 and 1 − 1e-7, D = 0, V = n and V = −n to the bit (n along the axis of the sphere's map)",
-        must: "unit directions with finite weight; others are counted",
-        naive: || {
+        };
+    "nothing-left-to-normalise"
+        "R = 1 with D = 0 or V = −n: w = 0, and 0/0 is NaN in the image for ever"
+        "R = 1 and 1 − 1e-7, D = 0, V = n and V = −n to the bit (n along the axis of the sphere's map)"
+        "unit directions with finite weight; others are counted"
+        || {
             let bad = degenerate_xi()
                 .filter(|&xi| !naive_sample(1.0, xi).length().is_finite())
                 .count();
             format!("{bad} of {} directions are NaN", degenerate_xi().count())
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for &curve in Curve::ALL {
                 for roughness in [1.0, 1.0 - 1.2e-7] {
@@ -106,21 +93,16 @@ pub(super) const CASES: &[HardCase] = &[
                 }
             }
             count_broken(stage, &questions)
-        },
-    },
-    HardCase {
-        name: "long-tail-to-its-end",
-        group: "lobe",
-        danger: "−ln(1 − √ξ) at ξ → 1: √ξ rounds to 1, the distance to infinity, the direction to NaN",
-        made: "the long tail at the last 64 numbers below 1, five roughnesses, four views",
-        must: "unit directions with finite weight and density; others are counted",
-        naive: || {
+        };
+    "long-tail-to-its-end"
+        "−ln(1 − √ξ) at ξ → 1: √ξ rounds to 1, the distance to infinity, the direction to NaN"
+        "the long tail at the last 64 numbers below 1, five roughnesses, four views"
+        "unit directions with finite weight and density; others are counted"
+        || {
             let bad = last_numbers().filter(|&xi| !naive_long_tail(xi).is_finite()).count();
             format!("{bad} of 64 distances are infinite")
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let ends: Vec<_> = last_numbers().map(|xi| [0.37, 0.61, xi]).collect();
             let tail = [
                 (Lobe::Geometric, Curve::LongTail, 0.0),
@@ -130,18 +112,13 @@ pub(super) const CASES: &[HardCase] = &[
                 stage,
                 &grid(&tail, &[1e-3, 0.03, 0.3, 0.97, 1.0], &[0.0, 60.0, 85.0, 90.0], &ends),
             )
-        },
-    },
-    HardCase {
-        name: "curves-flat-and-steep",
-        group: "lobe",
-        danger: "a flat curve has infinite density, a steep one next to none: x/0 in the density, no interval to find",
-        made: "curves drawn by hand: flat then steep, nearly steps, a late jump, the shortest and the longest",
-        must: "unit directions, finite weights and densities, none negative; answers that are not are counted",
-        naive: || "1/0 in the flat interval".to_owned(),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "curves-flat-and-steep"
+        "a flat curve has infinite density, a steep one next to none: x/0 in the density, no interval to find"
+        "curves drawn by hand: flat then steep, nearly steps, a late jump, the shortest and the longest"
+        "unit directions, finite weights and densities, none negative; answers that are not are counted"
+        || "1/0 in the flat interval".to_owned(),
+        "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for which in 0..custom_curves().len() as u32 {
                 let custom = [
@@ -156,18 +133,13 @@ pub(super) const CASES: &[HardCase] = &[
                 }));
             }
             count_broken(stage, &questions)
-        },
-    },
-    HardCase {
-        name: "anisotropy-at-its-ends",
-        group: "lobe",
-        danger: "the full stretch makes one width 19 times the other: squares of their ratio cancel in f32",
-        made: "anisotropy −1, −0.999, 0.999 and 1, every lobe that stretches, R at its ends, five views",
-        must: "unit directions, finite weights and densities, none negative; answers that are not are counted",
-        naive: || "√((1 + 1)/(1 − 1)) is infinite".to_owned(),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "anisotropy-at-its-ends"
+        "the full stretch makes one width 19 times the other: squares of their ratio cancel in f32"
+        "anisotropy −1, −0.999, 0.999 and 1, every lobe that stretches, R at its ends, five views"
+        "unit directions, finite weights and densities, none negative; answers that are not are counted"
+        || "√((1 + 1)/(1 − 1)) is infinite".to_owned(),
+        "count" 0.0, |stage| {
             let stretched: Vec<_> = shapes()
                 .into_iter()
                 .filter(|(lobe, _, anisotropy)| lobe.is_anisotropic() && *anisotropy == 0.0)
@@ -177,18 +149,13 @@ pub(super) const CASES: &[HardCase] = &[
                 stage,
                 &grid(&stretched, &ROUGHNESS, &VIEW_ANGLES_DEG, &[ANY_XI, [0.0; 3]]),
             )
-        },
-    },
-    HardCase {
-        name: "mirror-direction-at-the-horizon",
-        group: "lobe",
-        danger: "r·n → 0: half of the lobe is below the surface, 1/cosθ is infinite",
-        made: "views 0, 1e-20, 1e-7 and 1e-4 above the horizon, lit from there too; every lobe, R at its ends",
-        must: "unit directions on the side they belong to, finite weights and densities; others are counted",
-        naive: || format!("1/cosθ is {} at the horizon", 1.0 / 0.0_f32),
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        };
+    "mirror-direction-at-the-horizon"
+        "r·n → 0: half of the lobe is below the surface, 1/cosθ is infinite"
+        "views 0, 1e-20, 1e-7 and 1e-4 above the horizon, lit from there too; every lobe, R at its ends"
+        "unit directions on the side they belong to, finite weights and densities; others are counted"
+        || format!("1/cosθ is {} at the horizon", 1.0 / 0.0_f32),
+        "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for height in [0.0, 1e-20, 1e-7, 1e-4_f32] {
                 let level = |x: f32| vec3(x, 0.0, height).normalize();
@@ -202,22 +169,17 @@ pub(super) const CASES: &[HardCase] = &[
                 }));
             }
             count_broken(stage, &questions)
-        },
-    },
-    HardCase {
-        name: "view-below-the-shading-normal",
-        group: "lobe",
-        danger: "a smooth mesh's normal leans away from the viewer: negative cosines, energy out of nothing",
-        made: "interpolated normals 90° to 180° from the view, bent back as for images; every lobe, R at its ends",
-        must: "unit directions above the true surface, finite weights and densities; others are counted",
-        naive: || {
+        };
+    "view-below-the-shading-normal"
+        "a smooth mesh's normal leans away from the viewer: negative cosines, energy out of nothing"
+        "interpolated normals 90° to 180° from the view, bent back as for images; every lobe, R at its ends"
+        "unit directions above the true surface, finite weights and densities; others are counted"
+        || {
             let wo = vec3(-0.995, 0.0, 0.1_f32).normalize();
             let leaning = vec3(0.5, 0.0, 0.87_f32).normalize();
             format!("cosine {:.2} of the view", leaning.dot(wo))
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let wo = vec3(-0.995, 0.0, 0.1_f32).normalize();
             let mut questions = Vec::new();
             for lean_deg in [10.0, 30.0, 60.0, 89.0_f32] {
@@ -235,33 +197,27 @@ pub(super) const CASES: &[HardCase] = &[
                 );
             }
             count_broken(stage, &questions)
-        },
-    },
-    HardCase {
-        name: "density-at-its-singular-places",
-        group: "lobe",
-        danger: "at r, at the silhouette and where n·ω, A, Δ or k vanish, the closed form is 0/0 or √ of less than 0",
-        made: "directions at r and 1e-7 … 1e-3 beside it, on the silhouette (found by halving) and 3e-7 beside it, at \
-               the horizon, along ±n and ±view; every lobe, curve and roughness",
-        must: "finite values and densities, none negative; others are counted",
-        naive: || {
+        };
+    "density-at-its-singular-places"
+        "at r, at the silhouette and where n·ω, A, Δ or k vanish, the closed form is 0/0 or √ of less than 0"
+        "directions at r and 1e-7 … 1e-3 beside it, on the silhouette (found by halving) and 3e-7 beside it, at \
+               the horizon, along ±n and ±view; every lobe, curve and roughness"
+        "finite values and densities, none negative; others are counted"
+        || {
             let r = vec3(0.6, 0.0, 0.8_f32);
             let values = [0.3, 0.7, 1.0].map(|roughness| naive_density(roughness, r, r));
             let bad = values.into_iter().filter(|value| !value.is_finite()).count();
             format!("{bad} of 3 densities at r are not finite")
         },
-        measure: "count",
-        limit: 0.0,
-        find: |stage| {
+        "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for question in grid(&shapes(), &ROUGHNESS, &[0.0, 45.0, 80.0, 89.99], &[ANY_XI]) {
                 let directions = singular_directions(&question);
                 questions.extend(directions.into_iter().map(|wi| LobeQuestion { wi, ..question }));
             }
             count_broken(stage, &questions)
-        },
-    },
-];
+        };
+}
 
 fn shape(lobe: Lobe, curve: Curve, roughness: f32, anisotropy: f32, horizon: Horizon) -> LobeShape<'static, f32> {
     LobeShape {

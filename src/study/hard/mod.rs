@@ -1,6 +1,24 @@
 //! Hard cases: situations where naive code fails, as data. Each states the failure, the set-up and the requirement.
 //! `glossmith check --hard`, the editor and the tests run them.
 
+/// The cases of a group, each by name, danger, how it is made, what must hold, the naive form, measure, limit, and what finds
+/// the value; see [`HardCase`].
+macro_rules! cases {
+    ($group:literal $($name:literal $danger:literal $made:literal $must:literal $naive:expr, $measure:literal $limit:expr, $find:expr;)*) => {
+        pub(super) const CASES: &[$crate::study::hard::HardCase] = &[$($crate::study::hard::HardCase {
+            name: $name,
+            group: $group,
+            danger: $danger,
+            made: $made,
+            must: $must,
+            naive: $naive,
+            measure: $measure,
+            limit: $limit,
+            find: $find,
+        }),*];
+    };
+}
+
 mod against_f64;
 mod film;
 mod fresnel;

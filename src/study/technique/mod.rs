@@ -48,8 +48,6 @@ pub enum Setting {
     Denoise(Denoise),
     /// An effect is removed, or its code runs whether it is needed or not.
     Effect(EffectId, Switch),
-    /// Shading in f64, on the CPU.
-    Double,
 }
 
 /// Settings that are tried together.
@@ -77,86 +75,46 @@ impl Group {
     }
 }
 
-pub static GROUPS: &[Group] = &[
-    Group {
-        name: "strategy",
-        label: "Light sampling",
-        help: "By the lobe, by the light, or by both; all converge to the same image.",
-        members: |_| Strategy::ALL.iter().map(|s| Setting::Strategy(*s)).collect(),
-    },
-    Group {
-        name: "sequence",
-        label: "Random numbers",
-        help: "Sobol sequence or uniform random numbers; both converge to the same image.",
-        members: |_| Sequence::ALL.iter().map(|s| Setting::Sequence(*s)).collect(),
-    },
-    Group {
-        name: "adaptive",
-        label: "Adaptive sampling",
-        help: "Samples where the error is, or evenly; both converge to the same image.",
-        members: |_| [true, false].map(Setting::Adaptive).to_vec(),
-    },
-    Group {
-        name: "denoise",
-        label: "Denoising",
-        help: "Raw, or denoised in each available way; the remaining bias is measured.",
-        members: |_| Denoise::ALL.iter().map(|how| Setting::Denoise(*how)).collect(),
-    },
-    Group {
-        name: "bounces",
-        label: "Bounces",
-        help: "Longest path, from 1 to 16 reflections.",
-        members: |_| BOUNCES.map(Setting::Bounces).to_vec(),
-    },
-    Group {
-        name: "fresnel",
-        label: "Fresnel term",
-        help: "The exact equations or Schlick's approximation, equal along the normal.",
-        members: |_| [true, false].map(Setting::ExactFresnel).to_vec(),
-    },
-    Group {
-        name: "lobe",
-        label: "Lobes",
-        help: "Each reflecting lobe with the roughness at which it looks most like the material's own.",
-        members: |_| {
+macro_rules! groups {
+    ($($name:literal $label:literal $help:literal $members:expr;)*) => {
+        pub static GROUPS: &[Group] = &[$(Group { name: $name, label: $label, help: $help, members: $members }),*];
+    };
+}
+
+groups! {
+    "strategy" "Light sampling" "By the lobe, by the light, or by both; all converge to the same image."
+        |_| Strategy::ALL.iter().map(|s| Setting::Strategy(*s)).collect();
+    "sequence" "Random numbers" "Sobol sequence or uniform random numbers; both converge to the same image."
+        |_| Sequence::ALL.iter().map(|s| Setting::Sequence(*s)).collect();
+    "adaptive" "Adaptive sampling" "Samples where the error is, or evenly; both converge to the same image."
+        |_| [true, false].map(Setting::Adaptive).to_vec();
+    "denoise" "Denoising" "Raw, or denoised in each available way; the remaining bias is measured."
+        |_| Denoise::ALL.iter().map(|how| Setting::Denoise(*how)).collect();
+    "bounces" "Bounces" "Longest path, from 1 to 16 reflections."
+        |_| BOUNCES.map(Setting::Bounces).to_vec();
+    "fresnel" "Fresnel term" "The exact equations or Schlick's approximation, equal along the normal."
+        |_| [true, false].map(Setting::ExactFresnel).to_vec();
+    "lobe" "Lobes" "Each reflecting lobe with the roughness at which it looks most like the material's own."
+        |_| {
             let lobes = Lobe::ALL.iter().filter(|lobe| lobe.has_roughness());
             lobes.map(|lobe| Setting::Lobe(*lobe)).collect()
-        },
-    },
-    Group {
-        name: "curve",
-        label: "Curves",
-        help: "The geometric lobe's curves, each with the roughness at which it looks most like the material's own.",
-        members: |_| Curve::with_formulas().map(Setting::Curve).collect(),
-    },
-    Group {
-        name: "scattering",
-        label: "Scattering between facets",
-        help: "GGX with the light that meets more than one facet, or without, which loses it. Other lobes become GGX first.",
-        members: |_| [true, false].map(Setting::Scattering).to_vec(),
-    },
-    Group {
-        name: "effect",
-        label: "Effects disabled",
-        help: "The scene without one of the effects that it calls for.",
-        members: |plan| {
+        };
+    "curve" "Curves" "The geometric lobe's curves, each with the roughness at which it looks most like the material's own."
+        |_| Curve::with_formulas().map(Setting::Curve).collect();
+    "scattering" "Scattering between facets" "GGX with the light that meets more than one facet, or without, which loses it. Other lobes become GGX first."
+        |_| [true, false].map(Setting::Scattering).to_vec();
+    "effect" "Effects disabled" "The scene without one of the effects that it calls for."
+        |plan| {
             let removable = plan.table().filter(|(effect, decision)| {
                 // These are kinds of their own.
                 let is_own_kind = matches!(*effect, EffectId::AdaptiveSampling | EffectId::Denoising);
-                decision.is_on && Effect::of(*effect).remove.is_some() && !is_own_kind
+                decision.is_on && !effect.is_needed() && !is_own_kind
             });
             removable
                 .map(|(effect, _)| Setting::Effect(effect, Switch::Off))
                 .collect()
-        },
-    },
-    Group {
-        name: "numbers",
-        label: "Precision of shading",
-        help: "Shading in f64 instead of f32, on the CPU. Sums are f64 in either case.",
-        members: |_| vec![Setting::Double],
-    },
-];
+        };
+}
 
 impl Setting {
     fn apply(self, document: &mut Document) {
@@ -178,7 +136,6 @@ impl Setting {
             Setting::Adaptive(adaptive) => document.render.adaptive = Some(adaptive),
             Setting::Denoise(how) => document.view.denoise = how,
             Setting::Effect(effect, switch) => document.render.effects.set(effect, switch),
-            Setting::Double => {}
         }
     }
 
@@ -207,7 +164,6 @@ impl Setting {
                     Switch::On | Switch::Auto => format!("{label}: {}", switch.label()),
                 }
             }
-            Setting::Double => "Shading in f64".to_owned(),
         }
     }
 }
@@ -246,11 +202,6 @@ impl Technique {
             setting.apply(&mut changed);
         }
         changed
-    }
-
-    /// Whether shading is in f64, which is no setting of a document.
-    pub fn is_double(&self) -> bool {
-        self.0.contains(&Setting::Double)
     }
 
     /// What it is called.
@@ -321,7 +272,6 @@ impl fmt::Display for Setting {
             Setting::Adaptive(is_on) => write!(f, "adaptive={}", if *is_on { "on" } else { "off" }),
             Setting::Denoise(how) => write!(f, "denoise={}", how.name()),
             Setting::Effect(effect, switch) => write!(f, "effect={}{effect}", sign(*switch)),
-            Setting::Double => f.write_str("numbers=f64"),
         }
     }
 }
@@ -388,10 +338,6 @@ impl FromStr for Setting {
             },
             "denoise" => entry!(Denoise).map(Setting::Denoise),
             "effect" => effect(value).ok_or_else(|| wrong(effects_expected())),
-            "numbers" => match value {
-                "f64" => Ok(Setting::Double),
-                _ => Err(wrong("f64".to_owned())),
-            },
             _ => Err(TechniqueError::Group(group.to_owned())),
         }
     }

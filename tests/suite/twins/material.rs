@@ -68,7 +68,7 @@ fn materials_agree() {
         }),
     );
     for layer in Layer::ALL {
-        let share = |field: &str| format!("l.{}.{field}", layer.module());
+        let share = |field: &str| format!("l.{}.{field}", layer.name());
         layers = layers
             .output(share("albedo"), COLOUR)
             .output(share("transmittance"), COLOUR)

@@ -13,12 +13,12 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::{Desk, PICTURE_SIZE};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::app::services::viewing::{Pick, RESOLUTIONS, Resolution};
+use crate::app::services::viewing::{Pick, Resolution};
 use crate::document::{Bookmark, range};
 
 /// Camera, view and render settings.
 #[derive(Default)]
-pub(super) struct CameraPanel {
+pub struct CameraPanel {
     photographic: Photographic,
 }
 
@@ -40,29 +40,11 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
     let help = "A look-up table of colours (.cube), applied last. Linear images (.exr, .hdr) stay as they are.";
     let file = desk.document.view.lut.clone();
     let name = Name::new("Table of colours", "LUT", help);
-    widgets::row(ui, name, |ui| {
-        let Some(file) = file else {
-            let choose = ui.button("Choose…");
-            if choose.clicked() {
-                desk.actions.push(Action::ChooseLut);
-            }
-            return choose;
-        };
-        if icons::button(
-            ui,
-            Icon::Close,
-            "Remove the table of colours",
-            "Shows the image without it",
-        )
-        .clicked()
-        {
-            desk.document.view.lut = None;
-            desk.edits.note("Remove the table of colours", "");
-        }
-        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
-        ui.add(egui::Label::new(name).truncate())
-            .on_hover_text(file.display().to_string())
-    });
+    let remove = ("Remove the table of colours", "Shows the image without it");
+    if desk.file_row(ui, name, file.as_deref(), Action::ChooseLut, remove) {
+        desk.document.view.lut = None;
+        desk.edits.note(remove.0, "");
+    }
     widgets::comes_and_goes(ui, |ui| reference::show(ui, desk));
 }
 
@@ -70,7 +52,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.settings(ui, "Camera");
     widgets::comes_and_goes(ui, |ui| focus(ui, desk));
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Frame all").on_hover_text(Command::FrameAll.help()).clicked() {
+        if widgets::pressed(ui, "Frame all", Command::FrameAll.help()) {
             desk.act(Command::FrameAll);
         }
         for (label, yaw_deg, pitch_deg) in [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 90.0)] {
@@ -79,7 +61,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         }
         let help = Command::FrameSelected.help();
-        if ui.button("Frame selected").on_hover_text(help).clicked() {
+        if widgets::pressed(ui, "Frame selected", help) {
             desk.act(Command::FrameSelected);
         }
     });
@@ -133,14 +115,12 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
                 desk.actions.push(Action::UseBookmark(index));
             }
             // From the right, so that the name has what the buttons leave and none is pushed out of the panel.
-            let rest = egui::Layout::right_to_left(egui::Align::Center);
-            ui.with_layout(rest, |ui| {
+            widgets::at_right(ui, |ui| {
                 let remove = format!("Remove {}", name.to_lowercase());
                 if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
                     removed = Some(index);
                 }
-                let update = ui.button("Update");
-                if update.on_hover_text("Replaces it by the present camera.").clicked() {
+                if widgets::pressed(ui, "Update", "Replaces it by the present camera.") {
                     bookmark.camera = desk.document.camera;
                     desk.edits.note("Update bookmark", "");
                 }
@@ -155,11 +135,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
         bookmarks.remove(index);
         desk.edits.note("Remove bookmark", "");
     }
-    if ui
-        .button("Add bookmark")
-        .on_hover_text("Remembers the camera with the project.")
-        .clicked()
-    {
+    if widgets::pressed(ui, "Add bookmark", "Remembers the camera with the project.") {
         bookmarks.push(Bookmark {
             name: format!("View {}", bookmarks.len() + 1),
             camera: desk.document.camera,
@@ -173,7 +149,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     let name = Name::new("Image size", "Size", "What the viewport renders, and what is saved.");
     let response = widgets::row(ui, name, |ui| {
-        widgets::choice(ui, "size", &mut desk.shared.viewing.resolution, &RESOLUTIONS)
+        widgets::choice(ui, "size", &mut desk.shared.viewing.resolution, &widgets::choices())
     });
     if response.reset {
         desk.shared.viewing.resolution = Resolution::default();

@@ -28,7 +28,7 @@ const ASPECTS: [([u32; 2], &str); 7] = [
 ];
 
 /// The sensor that focal lengths refer to.
-pub(super) struct Photographic {
+pub struct Photographic {
     sensor_height_mm: f64,
 }
 
@@ -41,7 +41,7 @@ impl Default for Photographic {
 }
 
 impl Photographic {
-    pub(super) fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let name = Name::new(
             "Sensor",
             "Sensor",
@@ -127,7 +127,7 @@ fn fov_deg(focal_length_mm: f64, sensor_height_mm: f64) -> f64 {
 }
 
 /// The image's width to height, where its size is the document's: a choice changes the height.
-pub(super) fn aspect(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn aspect(ui: &mut Ui, desk: &mut Desk<'_>) {
     let render = &desk.document.render;
     let height = |[across, down]: [u32; 2]| {
         let height = f64::from(render.width) * f64::from(down) / f64::from(across);

@@ -4,24 +4,19 @@ use egui::Ui;
 
 use crate::app::actions::Action;
 use crate::app::desk::Desk;
-use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::{Background, Reference, ReferencePlace};
 
 /// Which image, where it is shown, and how much of it is seen.
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let before = desk.document.view.reference.clone();
     file(ui, desk, before.as_ref());
     let Some(mut reference) = before.clone().filter(|_| desk.document.view.reference.is_some()) else {
         return;
     };
-    let places: Vec<_> = ReferencePlace::ALL
-        .iter()
-        .map(|place| (*place, place.label(), place.help()))
-        .collect();
     let name = Name::new("Place of the reference", "Shown", "Where it is shown.");
     let response = widgets::row(ui, name, |ui| {
-        widgets::choice(ui, "place of the reference", &mut reference.place, &places)
+        widgets::choice(ui, "place of the reference", &mut reference.place, &widgets::choices())
     });
     if response.reset {
         reference.place = ReferencePlace::default();
@@ -55,25 +50,11 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 /// The file, with a button to choose one or take it away.
 fn file(ui: &mut Ui, desk: &mut Desk<'_>, reference: Option<&Reference>) {
     let help = "A background plate or a photograph to work from. It is shown in the viewport, not rendered or saved.";
-    widgets::row(ui, Name::new("Reference image", "Reference", help), |ui| {
-        let Some(reference) = reference else {
-            let choose = ui.button("Choose…");
-            if choose.clicked() {
-                desk.actions.push(Action::ChooseReference);
-            }
-            return choose;
-        };
-        let help = "Removes it from the viewport";
-        if icons::button(ui, Icon::Close, "Remove the reference image", help).clicked() {
-            desk.document.view.reference = None;
-            desk.edits.note("Remove the reference image", "");
-        }
-        let name = reference
-            .file
-            .file_name()
-            .unwrap_or(reference.file.as_os_str())
-            .to_string_lossy();
-        ui.add(egui::Label::new(name).truncate())
-            .on_hover_text(reference.file.display().to_string())
-    });
+    let name = Name::new("Reference image", "Reference", help);
+    let file = reference.map(|reference| reference.file.as_path());
+    let remove = ("Remove the reference image", "Removes it from the viewport");
+    if desk.file_row(ui, name, file, Action::ChooseReference, remove) {
+        desk.document.view.reference = None;
+        desk.edits.note(remove.0, "");
+    }
 }

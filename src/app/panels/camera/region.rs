@@ -10,7 +10,7 @@ const AT_FIRST: [f64; 4] = [0.25, 0.25, 0.75, 0.75];
 /// The least width and height, shares of the image.
 const LEAST: f64 = 0.01;
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut is_on = desk.document.render.region.is_some();
     let help = "Renders a part of the image only. In the viewport: B, then drag a rectangle; Esc clears it.";
     let name = Name::new("Render region", "Region", help);

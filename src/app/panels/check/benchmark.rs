@@ -11,19 +11,19 @@ use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
 
 /// State of the section.
 #[derive(Default)]
-pub(super) struct BenchmarkState {
+pub struct BenchmarkState {
     worker: StudyWorker<Report>,
     quick: bool,
 }
 
 impl BenchmarkState {
     /// As [`StudyWorker::tick`].
-    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+    pub fn tick(&mut self, desk: &mut Desk<'_>) {
         self.worker.tick(desk);
     }
 }
 
-pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
     widgets::note(
         ui,
         "Measures every engine and adapter: rates and time to a clean image.",
@@ -44,11 +44,11 @@ pub(super) fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>)
             Box::new(move |watch| benchmark(&options, watch))
         });
     let Some(report) = state.worker.found() else { return };
-    if ui
-        .button("Copy the result")
-        .on_hover_text("Copies the result as JSON, to hand on and to compare.")
-        .clicked()
-        && let Ok(text) = serde_json::to_string_pretty(&*report)
+    if widgets::pressed(
+        ui,
+        "Copy the result",
+        "Copies the result as JSON, to hand on and to compare.",
+    ) && let Ok(text) = serde_json::to_string_pretty(&*report)
     {
         ui.ctx().copy_text(text);
     }

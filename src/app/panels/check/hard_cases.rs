@@ -43,7 +43,7 @@ impl Status {
 
 /// What the page remembers.
 #[derive(Default)]
-pub(super) struct HardState {
+pub struct HardState {
     worker: Option<Background<HardOptions, Status>>,
     stop: Arc<AtomicBool>,
     /// What a run that was stopped had found.
@@ -69,7 +69,7 @@ impl Drop for HardState {
 }
 
 /// The page, for the engine that renders.
-pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
+pub fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
     widgets::note(
         ui,
         "Places where naive code breaks, each with what it does here: measured against its limit.",

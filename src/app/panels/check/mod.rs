@@ -36,7 +36,7 @@ enum Status {
 
 /// The checks, the hard cases and the benchmark.
 #[derive(Default)]
-pub(super) struct CheckPanel {
+pub struct CheckPanel {
     worker: Option<Background<CheckOptions, Status>>,
     stop: Arc<AtomicBool>,
     /// When it was started.

@@ -16,31 +16,31 @@ const SIDE_MAX: u32 = 256;
 
 /// What the panel remembers.
 #[derive(Default)]
-pub(super) struct LedgerState {
+pub struct LedgerState {
     worker: StudyWorker<Ledger>,
     /// How long a turn lasts, where it is not the usual time.
-    pub(super) slice: Option<Duration>,
+    pub slice: Option<Duration>,
 }
 
 impl LedgerState {
     /// Measures when the panel is shown next.
-    pub(super) fn request(&mut self) {
+    pub fn request(&mut self) {
         self.worker.request();
     }
 
     /// See [`StudyWorker::tick`].
-    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+    pub fn tick(&mut self, desk: &mut Desk<'_>) {
         self.worker.tick(desk);
     }
 
     /// What was measured last.
-    pub(super) fn found(&self) -> Option<Arc<Ledger>> {
+    pub fn found(&self) -> Option<Arc<Ledger>> {
         self.worker.found()
     }
 }
 
 /// The button that measures, and how far it is.
-pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState) {
+pub fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState) {
     let help = "What each effect and setting costs in time, and does to noise and image: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, slice } = state;
@@ -59,7 +59,7 @@ pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState
 }
 
 /// All lines of it.
-pub(super) fn show(ui: &mut Ui, found: &Ledger) {
+pub fn show(ui: &mut Ui, found: &Ledger) {
     widgets::group(ui, "Ledger", |ui| {
         ui.label(format!("{:.2} ms for one sample of every pixel", found.ms_per_sample));
         found.entries.iter().for_each(|entry| line(ui, entry));

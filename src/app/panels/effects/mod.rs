@@ -20,7 +20,7 @@ const MARK_RADIUS: f32 = 3.5;
 
 /// What is simulated, why, and what it costs.
 #[derive(Default)]
-pub(super) struct EffectsPanel {
+pub struct EffectsPanel {
     ledger: LedgerState,
 }
 
@@ -81,7 +81,7 @@ impl Panel for EffectsPanel {
 fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
     ui.horizontal(|ui| {
         mark(ui, decision.is_on);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        widgets::at_right(ui, |ui| {
             switch(ui, desk, effect);
             let label = egui::Label::new(effect.label).wrap();
             let rest = ui.available_size();

@@ -16,7 +16,7 @@ const HEIGHT: f32 = 90.0;
 
 /// The counts of the image that is shown.
 #[derive(Default)]
-pub(super) struct Brightness {
+pub struct Brightness {
     serial: Option<u64>,
     counts: Counts,
 }
@@ -65,7 +65,7 @@ impl Counts {
 
 impl Brightness {
     /// Shows the image's own, unless the viewport shows a map of it.
-    pub(super) fn show(&mut self, ui: &mut Ui, picture: &Picture) {
+    pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         if picture.map.is_none() && self.serial != Some(picture.serial) {
             self.counts = Counts::of(&picture.rgba);
             self.serial = Some(picture.serial);

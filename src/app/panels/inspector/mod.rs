@@ -19,7 +19,7 @@ use crate::render::shown::{PixelFacts, luminance, stops_of};
 use crate::render::worker::Picture;
 
 #[derive(Default)]
-pub(super) struct InspectorPanel {
+pub struct InspectorPanel {
     brightness: Brightness,
 }
 

@@ -1,6 +1,6 @@
 //! The list of area lights, and a row for each of their parameters.
 
-use egui::{Align, Button, Layout, Ui};
+use egui::{Button, Ui};
 
 use crate::app::actions::Action;
 use crate::app::desk::Desk;
@@ -42,7 +42,7 @@ const KINDS: [LightKind; 3] = [
     ),
 ];
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.shared.selection.shows_lights = true;
     let mut lights = desk.document.lighting.area_lights.clone();
     let soloed = soloed(&lights);
@@ -153,7 +153,7 @@ fn header(
             *chosen = (!is_chosen).then_some(index);
         }
         name.accessible_name(format!("Choose {of_light}"));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        widgets::at_right(ui, |ui| {
             let name = format!("Remove {}", title.to_lowercase());
             if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
                 asked = Some(Asked::Remove);
@@ -195,24 +195,14 @@ fn profile(ui: &mut Ui, desk: &mut Desk<'_>, (title, index): (&str, usize), ligh
     }
     let full = format!("{title} profile");
     let help = "Sends the power of the light as a measured lamp does, by an .ies file.";
-    widgets::row(ui, Name::new(&full, "Profile", help), |ui| {
-        let Some(file) = light.profile else {
-            let choose = ui.button("Choose…");
-            if choose.clicked() {
-                desk.actions.push(Action::ChooseProfile(index));
-            }
-            return choose;
-        };
-        let name = format!("Remove {}", full.to_lowercase());
-        if icons::button(ui, Icon::Close, &name, "Shines evenly again").clicked() {
-            light.profile = None;
-            desk.edits.note("Remove the light profile", "");
-        }
-        let path = file.path();
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        ui.add(egui::Label::new(name).truncate())
-            .on_hover_text(path.display().to_string())
-    });
+    let name = Name::new(&full, "Profile", help);
+    let file = light.profile.map(|file| file.path());
+    let remove = format!("Remove {}", full.to_lowercase());
+    let remove = (remove.as_str(), "Shines evenly again");
+    if desk.file_row(ui, name, file, Action::ChooseProfile(index), remove) {
+        light.profile = None;
+        desk.edits.note("Remove the light profile", "");
+    }
 }
 
 /// The name of its light group, while groups are summed apart.

@@ -6,7 +6,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::{LightMix, range};
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.settings(ui, "Light groups");
     for group in desk.document.light_groups() {
         let before = desk.document.light_mix(group);

@@ -23,7 +23,7 @@ const FILES_MAX: usize = 6;
 
 /// Environment, area lights, background and ground.
 #[derive(Default)]
-pub(super) struct LightingPanel {
+pub struct LightingPanel {
     preview: Preview,
 }
 
@@ -46,8 +46,11 @@ fn ground(ui: &mut Ui, desk: &mut Desk<'_>) {
     if !desk.document.ground || desk.document.lighting.ground.kind != GroundKind::Cyclorama {
         return;
     }
-    let button = ui.button("Turn the wall away from the camera");
-    if button.on_hover_text("The camera looks straight at the wall.").clicked() {
+    if widgets::pressed(
+        ui,
+        "Turn the wall away from the camera",
+        "The camera looks straight at the wall.",
+    ) {
         desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
         desk.edits.note("Cyclorama turned", "");
     }
@@ -66,11 +69,7 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add_space(2.0);
     widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
     ui.add_space(2.0);
-    if ui
-        .button("Open a file…")
-        .on_hover_text(Command::OpenEnvironment.help())
-        .clicked()
-    {
+    if widgets::pressed(ui, "Open a file…", Command::OpenEnvironment.help()) {
         desk.act(Command::OpenEnvironment);
     }
     ui.add_space(0.5 * theme::GAP);

@@ -20,7 +20,7 @@ const FINE: f32 = 0.1;
 
 /// The image as it is shown, and what is done to it.
 #[derive(Default)]
-pub(super) struct Preview {
+pub struct Preview {
     texture: Option<TextureHandle>,
     /// The environment and the strength that the texture shows.
     key: Option<(EnvironmentSource, f32, usize)>,
@@ -30,7 +30,7 @@ pub(super) struct Preview {
 
 impl Preview {
     /// The environment in use, as large as the panel lets it be.
-    pub(super) fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let Some(scene) = desk.snapshot.scene.clone() else {
             return;
         };

@@ -23,13 +23,13 @@ fn place(axis: &Axis, value: f64) -> f64 {
 }
 
 /// Height of a line plot of this width, points.
-pub(super) fn plot_height(width: f32) -> f32 {
+pub fn plot_height(width: f32) -> f32 {
     (0.8 * width).clamp(160.0, 420.0)
 }
 
 /// How the radii of a polar plot are shown: a narrow lobe is a needle otherwise.
 #[derive(Default)]
-pub(super) struct Radii {
+pub struct Radii {
     is_logarithmic: bool,
     /// The largest value that is shown; `None` for the lobes' own.
     cut: Option<f64>,
@@ -48,7 +48,7 @@ impl Radii {
     }
 
     /// The rows that change it.
-    pub(super) fn rows(&mut self, ui: &mut Ui, plot: &LinePlot) {
+    pub fn rows(&mut self, ui: &mut Ui, plot: &LinePlot) {
         let help = "Radii count powers of ten: the foot of a narrow lobe is seen beside its peak.";
         let name = Name::new("Logarithmic radius", "Logarithmic", help);
         let response = widgets::row(ui, name, |ui| ui.checkbox(&mut self.is_logarithmic, ""));
@@ -79,7 +79,7 @@ impl Radii {
 }
 
 /// Shows a line plot over the width there is; radii of a polar one as `radii` says.
-pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot, radii: &Radii) {
+pub fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot, radii: &Radii) {
     let height = plot_height(ui.available_width());
     if plot.is_polar {
         let axis = radii.axis(plot);

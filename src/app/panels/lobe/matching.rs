@@ -18,7 +18,7 @@ use crate::plot::lobe_view::LinePlot;
 use crate::render::background::Background;
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Source {
+pub enum Source {
     Lobe(LobeModel),
     File(PathBuf),
 }
@@ -41,12 +41,12 @@ type Answer = Result<Arc<Matched>, String>;
 
 /// What the panel remembers.
 #[derive(Default)]
-pub(super) struct MatchState {
+pub struct MatchState {
     worker: Option<Background<Query, Answer>>,
 }
 
 /// The button, and what came of it.
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Option<Source>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Option<Source>) {
     let Some(source) = source else {
         if ui.button("Choose a measured material…").clicked() {
             desk.act(Command::OpenMeasured);
@@ -119,7 +119,7 @@ fn result(ui: &mut Ui, desk: &mut Desk<'_>, matched: &Matched, is_current: bool)
     } else {
         "Found for other settings than the present ones; match again for these."
     };
-    if ui.button("Use it").on_hover_text(help).clicked() {
+    if widgets::pressed(ui, "Use it", help) {
         let mut material = desk.material();
         found.apply(&mut material);
         desk.actions.push(Action::UseMaterial(Box::new(material)));
@@ -131,10 +131,10 @@ fn find(query: Query) -> Answer {
         Source::Lobe(model) => Target::Lobe(model.clone()),
         Source::File(path) => Target::Measured {
             name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
-            merl: Arc::new(Merl::load(path).map_err(|error| error.to_string())?),
+            merl: Arc::new(Merl::load(path).map_err(crate::in_words)?),
         },
     };
-    let found = match_look(&target, query.lobe, query.view_angle_deg).map_err(|error| error.to_string())?;
-    let plot = comparison(&target, &found).map_err(|error| error.to_string())?;
+    let found = match_look(&target, query.lobe, query.view_angle_deg).map_err(crate::in_words)?;
+    let plot = comparison(&target, &found).map_err(crate::in_words)?;
     Ok(Arc::new(Matched { query, found, plot }))
 }

@@ -40,7 +40,7 @@ enum Other {
 
 /// The selected material's lobe, beside another one.
 #[derive(Default)]
-pub(super) struct LobePanel {
+pub struct LobePanel {
     worker: Option<Background<Query, Arc<Answer>>>,
     asked: Option<Query>,
     kind: Option<ViewKind>,
@@ -127,9 +127,12 @@ fn other_lobe(panel: &LobePanel, desk: &Desk<'_>) -> Option<LobeModel> {
 }
 
 fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: ViewKind) {
-    let kinds: Vec<_> = ViewKind::ALL.iter().map(|k| (*k, k.label(), k.help())).collect();
     let name = Name::new("Lobe view", "View", "What of the lobe is shown.");
-    if widgets::row(ui, name, |ui| widgets::choice(ui, "lobe view", &mut kind, &kinds)).changed {
+    if widgets::row(ui, name, |ui| {
+        widgets::choice(ui, "lobe view", &mut kind, &widgets::choices())
+    })
+    .changed
+    {
         panel.kind = Some(kind);
     }
     if kind.is_of_view() && !kind.is_against_angle() {

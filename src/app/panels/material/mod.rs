@@ -33,7 +33,7 @@ const ALWAYS_OPEN: [&str; 2] = ["Base", "Specular"];
 
 /// The parameters of the selected material.
 #[derive(Default)]
-pub(super) struct MaterialPanel {
+pub struct MaterialPanel {
     /// What was shown last, of which slot of which model.
     shown: Option<((usize, usize), MaterialSettings)>,
     /// What is searched for among the model's materials.
@@ -196,7 +196,7 @@ fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     }
     if material.fresnel == Fresnel::Conductor {
         let help = "The same metal by two colours, seen head-on and towards the edge, to pick as you like.";
-        if ui.button("Edit as colours").on_hover_text(help).clicked() {
+        if widgets::pressed(ui, "Edit as colours", help) {
             *material = material.by_colors();
             desk.edits.note("Edit the metal as colours", "");
         }
@@ -227,9 +227,7 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
         let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
         egui::Popup::menu(&more).show(|ui| {
             for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
-                if ui.button(command.label()).on_hover_text(command.help()).clicked() {
-                    desk.act(command);
-                }
+                desk.button(ui, command);
             }
         });
     });

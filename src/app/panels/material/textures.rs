@@ -61,22 +61,22 @@ fn targets(is_it: impl Fn(&Parameter) -> bool) -> impl Iterator<Item = TextureTa
 }
 
 /// The target whose texture stands at a parameter.
-pub(super) fn target_of(key: &str) -> Option<TextureTarget> {
+pub fn target_of(key: &str) -> Option<TextureTarget> {
     targets(|parameter| parameter.key == key).next()
 }
 
 /// The targets of a group of parameters.
-pub(super) fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
+pub fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
     targets(move |parameter| parameter.group == group)
 }
 
 /// Whether the selected slot has a texture there.
-pub(super) fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
+pub fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
     picture(desk, target).is_some()
 }
 
 /// The square beside a parameter that has no texture: pressed to choose one, and a place to drop one.
-pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
+pub fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
     let name = format!("Texture of the {}", target.label().to_lowercase());
     let help = format!(
         "{}\nChoose an image of your own, or drop one on the window.",
@@ -87,7 +87,7 @@ pub(super) fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
 
 /// The texture's row, with how a user's own one is mapped. One that is not there has its place beside the parameter, but
 /// for that of the normal, which has a row.
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
     if picture.is_some() || target.is_normal() {
         let top = ui.cursor().min;
@@ -165,11 +165,7 @@ fn menu(ui: &mut Ui, of_target: &str, is_own: bool, asked: &mut Option<Asked>) {
     let name = format!("Menu of the {of_target} texture");
     let more = icons::button(ui, Icon::More, &name, "Replace, remove");
     egui::Popup::menu(&more).show(|ui| {
-        if ui
-            .button("Replace…")
-            .on_hover_text("Another texture of your own")
-            .clicked()
-        {
+        if widgets::pressed(ui, "Replace…", "Another texture of your own") {
             *asked = Some(Asked::Choose);
         }
         let remove = ui.add_enabled(is_own, egui::Button::new("Remove"));

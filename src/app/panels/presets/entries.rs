@@ -21,13 +21,13 @@ use crate::store::preset::{SHIPPED, source_of_values};
 use crate::store::shelf::{Contents, Item, ItemKind};
 
 /// Things that stand together.
-pub(super) struct Group {
-    pub(super) title: String,
-    pub(super) entries: Vec<Entry>,
+pub struct Group {
+    pub title: String,
+    pub entries: Vec<Entry>,
     /// What is to be said of them.
-    pub(super) notes: Vec<String>,
+    pub notes: Vec<String>,
     /// The watched folder that they lie in.
-    pub(super) folder: Option<PathBuf>,
+    pub folder: Option<PathBuf>,
 }
 
 impl Group {
@@ -42,14 +42,14 @@ impl Group {
 }
 
 /// Something that can be used.
-pub(super) struct Entry {
+pub struct Entry {
     /// By which it is known.
-    pub(super) key: String,
+    pub key: String,
     name: String,
     /// What only it is called.
-    pub(super) full_name: String,
+    pub full_name: String,
     /// The user's own file, which can be renamed and deleted.
-    pub(super) own: Option<PathBuf>,
+    pub own: Option<PathBuf>,
     kind: EntryKind,
     picture: Option<TextureHandle>,
 }
@@ -99,7 +99,7 @@ impl Entry {
     }
 
     /// Whether its name, its group, its tags and the words of its look have each word that is searched for, in lower case.
-    pub(super) fn is_wanted(&self, search: &str, group: &str, kept: &KeptShelves) -> bool {
+    pub fn is_wanted(&self, search: &str, group: &str, kept: &KeptShelves) -> bool {
         if search.is_empty() {
             return true;
         }
@@ -114,7 +114,7 @@ impl Entry {
     }
 
     /// Width of its image over the height.
-    pub(super) fn aspect(&self) -> f32 {
+    pub fn aspect(&self) -> f32 {
         match self.kind {
             EntryKind::Environment(_) => 2.0,
             EntryKind::Material(_) | EntryKind::Broken(_) => 1.0,
@@ -122,13 +122,7 @@ impl Entry {
     }
 
     /// Shows it, and takes what the user does with it.
-    pub(super) fn show(
-        &self,
-        ui: &mut Ui,
-        desk: &mut Desk<'_>,
-        layout: Layout,
-        tagging: &mut Option<(String, String)>,
-    ) {
+    pub fn show(&self, ui: &mut Ui, desk: &mut Desk<'_>, layout: Layout, tagging: &mut Option<(String, String)>) {
         let (color, is_current) = match &self.kind {
             EntryKind::Material(material) => {
                 let [r, g, b] = widgets::srgb_of(material.base_color);
@@ -191,15 +185,15 @@ impl Entry {
         } else {
             "Add to favourites"
         };
-        if ui.button(label).on_hover_text("Favourites stand at the top.").clicked() {
+        if widgets::pressed(ui, label, "Favourites stand at the top.") {
             kept.favour(&self.key);
         }
-        if ui.button("Tags…").on_hover_text("Words to find it by.").clicked() {
+        if widgets::pressed(ui, "Tags…", "Words to find it by.") {
             *tagging = Some((self.key.clone(), kept.tags_of(&self.key)));
         }
         if let EntryKind::Material(material) = &self.kind {
             let help = "Shows it beside the material that is edited.";
-            if ui.button("Compare as B").on_hover_text(help).clicked() {
+            if widgets::pressed(ui, "Compare as B", help) {
                 desk.actions
                     .push(Action::CompareWith(Rival::Material(material.clone())));
             }
@@ -263,7 +257,7 @@ fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Acti
             .iter()
             .filter(|format| format.is_written && format.format.is_text())
         {
-            if ui.button(format.label).on_hover_text(format.help).clicked() {
+            if widgets::pressed(ui, format.label, format.help) {
                 actions.push(Action::CopyAs(Box::new(material.clone()), format.name));
             }
         }
@@ -271,7 +265,7 @@ fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Acti
 }
 
 /// Everything, in groups: favourites, shipped materials by kind, the user's own, watched folders, environments.
-pub(super) fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
+pub fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
     let mut groups: Vec<Group> = shipped(desk);
     groups.push(Group::new("Mine", own(desk)));
     groups.extend(watched(desk));

@@ -15,7 +15,7 @@ use entries::{Entry, groups};
 
 /// The materials and environments to start from.
 #[derive(Default)]
-pub(super) struct PresetsPanel {
+pub struct PresetsPanel {
     /// What is searched for.
     search: String,
     /// A tag that all that is shown must have.
@@ -36,9 +36,7 @@ impl Panel for PresetsPanel {
         widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
         ui.horizontal_wrapped(|ui| {
             for command in [Command::SaveToMyPresets, Command::WatchFolder] {
-                if ui.button(command.label()).on_hover_text(command.help()).clicked() {
-                    desk.act(command);
-                }
+                desk.button(ui, command);
             }
         });
     }

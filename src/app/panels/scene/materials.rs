@@ -12,7 +12,7 @@ use crate::document::MaterialSettings;
 /// Side of the square with a material's colour, points.
 const SWATCH: f32 = 14.0;
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel) {
     let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
         return;
     };

@@ -15,7 +15,7 @@ use crate::app::services::selection::Thing;
 
 /// The tree.
 #[derive(Default)]
-pub(super) struct ScenePanel {
+pub struct ScenePanel {
     search: String,
     renaming: Option<Renaming>,
 }

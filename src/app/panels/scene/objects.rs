@@ -12,7 +12,7 @@ use crate::app::services::selection::Thing;
 /// The lines that are seen at once: more are scrolled to.
 const SHOWN: f32 = 12.0;
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel) {
+pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel) {
     let Some(count) = desk.scene().map(|scene| scene.model.objects.len()) else {
         return;
     };
@@ -64,16 +64,12 @@ fn object(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut ScenePanel, number: usiz
                 panel.rename(what, name);
                 ui.close();
             }
-            if ui.button("Isolate").on_hover_text("Hides all other objects").clicked() {
+            if widgets::pressed(ui, "Isolate", "Hides all other objects") {
                 desk.document.hidden_objects = (0..count).filter(|other| *other != number).collect();
                 desk.edits.note(format!("Isolate {name}"), "");
                 ui.close();
             }
-            if ui
-                .button("Focus")
-                .on_hover_text(Command::FrameSelected.help())
-                .clicked()
-            {
+            if widgets::pressed(ui, "Focus", Command::FrameSelected.help()) {
                 choose(desk, number, false);
                 desk.act(Command::FrameSelected);
                 ui.close();

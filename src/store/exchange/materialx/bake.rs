@@ -89,7 +89,7 @@ fn bake(path: &Path) -> Result<Values, String> {
     let Some(program) = program() else {
         return Err("MaterialX's tools would bake it: pip install materialx".to_owned());
     };
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let folder = tempfile::tempdir().map_err(crate::in_words)?;
     let output = run(command(program)?, path, folder.path())?;
     if let Some(missing) = output.split("Image file not found: ").nth(1) {
         let name = missing.lines().next().unwrap_or_default();
@@ -99,7 +99,7 @@ fn bake(path: &Path) -> Result<Values, String> {
         let last = output.lines().last().unwrap_or("no word");
         format!("{PROGRAM} of MaterialX failed: {last}")
     })?;
-    let document = Document::parse(&text).map_err(|error| error.to_string())?;
+    let document = Document::parse(&text).map_err(crate::in_words)?;
     let mut values = Values::new();
     let loading = Loading::default();
     let images = Images::in_folder(folder.path(), &loading);
@@ -116,7 +116,7 @@ fn bake(path: &Path) -> Result<Values, String> {
 
 /// Runs it and gives back its words.
 fn run(mut command: Command, path: &Path, folder: &Path) -> Result<String, String> {
-    let path = std::path::absolute(path).map_err(|error| error.to_string())?;
+    let path = std::path::absolute(path).map_err(crate::in_words)?;
     let words = folder.join("words.txt");
     let options = [
         "--width",
@@ -135,7 +135,7 @@ fn run(mut command: Command, path: &Path, folder: &Path) -> Result<String, Strin
     });
     let mut child = started.map_err(|error| format!("{PROGRAM} of MaterialX: {error}"))?;
     let begun = Instant::now();
-    while child.try_wait().map_err(|error| error.to_string())?.is_none() {
+    while child.try_wait().map_err(crate::in_words)?.is_none() {
         if begun.elapsed() > PATIENCE {
             let _ = child.kill();
             let _ = child.wait();

@@ -38,9 +38,9 @@ impl<'p> Images<'p> {
         }
         let path = self.folder.join(file);
         let reached = Reach::of_folder(self.folder).check(&path, self.loading);
-        let wanted = self.loading.check().map_err(|cancelled| cancelled.to_string());
+        let wanted = self.loading.check().map_err(crate::in_words);
         let mean = wanted
-            .and_then(|()| reached.map_err(|error| error.to_string()))
+            .and_then(|()| reached.map_err(crate::in_words))
             .and_then(|()| mean_of_file(&path, &self.budget));
         self.means.borrow_mut().insert(file.to_owned(), mean.clone());
         mean

@@ -68,7 +68,7 @@ fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>, loading: &Loading
     let reach = Reach::of_folder(files[0].parent().unwrap_or(Path::new("")));
     reach.check(&file, loading).map_err(|error| wrong(error.to_string()))?;
     files.push(file.clone());
-    let bytes = crate::store::file::read(&file).map_err(|error| error.to_string())?;
+    let bytes = crate::store::file::read(&file).map_err(crate::in_words)?;
     let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files, loading).map_err(wrong)?;
     let document = xml::parse(&text).map_err(wrong)?;
     let folder = relative.parent().filter(|folder| !folder.as_os_str().is_empty());
