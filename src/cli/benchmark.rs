@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use anyhow::bail;
 use clap::Args;
 
 use super::answer::Answer;
@@ -44,6 +45,9 @@ pub fn run(arguments: &BenchmarkArguments) -> anyhow::Result<()> {
                 .map(|path| Report::read(path))
                 .collect::<Result<Vec<_>, _>>()?;
             let comparison = compare(&reports[0], &reports[1]);
+            if comparison.rows.is_empty() {
+                bail!("the results have no measurement in common; compare two of the same engine");
+            }
             (comparison.text(), arguments.answer.write(&comparison))
         }
         None => {

@@ -156,8 +156,8 @@ const OTHER_NAMES: [(&str, &str); 14] = [
     ("video", "turntable"),
 ];
 
-/// Says that a word is no command, and which one was probably meant.
-fn no_command(word: &str) -> String {
+/// The command that was probably meant by a word, as a hint.
+fn meant(word: &str) -> String {
     let program = Arguments::command();
     let commands = program.get_subcommands().flat_map(|command| {
         let name = command.get_name();
@@ -167,8 +167,8 @@ fn no_command(word: &str) -> String {
     });
     let others = OTHER_NAMES.map(|(other, name)| (other, name.to_owned()));
     match nearest(&word.to_lowercase(), others.into_iter().chain(commands)) {
-        Some(near) => format!("no such command; did you mean `glossmith {near}`?"),
-        None => "no such command; `glossmith --help` lists them".to_owned(),
+        Some(near) => format!("did you mean `glossmith {near}`?"),
+        None => "`glossmith --help` lists the commands".to_owned(),
     }
 }
 

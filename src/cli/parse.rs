@@ -141,10 +141,10 @@ pub(super) fn material(text: &str) -> Result<String, Infallible> {
 /// A file to open. A word without an ending that names no file is taken for a command.
 pub(super) fn opened() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path: PathBuf| match path.extension() {
-        None if !path.exists() => Err(format!(
-            "no such file, and {}",
-            super::no_command(&path.display().to_string())
-        )),
+        None if !path.exists() => {
+            let hint = super::meant(&path.display().to_string());
+            Err(format!("no such command or file; {hint}"))
+        }
         _ => Ok(path),
     })
 }

@@ -43,7 +43,7 @@ pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
     command.build();
     if let Some(name) = &arguments.subcommand {
         let found = command.find_subcommand(name).cloned();
-        command = found.with_context(|| format!("{name}: {}", super::no_command(name)))?;
+        command = found.with_context(|| format!("{name}: no such command; {}", super::meant(name)))?;
     }
     let mut page = Vec::new();
     clap_mangen::Man::new(command).render(&mut page)?;

@@ -151,6 +151,9 @@ fn a_quick_run_measures_both_engines_and_can_be_compared() {
         !rows.is_empty() && rows.iter().all(|row| row["verdict"] != "better"),
         "{compared}"
     );
+    slower.engines.clear();
+    place.write("b.json", serde_json::to_string(&slower).unwrap().as_bytes());
+    place.refused(1, "benchmark --compare a.json b.json", &["in common"]);
 }
 
 #[test]

@@ -298,18 +298,14 @@ fn file_parameters(all: &[FileParameter]) -> String {
     table(&["parameter", "goes to", "report"], all.iter().map(row))
 }
 
-/// What the command of the page on a pixel prints: up to the first contribution, and the end.
+/// What the command of the page on a pixel prints: up to the first contribution, and from the last random number on.
 fn path_explained() -> String {
     let command = &commands(&text_of(Path::new("docs/how-to/explain.md")))[0];
     let told = Workplace::new().done(&arguments(command)[1..].join(" ")).stdout;
-    let lines: Vec<&str> = told.trim_end().lines().collect();
-    let first = lines
-        .iter()
-        .position(|line| line.starts_with('+'))
-        .expect("a contribution");
-    let end = lines.iter().rposition(|line| line.starts_with("end")).expect("an end");
-    let (start, end) = (lines[..=first].join("\n"), lines[end..].join("\n"));
-    format!("```text\n{start}\n…\n{end}\n```\n")
+    let (start, rest) = told.split_once("\n+").expect("a contribution");
+    let (added, rest) = rest.split_once('\n').expect("more");
+    let end = rest.rfind("\nnumbers").expect("a random number");
+    format!("```text\n{start}\n+{added}\n…{}\n```\n", rest[end..].trim_end())
 }
 
 fn block(name: &str) -> String {

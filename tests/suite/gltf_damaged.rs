@@ -3,7 +3,6 @@
 use glossmith::import::{ModelError, load};
 use glossmith::scene::{Fate, Model, ModelSource};
 use serde_json::{Value, json};
-
 use super::gltf_builder::{Folder, glb, square};
 
 /// Every refusal is one line that names the file and says what and what to do.
@@ -175,4 +174,47 @@ fn nothing_stops_for_a_detail() {
         Fate::Ignored,
         &["without triangles", "Part"],
     );
+}
+
+/// What no exporter writes is refused with its reason: nothing is guessed in its place.
+#[test]
+fn what_no_exporter_writes_is_refused() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    std::fs::write(folder.path("square.bin"), &buffer.bytes).unwrap();
+    document["buffers"][0]["uri"] = json!("square.bin");
+    document["materials"] = json!([{"pbrMetallicRoughness": {"roughnessFactor": 0.75}}]);
+    document["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}]);
+    document["animations"] = json!([{"channels": [], "samplers": []}]);
+    let text = document.to_string();
+    folder.load("whole.gltf", text.as_bytes()).expect("loads");
+    let words = ["damaged: its JSON", "export the model again"];
+    for number in ["1e999", "-1e999", "1e39", "NaN", "Infinity", "1.2.3", ".5", "wide"] {
+        refused(
+            folder.load("number.gltf", text.replace("0.75", number).as_bytes()),
+            &words,
+        );
+    }
+    for pointer in [
+        "/scene",
+        "/textures",
+        "/extensionsUsed",
+        "/asset/generator",
+        "/accessors/1/count",
+        "/animations/0/channels/0",
+        "/bufferViews/2/byteLength",
+        "/buffers/0/byteLength",
+        "/cameras/0/perspective/yfov",
+        "/meshes/0/primitives",
+        "/nodes/0/children",
+        "/scenes/0/nodes",
+    ] {
+        let mut broken = document.clone();
+        let (part, key) = pointer.rsplit_once('/').expect("a key");
+        match broken.pointer_mut(part).expect(part) {
+            Value::Array(list) => list.push(json!(7)),
+            part => part[key] = json!({"wide": 7}),
+        }
+        refused(folder.load("part.gltf", broken.to_string().as_bytes()), &words);
+    }
 }

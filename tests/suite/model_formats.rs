@@ -1,14 +1,12 @@
 //! Models in other formats than glTF: OBJ with its materials, PLY, STL; folders and archives.
 
 use std::io::Write;
-
 use glam::{DVec3, Vec2, Vec3};
 use glossmith::document::ImportLobe;
 use glossmith::document::of_model::materials_of;
 use glossmith::import::load;
 use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Fate, Model, ModelSource, Wrap};
-
+use glossmith::scene::{Fate, Model, ModelSource, Wrap, Geometry};
 use super::gltf_builder::{Folder, glb, png, square};
 use super::gltf_extensions::says;
 
@@ -112,6 +110,85 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     says(&grey, Fate::Missing, "a texture, grey instead");
 }
 
+/// Two squares with one line changed: what exporters write is read, and what none writes is refused.
+#[test]
+fn lines_of_an_obj_file_are_read_or_refused() {
+    let folder = Folder::new();
+    let good = "v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\n\
+                f 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/1/1\nf 2/1/1 5/2/1 6/3/1\n";
+    let load = |from: &str, to: &str| {
+        let text = good.replace(from, to);
+        assert_ne!(text, good, "{from}");
+        folder.load("bad.obj", text.as_bytes())
+    };
+    for (from, to) in [
+        ("v 2 0 0", "v 2 0 0 # a corner"),
+        ("v 2 0 0", "v 2 0 0 # in red and white"),
+        ("vt 1 0", "vt 1 0 # half"),
+        ("6/3/1", "6/3/1 # a face"),
+        ("f 1/1/1 2", "l 1 2 3\nl 3 4\nf 1/1/1 2"),
+    ] {
+        let model = load(from, to).expect(to);
+        assert!(model.report.is_clean(), "{to}: {:?}", model.report);
+        assert_eq!((model.mesh.triangles.len(), model.mesh.colors.len()), (3, 0), "{to}");
+    }
+    for (from, to, fate, words) in [
+        ("vn 0 0 1", "vn 0 0 nan", Fate::Approximated, "normals without a length"),
+        (
+            "vn 0 0 1",
+            "vn -1.#IND 0 0",
+            Fate::Approximated,
+            "normals without a length",
+        ),
+        (
+            "vn 0 0 1",
+            "vn 0 -nan(ind) 0",
+            Fate::Approximated,
+            "normals without a length",
+        ),
+        (
+            "vt 1 0",
+            "vt 1e999 0",
+            Fate::Ignored,
+            "texture coordinates that are not finite",
+        ),
+        ("v 2 0 0", "v 2 0 1e999", Fate::Ignored, "a corner that is not finite"),
+        (
+            "f 2/1/1 5/2/1 6/3/1",
+            "f 2 5 6",
+            Fate::Ignored,
+            "texture coordinates that only some",
+        ),
+        (
+            "f 2/1/1 5/2/1 6/3/1",
+            "f 2 5 6",
+            Fate::Ignored,
+            "normals that only some",
+        ),
+    ] {
+        let model = load(from, to).expect(to);
+        says(&model, fate, words);
+        assert!(model.mesh.uvs.iter().all(|uv| uv.is_finite()), "{to}");
+    }
+    for (from, to) in [
+        ("v 2 0 0", "v 2 0 x"),
+        ("v 2 0 0", "v 2 0"),
+        ("v 2 0 0", "v 2 0 0 0"),
+        ("v 2 0 0", "v 2 0 0 1 1"),
+        ("vt 1 0", "vt 1 ?"),
+        ("vn 0 0 1", "vn 0 0"),
+        ("5/2/1", "5/2/x"),
+        ("5/2/1", "7/2/1"),
+        ("5/2/1", "0/2/1"),
+        ("5/2/1", "-9/2/1"),
+        ("f 2/1/1 5/2/1 6/3/1", "f"),
+    ] {
+        let error = load(from, to).expect_err(to).to_string();
+        let is_plain = error.contains("bad.obj: damaged: ") && error.ends_with("; export the model again");
+        assert!(is_plain && !error.contains('\n'), "{to}: {error}");
+    }
+}
+
 /// Surfaces without a material are clay in every format. What is coloured by its vertices has no other colour.
 #[test]
 fn surfaces_without_a_material_are_clay() {
@@ -205,6 +282,42 @@ fn ply_files_may_be_text_or_bytes() {
         bytes.extend((0..4).flat_map(order));
         assert_colored_square(&folder.load("square.ply", &bytes).expect("loads"));
         assert!(folder.load("cut.ply", &bytes[..bytes.len() - 3]).is_err(), "{format}");
+    }
+}
+
+/// Numbers of a text PLY file are those of C; a row that is no row of its element, and a file that is cut short, are refused.
+#[test]
+fn rows_of_a_ply_file_are_read_or_refused() {
+    let folder = Folder::new();
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                  property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 2\n\
+                  property list uchar int vertex_indices\nend_header\n";
+    let body = "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 8 9\n3 0 1 2\n3 0 2 3\n";
+    let load = |from: &str, to: &str| {
+        let text = [header, &body.replace(from, to)].concat();
+        folder.load("bad.ply", text.as_bytes())
+    };
+    for (to, left) in [
+        ("0 1 0 9 8 9", 2),
+        (".0 1. -0.0 9 8 9", 2),
+        ("0 nan 0 9 8 9", 1),
+        ("0 -inf 0 9 8 9", 1),
+    ] {
+        let model = load("0 1 0 9 8 9", to).expect(to);
+        assert_eq!(Geometry::build(&model, false).triangle_count(), left, "{to}");
+    }
+    for (from, to) in [
+        ("0 1 0 9 8 9", "0 x 0 9 8 9"),
+        ("0 1 0 9 8 9", "0 1"),
+        ("0 1 0 9 8 9", "0 1 0 red 8 9"),
+        ("3 0 2 3", "3 0 2"),
+        ("3 0 2 3", "x 0 2 3"),
+        ("3 0 2 3", "3 0 2 1.5"),
+        ("3 0 2 3\n", ""),
+    ] {
+        let error = load(from, to).expect_err(to).to_string();
+        let is_plain = error.contains("bad.ply: damaged: ") && error.ends_with("; export the model again");
+        assert!(is_plain && !error.contains('\n'), "{to}: {error}");
     }
 }
 

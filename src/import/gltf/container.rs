@@ -12,7 +12,6 @@ use serde::Deserialize as _;
 use serde_json::Value as Json;
 
 use super::json::Plain;
-use super::numbers;
 use crate::files::{Files, text_or_latin_1};
 use crate::model_error::ModelError;
 use crate::scene::report::{Fate, ImportReport};
@@ -79,6 +78,8 @@ pub(super) struct Document {
     pub decompressed: HashMap<usize, Vec<u8>>,
     /// Required extensions that are not known.
     pub unknown_required: Vec<String>,
+    /// Whether bytes of a buffer are missing.
+    pub lacks_data: bool,
 }
 
 impl Document {
@@ -86,13 +87,12 @@ impl Document {
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
         let mut raw = parse(path, text)?;
-        numbers::drop_unreadable(&mut raw, &mut String::new(), report);
         check_version(path, &raw)?;
         complete(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
             files,
-            root: root(&mut raw, report).map_err(|error| ModelError::Invalid {
+            root: root(&mut raw).map_err(|error| ModelError::Invalid {
                 path: path.to_owned(),
                 reason: format!("its JSON: {error}"),
             })?,
@@ -100,6 +100,7 @@ impl Document {
             buffers: Vec::new(),
             decompressed: HashMap::new(),
             unknown_required: Vec::new(),
+            lacks_data: false,
         };
         // The rest of a large file's bytes would be there twice.
         let blob = blob.map(|place| {
@@ -195,34 +196,36 @@ impl Document {
     }
 
     fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {
+        let mut lacks_data = false;
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let name = format!("buffer {index}");
+            let mut note = |what: String| {
+                report.note(Fate::Missing, what, &name);
+                lacks_data = true;
+            };
             let is_fallback = MESHOPT_EXTENSIONS
                 .iter()
                 .any(|extension| self.raw["buffers"][index]["extensions"][extension]["fallback"] == true);
             let data = match (&buffer.uri, blob.take()) {
                 (Some(uri), _) => self.read_uri(&name, uri).unwrap_or_else(|error| {
-                    report.note(Fate::Missing, format!("a buffer: {error}"), &name);
+                    note(format!("a buffer: {error}"));
                     Vec::new()
                 }),
                 (None, Some(blob)) => blob,
                 _ => {
                     if !is_fallback {
-                        report.note(Fate::Missing, "a buffer that has no data", &name);
+                        note("a buffer that has no data".to_owned());
                     }
                     Vec::new()
                 }
             };
             let (actual, expected) = (data.len(), buffer.byte_length.0);
             if !data.is_empty() && (actual as u64) < expected {
-                report.note(
-                    Fate::Missing,
-                    format!("a buffer's end: {actual} of {expected} bytes are there"),
-                    &name,
-                );
+                note(format!("a buffer's end: {actual} of {expected} bytes are there"));
             }
             self.buffers.push(data);
         }
+        self.lacks_data = lacks_data;
     }
 
     /// The bytes of a data URI or of a file beside the model.
@@ -259,87 +262,12 @@ impl Document {
     }
 }
 
-/// The JSON for the crate, which requires integers without a decimal point. Unreadable details are reported.
-fn root(raw: &mut Json, report: &mut ImportReport) -> serde_json::Result<json::Root> {
-    let read = json::Root::deserialize(&*raw).or_else(|_| {
+/// The JSON for the crate, which requires integers without a decimal point.
+fn root(raw: &mut Json) -> serde_json::Result<json::Root> {
+    json::Root::deserialize(&*raw).or_else(|_| {
         without_points(raw);
         json::Root::deserialize(&*raw)
-    });
-    read.or_else(|_: serde_json::Error| {
-        without_broken_details(raw, report);
-        json::Root::deserialize(&*raw)
     })
-}
-
-/// Whether the crate can read a part of a file; else why not.
-type Check = fn(Json) -> serde_json::Result<()>;
-
-fn check<T: serde::de::DeserializeOwned>(part: Json) -> serde_json::Result<()> {
-    serde_json::from_value::<T>(part).map(|_| ())
-}
-
-/// Lists of a scene: the name of a part, and the replacement of an unreadable one, so that the others keep their
-/// indices.
-const DETAILS: [(&str, &str, &str, Check); 13] = [
-    (
-        "accessors",
-        "an accessor",
-        r#"{"componentType": 5126, "count": 0, "type": "SCALAR"}"#,
-        check::<json::Accessor>,
-    ),
-    (
-        "animations",
-        "an animation",
-        r#"{"channels": [], "samplers": []}"#,
-        check::<json::Animation>,
-    ),
-    ("buffers", "a buffer", r#"{"byteLength": 0}"#, check::<json::Buffer>),
-    (
-        "bufferViews",
-        "a buffer view",
-        r#"{"buffer": 0, "byteLength": 0}"#,
-        check::<json::buffer::View>,
-    ),
-    (
-        "cameras",
-        "a camera",
-        r#"{"type": "perspective"}"#,
-        check::<json::Camera>,
-    ),
-    ("images", "an image", "{}", check::<json::Image>),
-    ("materials", "a material", "{}", check::<json::Material>),
-    ("meshes", "a mesh", r#"{"primitives": []}"#, check::<json::Mesh>),
-    ("nodes", "a node", "{}", check::<json::Node>),
-    ("samplers", "a sampler", "{}", check::<json::texture::Sampler>),
-    ("scenes", "a scene", r#"{"nodes": []}"#, check::<json::Scene>),
-    ("skins", "a skin", r#"{"joints": []}"#, check::<json::Skin>),
-    ("textures", "a texture", "{}", check::<json::Texture>),
-];
-
-fn without_broken_details(raw: &mut Json, report: &mut ImportReport) {
-    let mut note = |what: String, error: serde_json::Error, name: &str| {
-        report.note(Fate::Ignored, format!("{what} that cannot be read ({error})"), name);
-    };
-    for (list, what, substitute, check) in DETAILS {
-        for (index, part) in parts(raw, list).enumerate() {
-            if let Err(error) = check(part.clone()) {
-                let name = part["name"]
-                    .as_str()
-                    .map_or_else(|| format!("{list} {index}"), str::to_owned);
-                note(what.to_owned(), error, &name);
-                *part = serde_json::from_str(substitute).unwrap_or_default();
-            }
-        }
-    }
-    let Some(members) = raw.as_object_mut() else { return };
-    let asset = serde_json::json!({ "version": "2.0" });
-    members.retain(|key, part| {
-        let alone = serde_json::json!({ "asset": asset, key: part });
-        check::<json::Root>(alone)
-            .map_err(|error| note(format!("\"{key}\""), error, key))
-            .is_ok()
-    });
-    members.entry("asset").or_insert(asset);
 }
 
 /// Adds data that the crate requires and the format leaves optional. Without any nodes, meshes get one each.
@@ -498,11 +426,10 @@ fn next_chunk(bytes: &[u8]) -> Option<([u8; 4], &[u8], &[u8])> {
     Some((kind, data, rest))
 }
 
-/// The JSON of a text, or else of the text with readable numbers.
+/// The JSON of a text.
 fn parse(path: &Path, text: &[u8]) -> Result<Json, ModelError> {
     let read = serde_json::from_slice(text);
-    let read = read.or_else(|error| serde_json::from_slice(&numbers::readable(text)).map_err(|_| error));
-    read.map(|Plain(json)| json).map_err(|error: serde_json::Error| {
+    read.map(|Plain(json)| json).map_err(|error| {
         let reason = if error.is_eof() {
             "its JSON is cut short".to_owned()
         } else {

@@ -1,14 +1,15 @@
-//! JSON of a file without other programs' private data, which may be large.
+//! JSON of a file without what is not read of it, which may be large.
 
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};
 
-/// Under this key any program may put anything.
-const EXTRAS: &str = "extras";
+/// Keys whose values are not read: under the first any program may put anything, the bounds of accessors may be those of
+/// nothing.
+const PASSED_OVER: [&str; 3] = ["extras", "min", "max"];
 
-/// A value without `extras`, which are passed over while they are read: they may be most of a file.
+/// A value without those of these keys, which may be most of a file, and without null, by which some writers say nothing.
 pub(super) struct Plain(pub Value);
 
 impl<'de> Deserialize<'de> for Plain {
@@ -43,6 +44,9 @@ impl<'de> Visitor<'de> for PlainVisitor {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
+        if (value as f32).is_infinite() {
+            return Err(E::custom("a number beyond single precision"));
+        }
         Ok(value.into())
     }
 
@@ -67,10 +71,13 @@ impl<'de> Visitor<'de> for PlainVisitor {
     fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Value, A::Error> {
         let mut values = Map::new();
         while let Some(key) = object.next_key::<String>()? {
-            if key == EXTRAS {
+            if PASSED_OVER.contains(&key.as_str()) {
                 object.next_value::<IgnoredAny>()?;
-            } else {
-                values.insert(key, object.next_value::<Plain>()?.0);
+                continue;
+            }
+            let Plain(value) = object.next_value()?;
+            if !value.is_null() {
+                values.insert(key, value);
             }
         }
         Ok(Value::Object(values))

@@ -15,7 +15,6 @@ mod json;
 mod material;
 mod material_extensions;
 mod nodes;
-mod numbers;
 mod pose;
 mod primitive;
 mod sheen;
@@ -34,7 +33,7 @@ use self::nodes::MeshNode;
 use self::pose::Pose;
 use crate::files::Files;
 use crate::model_error::ModelError;
-use crate::scene::report::{Fate, ImportReport};
+use crate::scene::report::{Entry, Fate, ImportReport};
 use crate::scene::{Model, ModelOptions};
 
 /// Loads the contents of a .gltf or .glb file; `path` is named in messages.
@@ -73,21 +72,15 @@ fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report:
             remedy: "export without this extension",
         };
     }
-    let blamed = [Fate::Missing, Fate::Ignored]
-        .into_iter()
-        .flat_map(|fate| report.of(fate));
     let has_triangles = nodes.iter().any(|node| primitive::has_triangles(document, node.mesh));
-    let blamed: Vec<String> = blamed
-        .filter(|entry| has_triangles || entry.fate == Fate::Missing || entry.what.contains("that cannot be read"))
-        .filter(|entry| !entry.what.starts_with("points and lines"))
-        .take(3)
-        .map(|entry| entry.line())
-        .collect();
+    let ignored = report.of(Fate::Ignored).filter(|_| has_triangles);
+    let blamed = report.of(Fate::Missing).chain(ignored).take(3);
+    let blamed: Vec<String> = blamed.map(Entry::line).collect();
     if blamed.is_empty() {
         return ModelError::NoTriangles { path: path.to_owned() };
     }
     let reason = blamed.join(", ");
-    if report.of(Fate::Missing).any(|entry| entry.what.starts_with("a buffer")) {
+    if document.lacks_data {
         return ModelError::Incomplete {
             path: path.to_owned(),
             reason,

@@ -8,8 +8,8 @@ use crate::scene::report::{Fate, ImportReport};
 /// Name of an unnamed material.
 const UNNAMED: &str = "(unnamed)";
 
-/// Lines of an OBJ file: continued lines are joined, `usemtl` gets a name, `vt` two coordinates, and missing vertex colours
-/// are white.
+/// Lines of an OBJ file: continued lines are joined, numbers have no comment after them, `usemtl` gets a name, `vt` two
+/// coordinates, and missing vertex colours are white. Polylines are left out: the crate fills them.
 pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text = text_of(bytes);
     let are_some_colored = has_some_colors(text.as_bytes());
@@ -20,11 +20,17 @@ pub(super) fn of_model(bytes: &[u8]) -> Cow<'_, [u8]> {
         return Cow::Borrowed(plain.as_bytes());
     }
     let lines = joined(&text).into_iter().map(|line| {
+        let line = if is_of_numbers(line.trim().as_bytes()) {
+            plain_numbers(&line)
+        } else {
+            line
+        };
         let words = || line.split_whitespace();
         match (words().next(), words().count()) {
             (Some("usemtl"), 1) => format!("usemtl {UNNAMED}"),
             (Some("usemtl"), _) => line.replacen('\t', " ", 1),
             (Some("vt"), 2) => format!("{line} 0"),
+            (Some("l"), _) => String::new(),
             (Some("v"), 4) if are_some_colored => format!("{line} 1 1 1"),
             _ => line,
         }
@@ -60,7 +66,20 @@ fn has_some_colors(bytes: &[u8]) -> bool {
 
 fn words(line: &[u8]) -> usize {
     let words = line.split(u8::is_ascii_whitespace);
-    words.filter(|word| !word.is_empty()).count()
+    let words = words.filter(|word| !word.is_empty());
+    words.take_while(|word| !word.starts_with(b"#")).count()
+}
+
+/// Whether a line is of a vertex, a face or a polyline.
+fn is_of_numbers(line: &[u8]) -> bool {
+    matches!(line.first(), Some(b'v' | b'f' | b'l'))
+}
+
+/// A line without the comment at its end, and with NaN for what C++ writes in its place on Windows: `-1.#IND`, `-nan(ind)`.
+fn plain_numbers(line: &str) -> String {
+    let words = line.split_whitespace().take_while(|word| !word.starts_with('#'));
+    let plain = words.map(|word| if word.contains(['#', '(']) { "nan" } else { word });
+    plain.collect::<Vec<_>>().join(" ")
 }
 
 fn is_odd(line: &[u8]) -> bool {
@@ -68,6 +87,7 @@ fn is_odd(line: &[u8]) -> bool {
     line.ends_with(b"\\")
         || line.starts_with(b"usemtl") && !line.starts_with(b"usemtl ")
         || line.starts_with(b"vt") && words(line) == 2
+        || is_of_numbers(line) && (line[0] == b'l' || line.iter().any(|byte| b"#(".contains(byte)))
 }
 
 /// Readable lines of a material library; the others are reported.

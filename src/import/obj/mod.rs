@@ -3,7 +3,6 @@
 //! The format is Y up, like ours, with texture coordinates upwards. Its materials are of the 1990s: their exponent becomes
 //! a roughness, and the additions of later exporters (`Pr`, `Pm`, `norm`, …) are taken where they are.
 
-mod damage;
 mod lines;
 mod map;
 mod table;
@@ -31,19 +30,10 @@ use crate::scene::{AlphaMode, Filter, Model, ModelObject, ModelOptions, Slot, Te
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
     let invalid = |reason: String| ModelError::invalid(path, reason);
     let text = lines::of_model(bytes);
-    let (read, mut report) = match parse(&text, files) {
-        (Some(Ok(read)), report) => (read, report),
-        _ => {
-            files.import.loading.check()?;
-            let mut damage = ImportReport::default();
-            let (read, mut report) = parse(&damage::mended(&text, &mut damage), files);
-            report.append(damage);
-            let read = read.ok_or_else(|| invalid("its faces contradict each other".to_owned()))?;
-            (read.map_err(|error| invalid(error.to_string()))?, report)
-        }
-    };
+    let (read, mut report) = parse(&text, files);
     files.import.loading.check()?;
-    let (parts, materials) = read;
+    let read = read.ok_or_else(|| invalid("its faces contradict each other".to_owned()))?;
+    let (parts, materials) = read.map_err(|error| invalid(error.to_string()))?;
     let materials = materials.unwrap_or_default();
     let mut slots = Slots::new(files, options, &materials);
     let mut mesh = Mesh::default();

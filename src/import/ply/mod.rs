@@ -1,8 +1,6 @@
 //! PLY files, of text or bytes in either order, by the ply-rs crate: places, normals, colours, texture coordinates, and
 //! faces of any number of corners.
 
-mod damage;
-
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
@@ -113,8 +111,8 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
     loading.check()?;
     if read.is_err() && header.encoding == Encoding::Ascii {
         report = ImportReport::default();
-        let text = damage::mended(bytes, &header, &mut report);
-        let mut reader = Reader::new(BufReader::new(loading.watched(text.as_slice())));
+        let text = with_plain_numbers(bytes);
+        let mut reader = Reader::new(BufReader::new(loading.watched(text.as_bytes())));
         read_header(&mut reader)?;
         read = elements(&mut reader, &header, &mut report);
         loading.check()?;
@@ -136,7 +134,21 @@ pub(super) fn load(path: &Path, bytes: &[u8], loading: &Loading) -> Result<Model
     })
 }
 
-/// Vertices and faces of a file after its header; the reason if there are none of either before it breaks the format.
+/// A text file with its numbers as the crate reads them, which knows neither `1.` nor `.5` nor `nan`.
+fn with_plain_numbers(bytes: &[u8]) -> String {
+    let text = String::from_utf8_lossy(bytes);
+    let (header, body) = text.split_once("end_header").unwrap_or_default();
+    let plain = |word: &str| match word.parse::<f64>() {
+        Ok(number) if !number.is_finite() => "1e999".to_owned(),
+        Ok(number) if word.parse::<i64>().is_err() => format!("{number:e}"),
+        _ => word.to_owned(),
+    };
+    let lines = body.lines();
+    let lines = lines.map(|line| line.split_whitespace().map(plain).collect::<Vec<_>>().join(" "));
+    format!("{header}end_header{}\n", lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// Vertices and faces of a file after its header, or how it breaks the format.
 fn elements<R: BufRead>(
     reader: &mut Reader<R>,
     header: &Header,
@@ -163,18 +175,7 @@ fn elements<R: BufRead>(
                 skipped.read_payload_for_element(reader, element, header).map(drop)
             }
         };
-        if let Err(error) = read {
-            // The data before the damage may suffice.
-            if vertices.is_empty() || faces.is_empty() {
-                return Err(error.to_string());
-            }
-            report.note(
-                Fate::Missing,
-                format!("what follows a breach of the format ({error})"),
-                "",
-            );
-            break;
-        }
+        read.map_err(|error| error.to_string())?;
     }
     Ok((vertices, faces))
 }
