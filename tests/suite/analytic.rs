@@ -105,7 +105,8 @@ fn faults(session: &mut Session, case: &Case, run: Run) -> Option<String> {
             * if run.is_adaptive {
                 4.0
             } else {
-                f64::from(run.fewer).sqrt()
+                // The error of evenly spread numbers falls faster than by the root.
+                f64::from(run.fewer).powf(0.7)
             };
         let is_sharp = allowed <= bound * expected.abs() + 1e-9;
         if (mean - expected).abs() > allowed || !is_sharp {

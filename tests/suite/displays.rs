@@ -138,10 +138,10 @@ fn a_coarse_image_shown_brighter_stays_coarse() {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-/// How long the soak goes on: `GLOSSMITH_SOAK_MINUTES`, else 20 minutes with the feature `thorough`, else seconds.
+/// How long the soak goes on: `GLOSSMITH_SOAK_MINUTES`, else 20 minutes.
 fn soak_time() -> Duration {
     let chosen = std::env::var("GLOSSMITH_SOAK_MINUTES").ok();
-    let default = if cfg!(feature = "thorough") { 20.0 } else { 0.25 };
+    let default = 20.0;
     let minutes = chosen.map_or(default, |text| text.parse().expect("minutes"));
     Duration::from_secs_f64(60.0 * minutes)
 }
@@ -162,6 +162,7 @@ fn action(random: &mut Random) -> Action {
 
 /// Random displays, steps, edits and orbits in a window with the denoiser on.
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn displays_soak() {
     listen();
     let mut document = small_document();

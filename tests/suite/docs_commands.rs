@@ -75,7 +75,7 @@ fn known_options(command: &Command, found: &mut BTreeSet<String>) {
 }
 
 /// Options of commands that are not Glossmith's, as the pages name them.
-const OPTIONS_OF_OTHERS: [&str; 18] = [
+const OPTIONS_OF_OTHERS: [&str; 19] = [
     "all-targets",
     "bench",
     "build",
@@ -85,6 +85,7 @@ const OPTIONS_OF_OTHERS: [&str; 18] = [
     "locked",
     "no-default-features",
     "no-run",
+    "prefix",
     "profile",
     "release",
     "run-dependencies",

@@ -377,7 +377,7 @@ fn the_book_has_what_the_program_has() {
             .position(|(found, expected)| found != expected);
         assert!(
             found == expected,
-            "{}, line {}: run UPDATE_DOCS=1 cargo test docs",
+            "{}, line {}: run UPDATE_DOCS=1 cargo test --release -p glossmith-tests docs",
             page.display(),
             1 + differs.unwrap_or_default()
         );

@@ -1,9 +1,9 @@
 //! What is said about files that cannot be loaded; that no file makes the loader panic.
 
+use super::gltf_builder::{Folder, glb, square};
 use glossmith::import::{ModelError, load};
 use glossmith::scene::{Fate, Model, ModelSource};
 use serde_json::{Value, json};
-use super::gltf_builder::{Folder, glb, square};
 
 /// Every refusal is one line that names the file and says what and what to do.
 fn refused(result: Result<Model, ModelError>, words: &[&str]) {

@@ -1,14 +1,14 @@
 //! Models in other formats than glTF: OBJ with its materials, PLY, STL; folders and archives.
 
-use std::io::Write;
+use super::gltf_builder::{Folder, glb, png, square};
+use super::gltf_extensions::says;
 use glam::{DVec3, Vec2, Vec3};
 use glossmith::document::ImportLobe;
 use glossmith::document::of_model::materials_of;
 use glossmith::import::load;
 use glossmith::scene::texture::TextureTarget;
-use glossmith::scene::{Fate, Model, ModelSource, Wrap, Geometry};
-use super::gltf_builder::{Folder, glb, png, square};
-use super::gltf_extensions::says;
+use glossmith::scene::{Fate, Geometry, Model, ModelSource, Wrap};
+use std::io::Write;
 
 const OBJ: &str = "mtllib paint.mtl\no Plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                    usemtl Paint\nf 1/1 2/2 3/3 4/4\nusemtl Bare\nf 1 3 4\n";

@@ -85,7 +85,7 @@ fn assert_all_follow(cases: &[Case]) {
         .filter(|(_, outcome)| outcome.degrees_of_freedom >= 40)
         .count();
     assert!(
-        tested * 10 >= cases.len() * 9,
+        tested * 20 >= cases.len() * 17,
         "only {tested} of {} cases have cells enough",
         cases.len()
     );

@@ -116,6 +116,7 @@ fn a_check_can_be_stopped_and_leaves_the_viewport_its_time() {
 
 /// Help › Benchmark opens its section; a quick run shows a table of the engines and hands on its result.
 #[test]
+#[cfg_attr(not(feature = "thorough"), ignore = "thorough")]
 fn the_benchmark_is_run_from_the_help_menu() {
     let mut harness = editor();
     harness.get_by_label("Help").click_accesskit();

@@ -99,9 +99,7 @@ pub fn without_what_is_off(document: &Document) -> Cow<'_, Document> {
             Remove::EachMaterial(change) => document.to_mut().materials.iter_mut().for_each(change),
             Remove::Textures(targets) => {
                 for material in &mut document.to_mut().materials {
-                    targets
-                        .iter()
-                        .for_each(|target| material.textures[*target] = false);
+                    targets.iter().for_each(|target| material.textures[*target] = false);
                 }
             }
             Remove::Document(change) => change(document.to_mut()),
