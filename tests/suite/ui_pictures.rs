@@ -1,6 +1,8 @@
 //! Pictures of the window's main states in both themes, compared with those in tests/snapshots; UPDATE_SNAPSHOTS=1 makes
 //! them anew.
 
+use std::path::Path;
+
 use egui::{Rect, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
@@ -56,6 +58,7 @@ fn compare_but(harness: &mut Harness<'static, App>, name: &str, changing: &[Rect
             cover(&mut window, covered);
         }
         let options = SnapshotOptions::new()
+            .output_path(Path::new(crate::ROOT).join("tests/snapshots"))
             .threshold(COLOR_TOLERANCE)
             .max_failed_pixels(PIXELS_TOLERATED);
         image_snapshot_options(&window, format!("{name}-{theme}"), &options);
