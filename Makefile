@@ -34,7 +34,7 @@ lint: ## Check the format, the lints and that no folder grew
 test: ## Run the tests, beside the program that `make run` built
 	@scripts/setup test
 	cargo build --release
-	cargo test --release --package glossmith-tests -- $(ARGS)
+	cargo test --release --package glossmith-tests --package glossmith-numbers -- $(ARGS)
 
 test-times: ## The same, then what the parts took and the 40 slowest tests (docs/BUILD.md)
 	@scripts/setup test
@@ -48,7 +48,8 @@ fuzz: ## Damaged files of all formats through the program for a while (MINUTES=1
 test-thorough: lint ## All that there is, for hours: what is random, long or needs other programs, with debug assertions and on other drivers
 	@scripts/setup thorough
 	cargo build --profile thorough
-	cargo test --profile thorough --package glossmith-tests --all-features -- $(ARGS)
+	cargo test --profile thorough --package glossmith-tests --package glossmith-numbers --all-features -- $(ARGS)
+	scripts/fuzz --minutes 5 --program target/thorough/glossmith
 	cargo check --release --no-default-features
 	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \

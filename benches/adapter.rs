@@ -82,7 +82,7 @@ struct Render {
 }
 
 fn render(width: u32, height: u32, longest: Duration) -> Render {
-    let mut schedule = Schedule::new(width, height);
+    let mut schedule = Schedule::new(width, height, 0);
     let grid = schedule.grid();
     let goals = vec![FLUSH_SAMPLES; grid.tiles()];
     let mut budget = Budget::new(longest);

@@ -21,7 +21,6 @@ use glossmith::optics::warp::uniform_sphere;
 use glossmith::render::{EngineChoice, Session, SessionError};
 use glossmith::scene::surface::position_error;
 use glossmith::scene::{Geometry, Model, RayFrame, intersect_triangle, teapot, triangle_normal};
-use glossmith::study::hard::naive_conductor;
 use obvhs::cwbvh::CwBvh;
 use obvhs::ray::{Ray, RayHit};
 
@@ -275,4 +274,16 @@ fn fireflies() -> Result<(), SessionError> {
     let what = format!("one sample of a picture (teapot, studio; {})", sessions[0].engine());
     row("firefly clamp (off unless asked for)", &what, times.map(median));
     Ok(())
+}
+
+/// As textbooks write it.
+fn naive_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
+    let (cos2, sin2) = (cosine * cosine, 1.0 - cosine * cosine);
+    let t0 = eta * eta - k * k - sin2;
+    let size = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
+    let a = (0.5 * (size + t0)).sqrt();
+    let (t1, t2) = (size + cos2, 2.0 * a * cosine);
+    let perpendicular = (t1 - t2) / (t1 + t2);
+    let (t3, t4) = (cos2 * size + sin2 * sin2, t2 * sin2);
+    0.5 * (perpendicular + perpendicular * (t3 - t4) / (t3 + t4))
 }

@@ -48,7 +48,7 @@ impl Stage for Numbers {
         let keys = xi[0].to_each();
         let keys = T::each(|lane| (keys.as_ref()[lane].to_f64() * 4_294_967_296.0) as u32);
         let samples = T::each(|lane| lane as u32);
-        let mut sum = T::zero();
+        let mut sum = T::ZERO;
         for dimension in 0..2 {
             let [a, b] = random_pairs::<T>(&keys, &samples, Sequence::Sobol, dimension);
             sum += a + b;
@@ -74,11 +74,11 @@ impl Stage for OfLobe {
             curve: self.1,
             horizon: Horizon::Mirror,
             roughness: T::from_f64(0.3),
-            anisotropy: T::zero(),
-            eta: T::zero(),
+            anisotropy: T::ZERO,
+            eta: T::ZERO,
             table: &[],
         };
-        let up = vec3(T::zero(), T::zero(), T::one());
+        let up = vec3(T::ZERO, T::ZERO, T::ONE);
         let frame = frame_from_normal(up);
         let wo = Vec3::from_f64([0.6, 0.0, 0.8]);
         let drawn = lobe_sample(&shape, &frame, up, wo, xi);
@@ -130,7 +130,7 @@ impl<S: Stage> InLanes for Timed<'_, S> {
         T::vectorize(
             #[inline(always)]
             || {
-                let mut sum = T::zero();
+                let mut sum = T::ZERO;
                 for xi in numbers.chunks_exact(T::LANES) {
                     let axis = |i: usize| T::each(|lane| xi[lane][i]);
                     sum += stage.run([T::from_each(&axis(0)), T::from_each(&axis(1)), T::from_each(&axis(2))]);

@@ -143,7 +143,7 @@ fn seconds(lobe: Lobe, curve: Curve, size: [u32; 2], rows: u32, stage: usize, se
         table: &[],
     };
     let direction = |xi, wo| raw_sample(&shape, &frame, wo, xi);
-    let lit = |wi: Vec3<f32>| if hits_light(wi) { wi } else { Vec3::zero() };
+    let lit = |wi: Vec3<f32>| if hits_light(wi) { wi } else { Vec3::ZERO };
     let begun = Instant::now();
     let all = (0..rows).into_par_iter();
     // A loop for each stage: no choice inside it.
@@ -162,7 +162,7 @@ fn row([width, height]: [u32; 2], y: u32, seed: u32, draw: impl Fn([f32; 3], Vec
     let pixel = |x: u32| {
         let wo = vec3(-1.5 * place(x, width), -1.5 * place(y, height), 1.0);
         let wo = wo * (1.0 / wo.dot(wo).sqrt());
-        let mut sum = Vec3::zero();
+        let mut sum = Vec3::ZERO;
         for sample in 0..SAMPLES {
             let state = random_state(x, y, seed, sample, Sequence::Independent);
             let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f32>(state, 1));

@@ -82,7 +82,7 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.ray_queries.choose();
     arguments.denoise_device.choose();
     if arguments.allow_outside {
-        glossmith::import::resource::allow_everything();
+        glossmith::import::limits::allow_everything();
     }
     match arguments.command {
         Some(command) => command.run(),

@@ -23,6 +23,12 @@ pub trait Named: Copy + PartialEq + Sized + 'static {
     }
 }
 
+/// The choice of this name, or what there is to choose from.
+pub fn parse<T: Named>(name: &str) -> Result<T, String> {
+    let names = || T::ALL.iter().map(|choice| choice.name()).collect::<Vec<_>>().join(", ");
+    T::by_name(name).ok_or_else(|| format!("expected one of {}", names()))
+}
+
 /// Declares an enum of choices, one line each: `Variant = number, "name", "Label", "Help.";`. The number is the one that
 /// the shaders know it by; it may be left out. In files a choice stands by its name.
 #[macro_export]
@@ -56,6 +62,14 @@ macro_rules! named {
             }
         }
 
+        impl std::str::FromStr for $type {
+            type Err = String;
+
+            fn from_str(name: &str) -> Result<Self, String> {
+                $crate::named::parse(name)
+            }
+        }
+
         impl $crate::named::Named for $type {
             const ALL: &'static [Self] = Self::ALL;
 
@@ -78,4 +92,31 @@ macro_rules! named {
     };
 }
 
-pub use crate::named;
+/// A struct whose fields have the defaults that stand behind them, else those of their types.
+#[macro_export]
+macro_rules! with_defaults {
+    (@) => {
+        Default::default()
+    };
+    (@ $default:expr) => {
+        $default
+    };
+    ($(#[$meta:meta])* pub struct $name:ident {
+        $($(#[$field_meta:meta])* pub $field:ident: $type:ty $(= $default:expr)?,)*
+    }) => {
+        $(#[$meta])*
+        pub struct $name {
+            $($(#[$field_meta])* pub $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self {
+                    $($field: $crate::with_defaults!(@ $($default)?),)*
+                }
+            }
+        }
+    };
+}
+
+pub use crate::{named, with_defaults};

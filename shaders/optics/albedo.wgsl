@@ -1,18 +1,11 @@
 // The share of light that a lobe reflects of each view. Twin of src/optics/albedo.rs.
-#import "optics/fresnel"
-#import "optics/refraction"
 #import "optics/thin_film"
 #import "scene/layout"
-
-const ALBEDO_NODES: u32 = 64u;
-const TOTAL_NODES: u32 = 16u;
-const ROUGHNESS_NODES: u32 = 17u;
-const ROUGH_ALBEDO_LENGTH: u32 = 4u * ROUGHNESS_NODES * ALBEDO_NODES;
 
 // The node, and how far the value is beyond it.
 fn node_below(value: f32, nodes: u32) -> vec2f {
     let last = f32(nodes) - 1.0;
-    let position = clamp(value, 0.0, 1.0) * last;
+    let position = saturate(value) * last;
     let low = min(floor(position), last - 1.0);
     return vec2f(low, position - low);
 }
@@ -21,7 +14,7 @@ fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
     let below = node_below(place, ALBEDO_NODES);
     let beyond = below.y;
     // A loop over the nodes that have weight, so that the code that loads one is there once.
-    var sum = vec3f(0.0);
+    var sum = vec3f();
     for (var node = 0u; node < select(1u, 2u, beyond > 0.0); node++) {
         sum += table_numbers(albedo_table, u32(below.x) + node).xyz * select(1.0 - beyond, beyond, node == 1u);
     }
@@ -53,7 +46,7 @@ fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     let first = u32(step.x) * ALBEDO_NODES + u32(below.x);
     let across = below.y;
     let down = step.y;
-    var sum = vec4f(0.0);
+    var sum = vec4f();
     for (var node = 0u; node < select(2u, 4u, down > 0.0); node++) {
         let share = select(1.0 - across, across, (node & 1u) != 0u) * select(1.0 - down, down, node > 1u);
         sum += table_numbers(albedo_table, first + (node & 1u) + ALBEDO_NODES * (node >> 1u)) * share;
@@ -62,7 +55,7 @@ fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
 }
 
 fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
-    if terms.model != FRESNEL_SCHLICK && terms.model != FRESNEL_DIELECTRIC {
+    if !has_parts(terms) {
         return terms.weight * terms.tint * integrals.xyz;
     }
     var dielectric = terms.tint * integrals.x;
@@ -70,16 +63,16 @@ fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
         dielectric = terms.tint * (fresnel_f0(terms.ior) * integrals.y) + integrals.z;
     }
     var metal = terms.metal_f0 * integrals.y + integrals.z;
-    if PLAN_EDGE_TINT == 1u {
-        metal = max(metal - edge_darkening(terms.metal_f0, terms.edge_tint) * integrals.w, vec3f(0.0));
+    if PLAN_EDGE_TINT {
+        metal = max(metal - edge_darkening(terms.metal_f0, terms.edge_tint) * integrals.w, vec3f());
     }
     dielectric *= terms.weight;
     metal *= terms.metal_tint;
     if shows_film(terms) {
         // No table has every thickness: the lobe counts as its mean facet.
         let facet = mean_facet(integrals.y, integrals.z);
-        dielectric = max(dielectric + film_change_of_dielectric(terms, facet.x) * facet.y, vec3f(0.0));
-        metal = max(metal + film_change_of_metal(terms, facet.x) * facet.y, vec3f(0.0));
+        dielectric = max(dielectric + film_change_of_dielectric(terms, facet.x) * facet.y, vec3f());
+        metal = max(metal + film_change_of_metal(terms, facet.x) * facet.y, vec3f());
     }
     return mix(dielectric, metal, terms.metalness);
 }

@@ -1,38 +1,6 @@
 // The geometric lobe's density with the lobe as a unit ball. Twin of src/optics/chord.rs, which explains the mathematics.
 #import "optics/curve/registry"
 
-const PEAK_RADIUS: f32 = 1e-7;
-const TINY: f32 = 1e-18;
-const RANGE_MAX: vec2f = vec2f(20.0, 1000.0);
-const SHORT_RULE_ROUGHNESS: f32 = 0.5;
-const SHORT_RANGE: f32 = 0.5;
-
-const GAUSS_6: array<vec2f, 3> = array<vec2f, 3>(
-    vec2f(0.238619186, 0.467913935),
-    vec2f(0.661209386, 0.360761573),
-    vec2f(0.932469514, 0.171324492),
-);
-const GAUSS_12: array<vec2f, 6> = array<vec2f, 6>(
-    vec2f(0.125233409, 0.249147046),
-    vec2f(0.367831499, 0.233492537),
-    vec2f(0.587317954, 0.203167427),
-    vec2f(0.769902674, 0.160078329),
-    vec2f(0.904117256, 0.106939326),
-    vec2f(0.981560634, 0.0471753364),
-);
-const GAUSS_20: array<vec2f, 10> = array<vec2f, 10>(
-    vec2f(0.0765265211, 0.152753387),
-    vec2f(0.227785851, 0.149172986),
-    vec2f(0.373706089, 0.142096109),
-    vec2f(0.510867002, 0.131688638),
-    vec2f(0.636053681, 0.118194532),
-    vec2f(0.746331906, 0.10193012),
-    vec2f(0.839116972, 0.0832767416),
-    vec2f(0.912234428, 0.0626720483),
-    vec2f(0.963971927, 0.0406014298),
-    vec2f(0.993128599, 0.0176140071),
-);
-
 struct Chord {
     centre: f32,
     spread: f32,
@@ -54,21 +22,22 @@ fn chord_density(
     if chord.nearest >= chord.last.x || chord.first.y <= -chord.last.y {
         return 0.0;
     }
-    var integral = 0.0;
     // Each integral is called at one place: drivers inline, and compile in more than proportion to the size.
     var how = curve_integral(curve);
-    var pairs = select(10u, 6u, kappa <= SHORT_RULE_ROUGHNESS);
+    // The rules of 6, 12 and 20 points: half of them are in the table.
+    var rule = select(vec2u(9u, 19u), vec2u(3u, 9u), kappa <= SHORT_RULE_ROUGHNESS);
     if how == INTEGRAL_POLYNOMIAL_TO_ZERO {
         how = INTEGRAL_POLYNOMIAL;
         if chord_range(chord) < SHORT_RANGE {
             how = INTEGRAL_QUADRATURE;
-            pairs = 3u;
+            rule = vec2u(0u, 3u);
         }
     }
+    var integral = 0.0;
     switch how {
         case INTEGRAL_RECIPROCAL: { integral = chord_reciprocal_integral(chord); }
         case INTEGRAL_POLYNOMIAL: { integral = chord_polynomial_integral(chord, curve_polynomial(curve)); }
-        case INTEGRAL_QUADRATURE: { integral = chord_quadrature(curve, pairs, chord); }
+        case INTEGRAL_QUADRATURE: { integral = chord_quadrature(curve, rule.x, rule.y, chord); }
         default: { integral = chord_table_integral(table, chord); }
     }
     return max(0.25 * INV_PI * integral / chord.a_root, 0.0);
@@ -168,27 +137,20 @@ fn chord_polynomial_integral(chord: Chord, h: vec3f) -> f32 {
         + h.z * chord_weighed(chord, vec3f(i2, i3, i4), vec2f(d3, d4));
 }
 
-// `pairs` of nodes: 3, 6 or 10.
-fn chord_quadrature(curve: u32, pairs: u32, chord: Chord) -> f32 {
+// By the nodes of GAUSS from `first` to before `end`.
+fn chord_quadrature(curve: u32, first: u32, end: u32, chord: Chord) -> f32 {
     let mu = 0.5 * chord.odd.x / chord.a_root;
     let range_max = RANGE_MAX.x + RANGE_MAX.y * max(mu, 0.0);
     let half_range = 0.5 * min(chord_range(chord), range_max);
     let middle = (1.0 + chord_growth(chord, chord.last)) * exp(-half_range);
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m - d).
     var sum = 0.0;
-    for (var i = 0u; i < pairs; i++) {
-        var node = GAUSS_20[i];
-        if pairs == 6u { node = GAUSS_12[i]; }
-        if pairs == 3u { node = GAUSS_6[i]; }
-        sum += chord_pair(curve, chord, mu, middle, half_range, node);
+    for (var i = first; i < end; i++) {
+        let factor = exp(half_range * GAUSS[i].x);
+        let values = chord_integrand(curve, chord, mu, middle * factor) + chord_integrand(curve, chord, mu, middle / factor);
+        sum += values * GAUSS[i].y;
     }
     return sum * half_range;
-}
-
-fn chord_pair(curve: u32, chord: Chord, mu: f32, middle: f32, half_range: f32, node: vec2f) -> f32 {
-    let factor = exp(half_range * node.x);
-    let values = chord_integrand(curve, chord, mu, middle * factor) + chord_integrand(curve, chord, mu, middle / factor);
-    return values * node.y;
 }
 
 fn chord_integrand(curve: u32, chord: Chord, mu: f32, exp_v: f32) -> f32 {
@@ -208,7 +170,7 @@ fn chord_table_integral(table: u32, chord: Chord) -> f32 {
         let start = select(vec2f(chord.nearest, 0.0), vec2f(chord.first.x, abs(chord.first.y)), is_around);
         let end = select(chord.first.x, chord.last.x, is_around);
         if select(chord.first.y > 0.0, start.x < end, is_around) {
-            sum += f32(times) * chord_table_section(table, chord, start, end, select(0.0, 1.0, is_around));
+            sum += f32(times) * chord_table_section(table, chord, start, end, f32(is_around));
         }
     }
     return sum;

@@ -1,9 +1,5 @@
 // The medium of a coat that absorbs by the length of the way through it. Twin of src/optics/coat_medium.rs.
 #import "optics/material"
-#import "optics/refraction"
-
-const WAY_COSINE_MIN: f32 = 1e-3;
-const COLOR_MIN: f32 = 1e-12;
 
 fn way_length(material: Material, cosine: f32) -> f32 {
     let behind = safe_sqrt(refracted_square(cosine, material.coat_ior)) / material.coat_ior;

@@ -1,7 +1,5 @@
 // The Fresnel factor at the half vector. Twin of src/optics/fresnel.rs.
 #import "optics/choices"
-#import "optics/numeric"
-#import "optics/refraction"
 #import "optics/thin_film"
 #import "scene/plan"
 
@@ -27,38 +25,31 @@ fn of_dielectric(terms: FresnelTerms) -> FresnelTerms {
 }
 
 fn shows_film(terms: FresnelTerms) -> bool {
-    return PLAN_THIN_FILM == 1u && terms.has_film;
+    return PLAN_THIN_FILM && terms.has_film;
 }
 
 fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
-    if shows_film(terms) && (terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC) {
+    if terms.model == FRESNEL_NONE {
+        return terms.weight * terms.tint;
+    }
+    if has_parts(terms) {
         let parts = fresnel_parts(terms, cosine);
         return mix(parts.dielectric, parts.metal, terms.metalness);
     }
-    switch terms.model {
-        case FRESNEL_NONE: { return terms.weight * terms.tint; }
-        case FRESNEL_SCHLICK: {
-            let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
-            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
-            return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
-        }
-        case FRESNEL_DIELECTRIC: {
-            let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
-            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
-            return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
-        }
-        default: {
-            var channels = vec3f(
-                fresnel_conductor(cosine, terms.eta.x, terms.k.x),
-                fresnel_conductor(cosine, terms.eta.y, terms.k.y),
-                fresnel_conductor(cosine, terms.eta.z, terms.k.z),
-            );
-            if shows_film(terms) {
-                channels = film_on_conductor(terms, cosine, channels);
-            }
-            return terms.weight * terms.tint * channels;
-        }
+    var channels = vec3f(
+        fresnel_conductor(cosine, terms.eta.x, terms.k.x),
+        fresnel_conductor(cosine, terms.eta.y, terms.k.y),
+        fresnel_conductor(cosine, terms.eta.z, terms.k.z),
+    );
+    if shows_film(terms) {
+        channels = film_on_conductor(terms, cosine, channels);
     }
+    return terms.weight * terms.tint * channels;
+}
+
+// Whether a dielectric and a metal are mixed.
+fn has_parts(terms: FresnelTerms) -> bool {
+    return terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC;
 }
 
 struct FresnelParts {
@@ -67,18 +58,15 @@ struct FresnelParts {
 }
 
 fn fresnel_parts(terms: FresnelTerms, cosine: f32) -> FresnelParts {
-    var dielectric = vec3f(0.0);
+    var dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
     if terms.model == FRESNEL_SCHLICK {
         dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
-    } else {
-        dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
     }
     let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
     var parts = FresnelParts(terms.weight * dielectric, metal);
     if shows_film(terms) {
-        let of_dielectric = film_change_of_dielectric(terms, cosine);
-        parts.dielectric = clamp(parts.dielectric + of_dielectric, vec3f(0.0), vec3f(1.0));
-        parts.metal = clamp(parts.metal + film_change_of_metal(terms, cosine), vec3f(0.0), vec3f(1.0));
+        parts.dielectric = saturate(parts.dielectric + film_change_of_dielectric(terms, cosine));
+        parts.metal = saturate(parts.metal + film_change_of_metal(terms, cosine));
     }
     return parts;
 }
@@ -93,32 +81,32 @@ fn fresnel_f0(ior: f32) -> f32 {
 }
 
 fn fresnel_schlick(f0: vec3f, cosine: f32) -> vec3f {
-    let x = clamp(1.0 - cosine, 0.0, 1.0);
+    let x = saturate(1.0 - cosine);
     let x2 = x * x;
-    return f0 + (vec3f(1.0) - f0) * (x2 * x2 * x);
+    return f0 + (1.0 - f0) * (x2 * x2 * x);
 }
 
 fn fresnel_metal(f0: vec3f, edge_tint: vec3f, cosine: f32) -> vec3f {
-    if PLAN_EDGE_TINT == 0u {
+    if !PLAN_EDGE_TINT {
         return fresnel_schlick(f0, cosine);
     }
-    return max(fresnel_schlick(f0, cosine) - edge_darkening(f0, edge_tint) * edge_shape(cosine), vec3f(0.0));
+    return max(fresnel_schlick(f0, cosine) - edge_darkening(f0, edge_tint) * edge_shape(cosine), vec3f());
 }
 
 fn edge_darkening(f0: vec3f, edge_tint: vec3f) -> vec3f {
     let seventh = 1.0 / 7.0;
-    return fresnel_schlick(f0, seventh) * (vec3f(1.0) - edge_tint) * (1.0 / edge_shape(seventh));
+    return fresnel_schlick(f0, seventh) * (1.0 - edge_tint) * (1.0 / edge_shape(seventh));
 }
 
 fn edge_shape(cosine: f32) -> f32 {
-    let c = clamp(cosine, 0.0, 1.0);
+    let c = saturate(cosine);
     let x = 1.0 - c;
     let x2 = x * x;
     return c * x2 * x2 * x2;
 }
 
 fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
-    let c = clamp(cosine, 0.0, 1.0);
+    let c = saturate(cosine);
     // ior^2 cos^2 of the refracted angle, not negative unless the reflection is total.
     let square = refracted_square(c, ior);
     let g = safe_sqrt(square);
@@ -129,24 +117,23 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
 }
 
 fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
-    let white = vec3f(1.0);
-    var left = white;
+    var left = vec3f();
     if terms.model == FRESNEL_SCHLICK {
-        let c = clamp(cosine, 0.0, 1.0);
+        let c = saturate(cosine);
         // 1 - (1 - c)^5.
         let beside_grazing = c * (5.0 - c * (10.0 - c * (10.0 - c * (5.0 - c))));
-        left = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
+        left = (1.0 - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
     } else if terms.model == FRESNEL_DIELECTRIC {
-        left = white - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
+        left = 1.0 - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
     } else {
         var full = terms;
         full.weight = 1.0;
-        left = white - fresnel(full, cosine);
+        left = 1.0 - fresnel(full, cosine);
     }
-    if shows_film(terms) && (terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC) {
-        left += min(terms.tint, white) * film_passed(terms, cosine, terms.ior * behind);
+    if shows_film(terms) && has_parts(terms) {
+        left += min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, terms.ior * behind);
     }
-    return max(white * (1.0 - terms.weight) + left * terms.weight, vec3f(0.0));
+    return max(1.0 - terms.weight + left * terms.weight, vec3f());
 }
 
 fn fresnel_transmitted(cosine: f32, behind: f32, ior: f32) -> f32 {
@@ -160,7 +147,7 @@ fn fresnel_passed(a: f32, b: f32) -> f32 {
 }
 
 fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
-    let c = clamp(cosine, 0.0, 1.0);
+    let c = saturate(cosine);
     let cos2 = c * c;
     let sin2 = (1.0 - c) * (1.0 + c);
     // (a + ib)^2 = t0 + iu, so written that nothing cancels, neither at grazing for eta near 1 nor head-on for eta near 0;
@@ -180,5 +167,5 @@ fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     // Head-on both may be 0; there both polarisations are alike.
     let ratio = select((t3 - t4) / max(t3 + t4, 1e-37), 1.0, t3 + t4 < 1e-37);
     let parallel = perpendicular * ratio;
-    return clamp(0.5 * (perpendicular + parallel), 0.0, 1.0);
+    return saturate(0.5 * (perpendicular + parallel));
 }

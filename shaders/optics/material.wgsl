@@ -1,11 +1,6 @@
 // The material as the integrator sees it. Twin of src/optics/material.rs.
 #import "optics/fresnel"
 #import "optics/lobe/registry"
-#import "scene/layout"
-#import "scene/plan"
-
-const NO_TEXTURE: u32 = 0xffffffffu;
-const MATCHED_NODES: u32 = 17u;
 
 struct Surface {
     frame: Frame,
@@ -18,7 +13,7 @@ struct Surface {
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
         planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
-        material.lobe_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
+        material.lobe_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY),
         0.0,
     );
 }
@@ -35,7 +30,7 @@ fn material_ior_ahead(material: Material, is_inside: bool) -> f32 {
 }
 
 fn reflecting_ior_ahead(material: Material, is_inside: bool) -> f32 {
-    if PLAN_COAT == 0u {
+    if !PLAN_COAT {
         return material_ior_ahead(material, is_inside);
     }
     return select(material.reflecting_ior, 1.0 / material.ior, is_inside && material_transmits(material));
@@ -72,7 +67,7 @@ fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
 }
 
 fn material_film_terms(material: Material, is_within: bool) -> FilmTerms {
-    if PLAN_THIN_FILM == 0u {
+    if !PLAN_THIN_FILM {
         return FilmTerms();
     }
     let before = select(material.ior / reflecting_ior_ahead(material, false), material.ior, is_within);
@@ -83,7 +78,7 @@ fn material_has_holes(material: Material) -> bool {
     let is_masked = material.alpha_cutoff > material.opacity;
     let is_clear = material.alpha_cutoff < 0.0 && material.opacity < 1.0;
     let is_varied = material.opacity_texture != NO_TEXTURE || has_vertex_flag(material, VERTEX_OPACITY);
-    return PLAN_ALPHA == 1u && (is_masked || is_clear || is_varied);
+    return PLAN_ALPHA && (is_masked || is_clear || is_varied);
 }
 
 fn has_flag(material: Material, flag: u32) -> bool {
@@ -92,16 +87,16 @@ fn has_flag(material: Material, flag: u32) -> bool {
 
 // Whether vertices carry opacity or emission.
 fn has_vertex_flag(material: Material, flag: u32) -> bool {
-    return PLAN_VERTEX_COLORS == 1u && has_flag(material, flag);
+    return PLAN_VERTEX_COLORS && has_flag(material, flag);
 }
 
 fn material_has_base(material: Material) -> bool {
-    let is_opaque = PLAN_TRANSMISSION == 0u || material.transmission_weight < 1.0;
-    return PLAN_BASE == 1u && is_opaque && material.metalness < 1.0 && any(material.base_color > vec3f(0.0));
+    let is_opaque = !PLAN_TRANSMISSION || material.transmission_weight < 1.0;
+    return PLAN_BASE && is_opaque && material.metalness < 1.0 && any(material.base_color > vec3f());
 }
 
 fn material_transmits(material: Material) -> bool {
-    return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && material.metalness < 1.0;
+    return PLAN_TRANSMISSION && material.transmission_weight > 0.0 && material.metalness < 1.0;
 }
 
 // Whether the viewer is within a solid that light passes through.
@@ -110,7 +105,7 @@ fn is_within(material: Material, surface: Surface) -> bool {
 }
 
 fn material_has_specular(material: Material) -> bool {
-    if PLAN_SPECULAR == 0u {
+    if !PLAN_SPECULAR {
         return false;
     }
     let may_be_metal = material.metalness > 0.0 || material.metalness_texture != NO_TEXTURE;

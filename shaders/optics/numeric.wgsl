@@ -1,7 +1,7 @@
 // Elementary functions in forms that do not cancel. Twin of src/optics/numeric.rs.
 
-const PI: f32 = 3.14159265358979;
-const INV_PI: f32 = 0.318309886183791;
+const PI = 3.14159265358979f;
+const INV_PI = 0.318309886183791f;
 
 fn expm1(x: f32) -> f32 {
     let series = x * (1.0 + x * (0.5 + x * (0.16666667 + x * 0.041666668)));

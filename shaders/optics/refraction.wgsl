@@ -28,7 +28,7 @@ fn refracting_normal(wo: vec3f, wi: vec3f, eta: f32) -> vec3f {
 
 fn refracting_cosines(wo: vec3f, wi: vec3f, eta: f32) -> vec2f {
     let h = normalize_or(refracting_normal(wo, wi, eta), wo);
-    return clamp(vec2f(dot(wo, h), -dot(wi, h)), vec2f(0.0), vec2f(1.0));
+    return saturate(vec2f(dot(wo, h), -dot(wi, h)));
 }
 
 fn facet_mirror(frame: Frame, wo: vec3f, wi: vec3f, eta: f32) -> vec3f {

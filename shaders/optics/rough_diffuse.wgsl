@@ -1,9 +1,6 @@
 // Rough diffuse reflection that keeps its energy. Twin of src/optics/rough_diffuse.rs.
+#import "scene/constants"
 #import "optics/numeric"
-
-const HEAD_ON: f32 = 0.2877934092108062;
-const MEAN: f32 = 0.07248821245692394;
-const ROUGH_COSINE_MIN: f32 = 1e-4;
 
 fn rough_diffuse(albedo: vec3f, roughness: f32, cosines: vec2f, between: f32) -> vec3f {
     let c = clamp(cosines, vec2f(ROUGH_COSINE_MIN), vec2f(1.0));
@@ -14,7 +11,7 @@ fn rough_diffuse(albedo: vec3f, roughness: f32, cosines: vec2f, between: f32) ->
     let mean = head_on * (1.0 + roughness * MEAN);
     let lost = max(1.0 - single_albedo(c.x, roughness), 0.0) * max(1.0 - single_albedo(c.y, roughness), 0.0);
     let again = mean * lost / max(1.0 - mean, 1e-6);
-    return vec3f(once) + albedo * again / (vec3f(1.0) - albedo * (1.0 - mean));
+    return vec3f(once) + albedo * again / (1.0 - albedo * (1.0 - mean));
 }
 
 fn single_albedo(cosine: f32, roughness: f32) -> f32 {

@@ -1,11 +1,9 @@
 // Multiple scattering between facets. Twin of src/optics/scattering.rs.
 #import "optics/albedo"
-#import "optics/fresnel"
-#import "optics/lobe/registry"
 #import "optics/material"
 
 fn compensates(material: Material) -> bool {
-    return PLAN_MULTIPLE_SCATTERING == 1u && has_flag(material, COMPENSATES);
+    return PLAN_MULTIPLE_SCATTERING && has_flag(material, COMPENSATES);
 }
 
 fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> vec3f {
@@ -15,7 +13,7 @@ fn interface_gain(material: Material, surface: Surface, shape: LobeShape) -> vec
     let is_inside = is_within(material, surface);
     let first = kept_energies(material, surface, shape, 0u);
     var kept = vec3f(select(first.y, first.z, is_inside));
-    if PLAN_THIN_FILM == 1u && material.has_film == 1u && material_transmits(material) {
+    if PLAN_THIN_FILM && material.has_film == 1u && material_transmits(material) {
         // A film shares the light otherwise in each channel.
         for (var channel = 1u; channel < 3u; channel++) {
             let other = kept_energies(material, surface, shape, channel);
@@ -41,23 +39,23 @@ fn compensated(
     let again = (1.0 - kept) / kept;
     if terms.model == FRESNEL_NONE || terms.model == FRESNEL_CONDUCTOR {
         let head_on = fresnel(terms, 1.0);
-        return fresnel(terms, cosine) * (vec3f(1.0) + head_on * (again * terms.metalness));
+        return fresnel(terms, cosine) * (1.0 + head_on * (again * terms.metalness));
     }
     let parts = fresnel_parts(terms, cosine);
     var head_on = terms.metal_f0 * terms.metal_tint;
     if shows_film(terms) {
         head_on = fresnel_parts(terms, 1.0).metal;
     }
-    let metal = parts.metal * (vec3f(1.0) + head_on * again);
+    let metal = parts.metal * (1.0 + head_on * again);
     // The refracting share of a dielectric is clear; the rest lies over a base.
     let share = select(0.0, material.transmission_weight, material_transmits(material));
-    let gain = vec3f(1.0) + (interface_gain(material, surface, shape) - vec3f(1.0)) * share;
+    let gain = 1.0 + (interface_gain(material, surface, shape) - vec3f(1.0)) * share;
     return mix(parts.dielectric * gain, metal, terms.metalness);
 }
 
 fn kept_energies(material: Material, surface: Surface, shape: LobeShape, channel: u32) -> vec3f {
     let place = safe_sqrt(dot(surface.frame.normal, surface.wo));
-    if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
+    if PLAN_ROUGH_TABLES && material.has_rough_tables == 1u {
         return rough_albedo_lookup(shape.table + channel * ROUGH_ALBEDO_LENGTH, place, material.roughness).xyz;
     }
     return albedo_lookup(shape.table + channel * 4u * ALBEDO_NODES, place);

@@ -1,11 +1,7 @@
 // A thin film within which light interferes. Twin of src/optics/thin_film.rs.
+#import "scene/constants"
 #import "optics/fresnel"
-#import "optics/numeric"
 #import "optics/refraction"
-
-const LARGEST_FILM_F0: f32 = 0.999;
-const FILM_TINY: f32 = 1e-36;
-const LEAST_FILM_COSINE: f32 = 1e-15;
 
 struct FilmTerms {
     weight: f32,
@@ -15,7 +11,7 @@ struct FilmTerms {
 
 fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness < 1.0) {
-        return vec3f(0.0);
+        return vec3f();
     }
     let height = safe_sqrt(refracted_square(max(cosine, LEAST_FILM_COSINE), terms.ior));
     return -(min(terms.tint, vec3f(1.0)) * film_passed(terms, cosine, height)) * terms.weight;
@@ -23,7 +19,7 @@ fn film_change_of_dielectric(terms: FresnelTerms, cosine: f32) -> vec3f {
 
 fn film_change_of_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
     if !(terms.metalness > 0.0) {
-        return vec3f(0.0);
+        return vec3f();
     }
     return film_on_metal(terms, max(cosine, LEAST_FILM_COSINE)) * terms.metal_tint;
 }
@@ -41,13 +37,13 @@ fn film_on_conductor(terms: FresnelTerms, from_normal: f32, bare: vec3f) -> vec3
     for (var channel = 0u; channel < 3u; channel++) {
         behind[channel] = admittances(cosine, terms.eta[channel], terms.k[channel]);
     }
-    let filmed = vec3f(1.0) - entered(terms.film, cosine, behind);
-    return mix(bare, max(filmed, vec3f(0.0)), terms.film.weight);
+    let filmed = 1.0 - entered(terms.film, cosine, behind);
+    return mix(bare, max(filmed, vec3f()), terms.film.weight);
 }
 
 fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
     var behind = mat3x4f();
-    var bare = vec3f(0.0);
+    var bare = vec3f();
     for (var channel = 0u; channel < 3u; channel++) {
         let index = index_of_colors(terms.metal_f0[channel], terms.edge_tint[channel]);
         behind[channel] = admittances(cosine, index.x, index.y);
@@ -55,8 +51,8 @@ fn film_on_metal(terms: FresnelTerms, cosine: f32) -> vec3f {
     }
     let scale = entered(terms.film, cosine, behind) / bare;
     let reflected = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
-    let lost = vec3f(1.0) - reflected;
-    return max((lost - lost * scale) * terms.film.weight + reflected, vec3f(0.0)) - reflected;
+    let lost = 1.0 - reflected;
+    return max((lost - lost * scale) * terms.film.weight + reflected, vec3f()) - reflected;
 }
 
 fn index_of_colors(f0: f32, edge: f32) -> vec2f {
@@ -88,7 +84,7 @@ fn entered(film: FilmTerms, cosine: f32, behind: mat3x4f) -> vec3f {
     let height = sqrt(square);
     let index_square = film.ior * film.ior;
     var media = behind;
-    var sum = vec3f(0.0);
+    var sum = vec3f();
     for (var channel = 0u; channel < 3u; channel++) {
         let path = film.path[channel];
         let phase = path * height;

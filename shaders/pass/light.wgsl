@@ -1,15 +1,7 @@
 // Light at path vertices: the environment, emission and next-event estimation, combined by multiple importance sampling
 // (MIS). Twin of src/cpu/integrator/light.rs.
-#import "optics/coat_medium"
-#import "optics/frame"
-#import "optics/numeric"
-#import "optics/random"
-#import "optics/warp"
-#import "scene/choices"
 #import "scene/environment"
 #import "scene/light"
-#import "scene/plan"
-#import "scene/surface"
 
 fn world_environment_radiance(direction: vec3f) -> vec3f {
     let local = environment_local_from_world(direction, globals.environment_rotation);
@@ -31,22 +23,20 @@ fn emitted_light(
     point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
 ) -> vec3f {
     var emission = material.emission;
-    if PLAN_SPOT == 1u {
-        let cosine = dot(point.flat, point.surface.wo);
+    let cosine = dot(point.flat, point.surface.wo);
+    if PLAN_SPOT {
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
         emission *= profile_share(material, point.surface.wo);
     }
-    if PLAN_COAT_ABSORPTION == 1u {
-        let cosine = dot(point.flat, point.surface.wo);
+    if PLAN_COAT_ABSORPTION {
         emission *= coat_over_emission(material, cosine, point.surface.is_inside);
     }
     if !samples_emitters() || is_mirror {
         return emission;
     }
     if globals.strategy == STRATEGY_LIGHT {
-        return vec3f(0.0);
+        return vec3f();
     }
-    let cosine = dot(point.flat, point.surface.wo);
     return emission * mis_weight_lobe(lobe_density, light_density(material.light_luminance, cosine, distance));
 }
 
@@ -57,12 +47,12 @@ fn mis_weight_lobe(lobe_density: f32, light_density: f32) -> f32 {
 
 // Whether light sampling samples the environment.
 fn samples_environment() -> bool {
-    return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
+    return PLAN_LIGHT_SAMPLING && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
 }
 
 // Whether light sampling samples emitting triangles.
 fn samples_emitters() -> bool {
-    return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
+    return PLAN_EMITTER_SAMPLING && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
 }
 
 // Whether light is sampled (next-event estimation).
@@ -73,13 +63,10 @@ fn samples_light() -> bool {
 // Chooses by a light sample's first number between the environment (is_below) and the emitters; also returns the remapped
 // number.
 fn choose_environment(xi: f32) -> Part {
-    if !samples_emitters() {
-        return Part(true, xi);
+    if samples_emitters() && samples_environment() {
+        return split(xi, globals.environment_probability);
     }
-    if !samples_environment() {
-        return Part(false, xi);
-    }
-    return split(xi, globals.environment_probability);
+    return Part(!samples_emitters(), xi);
 }
 
 // Samples a direction to the environment or an emitter. The environment's radiance is left out: it is looked up only if the
@@ -90,7 +77,7 @@ fn sample_light(point: SurfacePoint, is_environment: bool, xi: vec3f) -> LightSa
     }
     let sampled = environment_sample(xi, globals.environment_cells_size);
     let direction = environment_world_from_local(sampled.direction, globals.environment_rotation);
-    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(0.0), 1e30, ENVIRONMENT_GROUP);
+    return LightSample(direction, sampled.density * globals.environment_probability, vec3f(), 1e30, ENVIRONMENT_GROUP);
 }
 
 // Whether an escaped path looks up the environment.
@@ -112,17 +99,17 @@ fn plain_background(sky: vec3f) -> vec4f {
         return vec4f(sky, 1.0);
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    return select(vec4f(globals.background, 1.0), vec4f(0.0), is_transparent);
+    return select(vec4f(globals.background, 1.0), vec4f(), is_transparent);
 }
 
 // Whether the kernel is compiled with light sampling.
 fn may_sample_light() -> bool {
-    return PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u;
+    return PLAN_LIGHT_SAMPLING || PLAN_EMITTER_SAMPLING;
 }
 
 // Background colour and alpha of a camera ray that misses; a blur draws the random pair of `dimension`.
 fn camera_background(direction: vec3f, state: RandomState, dimension: u32) -> vec4f {
-    var sky = vec3f(0.0);
+    var sky = vec3f();
     if needs_environment(0u, true) {
         var along = direction;
         if globals.background_kind == BACKGROUND_BLURRED {

@@ -2,62 +2,26 @@
 #import "pass/light"
 #import "pass/light_groups"
 #import "optics/layer/scatter"
-#import "optics/random"
-#import "scene/camera"
 #import "scene/catcher"
-#import "scene/choices"
-#import "scene/light"
-#import "scene/surface"
 #import "scene/visibility"
 
 // Random pairs before the first bounce (pixel, lens) and per bounce (two for the lobe, two for light and roulette).
-const FIRST_DIMENSION: u32 = 2u;
-const BOUNCE_DIMENSIONS: u32 = 4u;
+const FIRST_DIMENSION = 2u;
+const BOUNCE_DIMENSIONS = 4u;
 // First dimension of the directions below the specular lobe, two pairs per bounce: beyond the dimensions of every path.
-const BELOW_DIMENSION: u32 = 4096u;
+const BELOW_DIMENSION = 4096u;
 // Dimensions of the shadow catcher's choice to mirror, and (the next one) of the background's blur.
-const CATCHER_DIMENSION: u32 = 12288u;
+const CATCHER_DIMENSION = 12288u;
 // A path's state after its camera ray hit the shadow catcher: no visible hit; shadow over an opaque background; shadow over
 // a transparent one, whose light becomes alpha; mirrored.
-const CATCHER_MISS: u32 = 0u;
-const CATCHER_SHADOW: u32 = 1u;
-const CATCHER_SHADOW_ALPHA: u32 = 2u;
-const CATCHER_MIRRORED: u32 = 3u;
-// The slot that stands for no medium.
-const NO_MEDIUM: u32 = 0xffffffffu;
+const CATCHER_MISS = 0u;
+const CATCHER_SHADOW = 1u;
+const CATCHER_SHADOW_ALPHA = 2u;
+const CATCHER_MIRRORED = 3u;
 // Number of bounces without Russian roulette.
-const ROULETTE_START: u32 = 3u;
+const ROULETTE_START = 3u;
 // Largest radiance per channel that is kept. Its square would overflow; larger samples are dropped and counted.
-const RADIANCE_MAX: f32 = 1e18;
-
-// A tile of a dispatch: its top left pixel, first sample and samples per pixel.
-struct Tile {
-    // In pixels.
-    origin: vec2u,
-    first_sample: u32,
-    sample_count: u32,
-}
-
-// Sums of a pixel's colours since the host last read them.
-struct PixelColors {
-    // rgb, and coverage in a.
-    all: vec4f,
-    // rgb of the odd-numbered samples alone (the second half, for the variance), and their number in a.
-    odd: vec4f,
-}
-
-// Other sums over a pixel's samples since the host last read them.
-struct PixelStatistics {
-    // x: all samples; y: the odd-numbered ones.
-    luminance_squared: vec2f,
-    // x: samples in the sums; y: samples dropped as not sound.
-    kept_dropped: vec2f,
-    // x: rays traced; y: luminance that the firefly clamp removed.
-    rays_clamped: vec2f,
-    // Throughput's luminance of paths that the bounce limit ended.
-    cut: f32,
-    unused: f32,
-}
+const RADIANCE_MAX = 1e18f;
 
 // Sums of the first-hit guides over a pixel's first samples, of the even-numbered or the odd-numbered ones.
 struct GuideSums {
@@ -80,12 +44,9 @@ struct GuideSums {
 // Two elements per pixel: even-numbered samples, then odd-numbered ones.
 @group(1) @binding(4) var<storage, read_write> guide_sums: array<GuideSums>;
 
-// Side of a tile in pixels; a tile is a workgroup.
-const TILE_SIDE: u32 = 8u;
-
 // Adds the groups' light of a path to the sums of its pixel; `odd` is 1 for a sample of an odd number, else 0.
 fn sum_groups(index: u32, odd: f32) {
-    if PLAN_LIGHT_GROUPS == 1u {
+    if PLAN_LIGHT_GROUPS {
         for (var group = 0u; group < globals.light_groups; group++) {
             let place = (1u + group) * band.y + index;
             let light = vec4f(group_light(group), 0.0);
@@ -124,22 +85,23 @@ struct ShadowRay {
 
 // True if a ray from the point is known to miss: outside a convex body, in a scene without interreflection.
 fn is_known_miss(point: SurfacePoint, wi: vec3f) -> bool {
-    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.flat, wi) > 0.0;
+    return !PLAN_INTERREFLECTION && !point.surface.is_inside && dot(point.flat, wi) > 0.0;
 }
 
-// A contribution after `reflections` bounces of the light, limited by the firefly clamp; adds the removed luminance to
-// `clamped`.
-fn clamp_fireflies(contribution: vec3f, reflections: u32, clamped: ptr<function, f32>) -> vec3f {
+// Adds a contribution after `reflections` bounces of the light, limited by the firefly clamp.
+fn add_light(path: ptr<function, PathResult>, contribution: vec3f, reflections: u32, group: u32) {
     if reflections < globals.least_reflections {
-        return vec3f(0.0);
+        return;
     }
     let largest = max(max(contribution.x, contribution.y), contribution.z);
-    if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u || !(largest > globals.firefly_clamp) {
-        return contribution;
+    var kept = 1.0;
+    if PLAN_FIREFLY_CLAMP && reflections > 1u && largest > globals.firefly_clamp {
+        kept = globals.firefly_clamp / largest;
+        (*path).clamped += luminance(contribution) * (1.0 - kept);
     }
-    let kept = globals.firefly_clamp / largest;
-    *clamped += luminance(contribution) * (1.0 - kept);
-    return contribution * kept;
+    let light = contribution * kept;
+    (*path).radiance += light;
+    add_to_group(group, light);
 }
 
 // Slot of the medium that a path enters in direction wi.
@@ -185,10 +147,10 @@ fn hit_catcher(position: vec3f, direction: vec3f, state: RandomState) -> Catcher
     let is_transparent = background.a <= 0.0;
     let shown = select(background.rgb, vec3f(1.0), is_transparent);
     let albedo = material_at(globals.catcher_slot).base_color;
-    let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
-    let reflected = light * albedo + (vec3f(1.0) - is_lit);
+    let is_lit = select(vec3f(), vec3f(1.0), light > vec3f());
+    let reflected = light * albedo + (1.0 - is_lit);
     let kind = select(CATCHER_SHADOW, CATCHER_SHADOW_ALPHA, is_transparent);
-    return CatcherHit(kind, shown * is_lit / reflected, shown * (vec3f(1.0) - is_lit), 1.0);
+    return CatcherHit(kind, shown * is_lit / reflected, shown * (1.0 - is_lit), 1.0);
 }
 
 // One sample of a pixel: unidirectional path tracing with next-event estimation and multiple importance sampling.
@@ -200,32 +162,28 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
     clear_groups();
     var camera = globals.camera;
-    camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
+    camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS);
     // The path's state. A camera ray counts as a mirror's: light sampling could not have drawn it, so its MIS weight is 1.
     var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
-    var radiance = vec3f(0.0);
-    var alpha = 1.0;
-    var clamped = 0.0;
-    var cut = 0.0;
+    var path = PathResult();
+    path.alpha = 1.0;
     var rough_bounces = 0u;
     var lobe_density = 0.0;
     var was_mirror = true;
-    var rays = 0u;
     var known_miss = false;
     var is_active = true;
     var shadow_ray = ShadowRay();
-    var guides = GuideSums();
     var catcher_state = CATCHER_MISS;
     var catcher_hit = CatcherHit();
     // The slot of the medium that the path is in.
     var medium = globals.camera_medium;
     // True while the path has met only mirrors and clear glass.
-    var records_guides = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
+    var records_guides = PLAN_GUIDES && sample < GUIDE_SAMPLES;
     // A path that ended still has its last shadow ray to trace.
     for (var bounce = 0u; is_active || shadow_ray.is_pending; bounce++) {
         var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
-        var sky = vec3f(0.0);
+        var sky = vec3f();
         // Two turns: the last vertex's shadow ray, then the path's own ray. As a loop, so that the traversal and the
         // environment's look-up are in the kernel once.
         for (var turn = select(1u, 0u, may_sample_light()); turn < 2u; turn++) {
@@ -242,14 +200,15 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                 skips_traversal = shadow_ray.is_known_miss;
             }
             // Rays that leave a convex body miss: no traversal needed.
-            var intersection = Intersection(hit, 1.0);
+            var intersection = Intersection(hit, 1.0, 0u);
             if !skips_traversal {
                 var xi = 0.0;
-                if PLAN_ALPHA == 1u && !is_shadow_ray {
+                if PLAN_ALPHA && !is_shadow_ray {
                     xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
                 }
                 let is_camera_ray = bounce == 0u && !is_shadow_ray;
-                intersection = intersect(along, length, is_shadow_ray, is_camera_ray, xi, &rays);
+                intersection = intersect(along, length, is_shadow_ray, is_camera_ray, xi);
+                path.rays += intersection.rays;
             }
             if !is_shadow_ray {
                 hit = intersection.hit;
@@ -269,9 +228,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             // Direct light of the last vertex: `bounce` reflections, as that vertex was number `bounce` - 1.
             if is_shadow_ray {
                 let arrives = select(vec3f(1.0), sky, shadow_ray.is_environment) * intersection.transmittance;
-                let light = clamp_fireflies(shadow_ray.value * arrives, bounce, &clamped);
-                radiance += light;
-                add_to_group(shadow_ray.group, light);
+                add_light(&path, shadow_ray.value * arrives, bounce, shadow_ray.group);
                 shadow_ray.is_pending = false;
             }
         }
@@ -281,11 +238,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         // A miss ends the path: with the camera's background, or with the environment times its MIS weight.
         if hit.triangle == NO_HIT {
             // The catcher's reflection shows the background that the camera ray would have seen without it.
-            if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_MIRRORED {
-                let light = clamp_fireflies(catcher_hit.radiance, bounce, &clamped);
-                radiance += light;
-                add_to_group(ENVIRONMENT_GROUP, light);
-                alpha = catcher_hit.alpha;
+            if PLAN_SHADOW_CATCHER && catcher_state == CATCHER_MIRRORED {
+                add_light(&path, catcher_hit.radiance, bounce, ENVIRONMENT_GROUP);
+                path.alpha = catcher_hit.alpha;
                 catcher_state = CATCHER_MISS;
                 break;
             }
@@ -293,13 +248,11 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             if bounce == 0u {
                 let background = plain_background(sky);
                 contribution = background.rgb;
-                alpha = background.a;
+                path.alpha = background.a;
             } else {
                 contribution *= environment_mis_weight(ray.direction, lobe_density, was_mirror);
             }
-            let light = clamp_fireflies(contribution, bounce, &clamped);
-            radiance += light;
-            add_to_group(ENVIRONMENT_GROUP, light);
+            add_light(&path, contribution, bounce, ENVIRONMENT_GROUP);
             break;
         }
         var slot = slot_at(hit.triangle);
@@ -307,7 +260,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let place = hit_place(hit, ray.direction);
         // A camera ray that hits the shadow catcher restarts there: with a throughput that turns the light into a share of the
         // background, or as a mirror ray. Where the catcher is invisible, the path ends with the background.
-        if PLAN_SHADOW_CATCHER == 1u {
+        if PLAN_SHADOW_CATCHER {
             if catcher_state == CATCHER_MIRRORED {
                 catcher_state = CATCHER_MISS;
             }
@@ -318,21 +271,20 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                 if catcher_state == CATCHER_MIRRORED {
                     slot = globals.catcher_reflection_slot;
                 } else {
-                    radiance = clamp_fireflies(catcher_hit.radiance, 0u, &clamped);
-                    add_to_group(ENVIRONMENT_GROUP, radiance);
+                    add_light(&path, catcher_hit.radiance, 0u, ENVIRONMENT_GROUP);
                 }
                 if catcher_state == CATCHER_MISS {
-                    alpha = catcher_hit.alpha;
+                    path.alpha = catcher_hit.alpha;
                     break;
                 }
             }
         }
         let material_there = material_at(slot);
         let point = surface_of(hit, ray.direction, slot, material_there);
-        let is_mirrored = PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_MIRRORED;
+        let is_mirrored = PLAN_SHADOW_CATCHER && catcher_state == CATCHER_MIRRORED;
         let material = textured_material(material_there, point.uvs, point.vertex_color);
         // Beer-Lambert absorption along the segment that ends here, before anything at this vertex is weighted.
-        if PLAN_ABSORPTION == 1u {
+        if PLAN_ABSORPTION {
             // At the back of a surface that transmits, the medium is that surface's own.
             throughput *= transmittance_over(select(medium, slot, is_within(material, point.surface)), hit.t);
         }
@@ -340,24 +292,22 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         // Guides for the denoiser. Later vertices overwrite them until one is not specular; depth is always the first hit's.
         if records_guides {
             let albedo = throughput * material_albedo(material, point.surface, layers);
-            guides.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
-            guides.normal = material_normal(material, point.surface, layers);
+            path.guides.albedo = saturate(albedo);
+            path.guides.normal = material_normal(material, point.surface, layers);
             if bounce == 0u {
-                guides.hits = 1.0;
-                guides.depth = hit.t * dot(ray.direction, camera.forward) - camera.parallel_from;
+                path.guides.hits = 1.0;
+                path.guides.depth = hit.t * dot(ray.direction, camera.forward) - camera.parallel_from;
             }
         }
         // Emission that the path hit by BSDF sampling, weighted against light sampling.
-        if PLAN_EMISSION == 1u {
+        if PLAN_EMISSION {
             let contribution = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
-            let light = clamp_fireflies(contribution, bounce, &clamped);
-            radiance += light;
-            add_to_group(material.flags >> LIGHT_GROUP_SHIFT, light);
+            add_light(&path, contribution, bounce, material.flags >> LIGHT_GROUP_SHIFT);
         }
         // The bounce limit. In glass it loses energy visibly, so the loss is reported.
         if bounce >= globals.bounces {
-            if PLAN_TRANSMISSION == 1u {
-                cut = luminance(throughput);
+            if PLAN_TRANSMISSION {
+                path.cut = luminance(throughput);
             }
             break;
         }
@@ -367,7 +317,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let transmits = material_transmits(material);
         let needs_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var is_lit = false;
-        var sampled_light = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0, ENVIRONMENT_GROUP);
+        var sampled_light = LightSample(vec3f(), 0.0, vec3f(), 0.0, ENVIRONMENT_GROUP);
         if may_sample_light() && samples_light() && !is_mirrored {
             var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
             let part = choose_environment(xi.x);
@@ -384,18 +334,18 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
         let light_query = MaterialLight(
-            sampled_light.direction, sampled_light.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS),
+            sampled_light.direction, sampled_light.density, f32(globals.strategy == STRATEGY_MIS),
         );
         let steps = material_steps(is_lit, true);
         let scattered = material_scatter(material, point.surface, layers, steps, numbers, needs_density, light_query);
         // The shadow ray is traced at the start of the next bounce, where the path's own ray needs the same code. Its value
         // is the whole contribution but for visibility and the environment's radiance.
-        if may_sample_light() && any(scattered.reflected > vec3f(0.0)) {
+        if may_sample_light() && any(scattered.reflected > vec3f()) {
             shadow_ray.ray = Ray(ray_origin(point, sampled_light.direction, transmits), sampled_light.direction);
             shadow_ray.distance = sampled_light.distance;
             shadow_ray.value = throughput * scattered.reflected / sampled_light.density;
             shadow_ray.value *= select(sampled_light.radiance, vec3f(1.0), shadow_ray.is_environment);
-            if PLAN_ABSORPTION == 1u && PLAN_EMITTER_SAMPLING == 1u && !shadow_ray.is_environment {
+            if PLAN_ABSORPTION && PLAN_EMITTER_SAMPLING && !shadow_ray.is_environment {
                 shadow_ray.value *= transmittance_over(
                     medium_towards(medium, point, slot, sampled_light.direction, transmits), sampled_light.distance,
                 );
@@ -406,7 +356,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         // The sampled direction: the medium that it enters, and whether it can hit anything.
         var sampled = scattered.drawn;
-        if PLAN_ABSORPTION == 1u {
+        if PLAN_ABSORPTION {
             medium = medium_towards(medium, point, slot, sampled.wi, transmits);
         }
         known_miss = is_known_miss(point, sampled.wi);
@@ -414,7 +364,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         if is_mirrored {
             // The catcher's mirror ray keeps its full weight, also the light that facets would block. Its light must not
             // compete with light sampling, which the catcher does not do.
-            known_miss = known_miss || !any(sampled.throughput > vec3f(0.0));
+            known_miss = known_miss || !any(sampled.throughput > vec3f());
             sampled.throughput = vec3f(1.0);
             sampled.is_mirror = true;
         }
@@ -424,7 +374,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let strength = max(max(throughput.x, throughput.y), throughput.z);
         is_active = strength > 0.0;
         var limit = 1.0;
-        if PLAN_TRANSMISSION == 1u {
+        if PLAN_TRANSMISSION {
             limit = select(globals.roulette_floor, 1.0, rough_bounces >= ROULETTE_START);
             rough_bounces += select(1u, 0u, sampled.is_mirror);
         }
@@ -439,18 +389,18 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         ray = Ray(ray_origin(point, sampled.wi, transmits), sampled.wi);
     }
     // Over a transparent background, the catcher's light is its alpha. A render of a part of the light has no shadow.
-    if PLAN_SHADOW_CATCHER == 1u && catcher_state == CATCHER_SHADOW_ALPHA {
+    if PLAN_SHADOW_CATCHER && catcher_state == CATCHER_SHADOW_ALPHA {
         clear_groups();
-        let covered = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
-        return PathResult(vec3f(0.0), covered, rays, clamped, cut, guides);
+        path.alpha = select(1.0 - luminance(path.radiance), 0.0, globals.least_reflections > 0u);
+        path.radiance = vec3f();
     }
-    return PathResult(radiance, alpha, rays, clamped, cut, guides);
+    return path;
 }
 
 // True for a finite, non-negative colour of at most RADIANCE_MAX: only such samples enter the sums.
 fn is_sound(color: vec3f) -> bool {
     // Infinity fails the upper bound; NaN fails both.
-    return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
+    return all(color >= vec3f()) && all(color <= vec3f(RADIANCE_MAX));
 }
 
 @compute @workgroup_size(TILE_SIDE, TILE_SIDE)
@@ -478,7 +428,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             sums.kept_dropped.x += 1.0;
             sums.rays_clamped.y += path.clamped;
             sums.cut += path.cut;
-            if PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES {
+            if PLAN_GUIDES && sample < GUIDE_SAMPLES {
                 let half = 2u * index + sample % 2u;
                 guide_sums[half].albedo += path.guides.albedo;
                 guide_sums[half].hits += path.guides.hits;
@@ -494,7 +444,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].luminance_squared += sums.luminance_squared;
     statistics[index].kept_dropped += sums.kept_dropped;
     statistics[index].rays_clamped += sums.rays_clamped;
-    if PLAN_TRANSMISSION == 1u {
+    if PLAN_TRANSMISSION {
         statistics[index].cut += sums.cut;
     }
 }

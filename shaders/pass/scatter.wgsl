@@ -1,23 +1,6 @@
 // Draws samples with the very function that the path tracer runs: scatter plots show the shader. Twin of
 // src/cpu/scatter.rs.
 #import "optics/lobe/registry"
-#import "optics/random"
-#import "scene/layout"
-
-struct Scatter {
-    // Local frame, n = +z.
-    wo: vec3f,
-    roughness: f32,
-    anisotropy: f32,
-    // Relative index of refraction; 0 for reflection.
-    eta: f32,
-    lobe: u32,
-    curve: u32,
-    horizon: u32,
-    seed: u32,
-    first: u32,
-    count: u32,
-}
 
 @group(1) @binding(0) var<uniform> scatter: Scatter;
 // Direction and density; density -1 where the sample was absorbed.

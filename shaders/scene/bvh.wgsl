@@ -4,15 +4,15 @@
 
 // Hierarchies have at most 32 levels (DEPTH_MAX in src/scene/hierarchy/mod.rs), each of which adds one entry at most. One
 // more entry is for the surroundings of the model.
-const STACK_SIZE: u32 = 33u;
+const STACK_SIZE = 33u;
 
 // Covers the rounding of a box's far side (1 + 2 gamma_3 of Ize, "Robust BVH Ray Traversal", JCGT 2013).
-const FAR_MARGIN: f32 = 1.0000005;
+const FAR_MARGIN = 1.0000005f;
 // Relative error bound of a position from the ray's origin: ten roundings, four of a box's plane and six of a triangle's
 // projected corner.
-const RELATIVE_ERROR: f32 = 6e-7;
+const RELATIVE_ERROR = 6e-7f;
 // Bound of inverse directions. It keeps their products with distances finite.
-const INVERSE_MAX: f32 = 1e18;
+const INVERSE_MAX = 1e18f;
 
 // -0 is positive, as in the choice of near and far planes.
 fn bounded_inverse(x: f32) -> f32 {
@@ -22,14 +22,14 @@ fn bounded_inverse(x: f32) -> f32 {
 
 // Tests four children of a node. Returns the hit ones as bits of the node's hit mask.
 fn intersect_children(
-    meta_bytes: u32, low: array<u32, 3>, high: array<u32, 3>, scale: vec3f, shift: vec3f, margin: vec3f,
+    meta_bytes: u32, low: vec3u, high: vec3u, scale: vec3f, shift: vec3f, margin: vec3f,
     octant_inverse: u32, t_max: f32,
 ) -> u32 {
     let early = shift - margin;
     let late = shift + margin;
     let near = max(
         max(vec4f(unpack4xU8(low[0])) * scale.x + early.x, vec4f(unpack4xU8(low[1])) * scale.y + early.y),
-        max(vec4f(unpack4xU8(low[2])) * scale.z + early.z, vec4f(0.0)),
+        max(vec4f(unpack4xU8(low[2])) * scale.z + early.z, vec4f()),
     );
     let far = min(
         min(vec4f(unpack4xU8(high[0])) * scale.x + late.x, vec4f(unpack4xU8(high[1])) * scale.y + late.y),
@@ -40,7 +40,7 @@ fn intersect_children(
     let inner_mask = (is_inner >> 4u) * 0xffu;
     let bit_index = unpack4xU8((meta_bytes ^ (octant_inverse & inner_mask)) & 0x1f1f1f1fu);
     let child_bits = unpack4xU8((meta_bytes >> 5u) & 0x07070707u);
-    let hit_bits = select(vec4u(0u), child_bits << bit_index, near <= far * FAR_MARGIN);
+    let hit_bits = select(vec4u(), child_bits << bit_index, near <= far * FAR_MARGIN);
     return hit_bits.x | hit_bits.y | hit_bits.z | hit_bits.w;
 }
 
@@ -55,20 +55,18 @@ fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32,
     let corner = bitcast<vec3f>(first.xyz);
     let shift = (corner - ray.origin) * inverse;
     let margin = (abs(corner) + abs(ray.origin)) * abs(inverse) * RELATIVE_ERROR;
-    let backward = ray.direction < vec3f(0.0);
-    let x_low = select(x.xy, x.zw, backward.x);
-    let x_high = select(x.zw, x.xy, backward.x);
-    let y_low = select(y.xy, y.zw, backward.y);
-    let y_high = select(y.zw, y.xy, backward.y);
-    let z_low = select(z.xy, z.zw, backward.z);
-    let z_high = select(z.zw, z.xy, backward.z);
-    return intersect_children(
-        links.z, array<u32, 3>(x_low.x, y_low.x, z_low.x), array<u32, 3>(x_high.x, y_high.x, z_high.x),
-        scale, shift, margin, octant_inverse, t_max,
-    ) | intersect_children(
-        links.w, array<u32, 3>(x_low.y, y_low.y, z_low.y), array<u32, 3>(x_high.y, y_high.y, z_high.y),
-        scale, shift, margin, octant_inverse, t_max,
-    );
+    let backward = ray.direction < vec3f();
+    // The near sides of both halves of the children, then the far ones.
+    let sides_x = select(x, x.zwxy, backward.x);
+    let sides_y = select(y, y.zwxy, backward.y);
+    let sides_z = select(z, z.zwxy, backward.z);
+    var hit_bits = 0u;
+    for (var half = 0u; half < 2u; half++) {
+        let low = vec3u(sides_x[half], sides_y[half], sides_z[half]);
+        let high = vec3u(sides_x[half + 2u], sides_y[half + 2u], sides_z[half + 2u]);
+        hit_bits |= intersect_children(links[half + 2u], low, high, scale, shift, margin, octant_inverse, t_max);
+    }
+    return hit_bits;
 }
 
 // The closest hit with 0 < t < t_max, or any hit.
@@ -86,7 +84,7 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
     var stack_height = 0u;
     // x: first child; y: hit mask in the high byte, which children are inner in the low one.
     var node_group = vec2u(0u, 0x80000000u);
-    var triangle_group = vec2u(0u);
+    var triangle_group = vec2u();
     if globals.around_root != 0u {
         stack[0] = vec2u(globals.around_root, 0x80000000u);
         stack_height = 1u;
@@ -96,11 +94,7 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
             let local = firstLeadingBit(triangle_group.y);
             triangle_group.y &= ~(1u << local);
             let index = triangle_group.x + local;
-            let triangle = triangle_at(index);
-            let hit = intersect_triangle(
-                ray, bitcast<vec3f>(triangle.corners[0].xyz), bitcast<vec3f>(triangle.corners[1].xyz),
-                bitcast<vec3f>(triangle.corners[2].xyz), nearest.t,
-            );
+            let hit = intersect_triangle(ray, corners(triangle_at(index)), nearest.t);
             if hit.x > 0.0 {
                 nearest = Hit(hit.x, index, hit.y, hit.z);
                 if any_hit {

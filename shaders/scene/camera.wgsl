@@ -1,15 +1,26 @@
 // The camera's rays. Twin of src/scene/camera.rs.
+#import "scene/constants"
 #import "optics/random"
-#import "optics/warp"
 #import "scene/choices"
-#import "scene/layout"
+#import "optics/warp"
 
-// The path's pairs of numbers for the place in the pixel and on the lens.
-const PIXEL_DIMENSION: u32 = 0u;
-const LENS_DIMENSION: u32 = 1u;
-const GAUSSIAN_SIGMA: f32 = 0.5;
 // 1 - exp(-(radius/sigma)^2/2): the Gaussian is cut off at 1.5 pixels.
-const GAUSSIAN_KEPT: f32 = 0.988891;
+const GAUSSIAN_KEPT = 0.988891f;
+
+struct Camera {
+    // In the geometry's units.
+    origin: vec3f,
+    // Share of the lens that is open, radius in the geometry's units.
+    lens_radius: f32,
+    forward: vec3f,
+    focus_distance: f32,
+    // Half the image's width and height at distance 1; with parallel rays themselves.
+    right: vec3f,
+    filter_kind: u32,
+    up: vec3f,
+    // How far behind the camera parallel rays start, which is where the origin is; 0 for a perspective.
+    parallel_from: f32,
+}
 
 struct Ray {
     origin: vec3f,

@@ -1,5 +1,4 @@
 // Reference light of the shadow catcher: the light on its plane without objects. Twin of src/scene/catcher.rs.
-#import "scene/choices"
 #import "scene/layout"
 
 // A place in the table along an axis: the node before it, and how far it is behind that.
@@ -26,20 +25,20 @@ fn catcher_light(table: u32, position: vec3f) -> vec3f {
     let across = catcher_node(position.x, side);
     let down = catcher_node(position.z, side);
     // A loop over the surrounding nodes with weight, so that the code to load one is in the kernel once.
-    var sum = vec3f(0.0);
+    var sum = vec3f();
     for (var node = 0u; node < select(2u, 4u, down.behind > 0.0); node++) {
         let is_right = (node & 1u) != 0u;
         let is_lower = node > 1u;
         let share = select(1.0 - across.behind, across.behind, is_right) * select(1.0 - down.behind, down.behind, is_lower);
-        let row = down.number + select(0u, 1u, is_lower);
-        sum += catcher_radiance(table, side, row, across.number + select(0u, 1u, is_right)) * share;
+        let row = down.number + u32(is_lower);
+        sum += catcher_radiance(table, side, row, across.number + u32(is_right)) * share;
     }
     return sum;
 }
 
 // Reflectance of the plane at a cosine, in [0, 1] (Schlick 1994, eq. 15).
 fn catcher_reflectance(table: u32, cosine: f32) -> f32 {
-    let away = clamp(1.0 - cosine, 0.0, 1.0);
+    let away = saturate(1.0 - cosine);
     let squared = away * away;
     return table_numbers(table, 0u).y * (CATCHER_REFLECTANCE + (1.0 - CATCHER_REFLECTANCE) * squared * squared * away);
 }

@@ -1,7 +1,6 @@
 // The environment light: a latitude-longitude map, filtered bilinearly and sampled in proportion to its luminance. Twin of
 // src/scene/environment/mod.rs, which describes the conventions. The map is rgba32float and read by textureLoad; the cells
 // come from src/scene/environment/distribution.rs.
-#import "optics/numeric"
 #import "scene/alias"
 #import "scene/inversion"
 #import "scene/layout"
@@ -18,8 +17,7 @@ struct EnvironmentCell {
 
 // The cells lie row by row, the rows after them.
 fn environment_cell(index: u32) -> EnvironmentCell {
-    let place = texel_place(index);
-    let words = textureLoad(environment_cells, place.xy, place.z, 0);
+    let words = texel_at(environment_cells, index);
     return EnvironmentCell(words.xy, vec2u(words.z & 0xffffu, words.z >> 16u), bitcast<f32>(words.w));
 }
 
@@ -51,7 +49,7 @@ fn environment_uv(direction: vec3f) -> vec2f {
     let turns = arctan2(direction.x, -z) / (2.0 * PI);
     let u = select(turns, turns + 1.0, turns < 0.0);
     // A tiny negative angle plus one turn rounds to a whole turn.
-    return vec2f(select(0.0, u, u < 1.0), clamp(v, 0.0, 1.0));
+    return vec2f(select(0.0, u, u < 1.0), saturate(v));
 }
 
 fn environment_direction(uv: vec2f) -> vec3f {
@@ -89,8 +87,8 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
 // lack. cells_size: columns and rows of cells.
 fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
     let jitters = xi.z * 4096.0;
-    var chosen = vec2u(0u);
-    var place = vec2f(0.0);
+    var chosen = vec2u();
+    var place = vec2f();
     var density = 0.0;
     // A row, then one of its cells.
     for (var step = 0u; step < 2u; step++) {

@@ -1,6 +1,6 @@
 // A ray against a triangle. Twin of src/scene/intersect.rs.
 
-const NO_HIT: u32 = 0xffffffffu;
+const NO_HIT = 0xffffffffu;
 
 struct Hit {
     t: f32,
@@ -32,10 +32,10 @@ fn ray_frame(origin: vec3f, direction: vec3f) -> RayFrame {
 
 // A vector along a triangle's normal (right hand rule): the product of its two shorter edges over the squared longest edge.
 // The product of a needle's two long edges would be rounding noise, and that of two tiny edges would underflow when squared.
-fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
-    let a = p1 - p0;
-    let b = p2 - p1;
-    let c = p0 - p2;
+fn triangle_normal(corners: mat3x3f) -> vec3f {
+    let a = corners[1] - corners[0];
+    let b = corners[2] - corners[1];
+    let c = corners[0] - corners[2];
     let aa = dot(a, a);
     let bb = dot(b, b);
     let cc = dot(c, c);
@@ -47,12 +47,12 @@ fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
 }
 
 // The hit (t, u, v) with 0 < t < t_max, from either side; t = -1 for a miss.
-fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32) -> vec3f {
-    let a = v0 - ray.origin;
+fn intersect_triangle(ray: RayFrame, corners: mat3x3f, t_max: f32) -> vec3f {
     // The projected corners, one per lane: all three by the same instructions.
-    let x = vec3f(v0.x, v1.x, v2.x) - ray.origin.x;
-    let y = vec3f(v0.y, v1.y, v2.y) - ray.origin.y;
-    let z = vec3f(v0.z, v1.z, v2.z) - ray.origin.z;
+    let axes = transpose(corners);
+    let x = axes[0] - ray.origin.x;
+    let y = axes[1] - ray.origin.y;
+    let z = axes[2] - ray.origin.z;
     let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
     let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
     // An edge's area with its corners in a canonical order: the same number for both triangles that share it, whether or not
@@ -65,11 +65,11 @@ fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32
     let ordered = low_x * high_y - low_y * high_x;
     let areas = select(ordered, -ordered, is_turned);
     let area = areas.x + areas.y + areas.z;
-    if (any(areas < vec3f(0.0)) && any(areas > vec3f(0.0))) || area == 0.0 {
+    if (any(areas < vec3f()) && any(areas > vec3f())) || area == 0.0 {
         return vec3f(-1.0);
     }
-    let normal = triangle_normal(v0, v1, v2);
-    let t = dot(normal, a) / dot(normal, ray.direction);
+    let normal = triangle_normal(corners);
+    let t = dot(normal, corners[0] - ray.origin) / dot(normal, ray.direction);
     if t > 0.0 && t < t_max {
         return vec3f(t, areas.y / area, areas.z / area);
     }

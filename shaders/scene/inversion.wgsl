@@ -1,7 +1,5 @@
 // Samples discrete weights by inverting their cumulative sum. Twin of src/scene/inversion.rs, which explains the method.
-
-// Random numbers have so many bits.
-const DRAW_BITS: u32 = 24u;
+#import "scene/constants"
 
 // The slot of a number among `count` entries is the number without so many of its last bits.
 fn slot_shift(count: u32) -> u32 {

@@ -15,9 +15,6 @@ struct LightSample {
     group: u32,
 }
 
-// Keeps densities finite where a triangle is seen edge-on.
-const COSINE_MIN: f32 = 1e-6;
-
 // An entry of the alias table over the triangles that emit.
 struct LightCell {
     threshold: f32,
@@ -26,8 +23,7 @@ struct LightCell {
 }
 
 fn light_cell(index: u32) -> LightCell {
-    let place = texel_place(index);
-    let words = textureLoad(light_cells, place.xy, place.z, 0);
+    let words = texel_at(light_cells, index);
     return LightCell(bitcast<f32>(words.x), words.y, words.z);
 }
 
@@ -39,37 +35,38 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
     let index = light_cell(chosen).triangle;
     let triangle = triangle_at(index);
-    let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
-    let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
-    let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
+    let at = corners(triangle);
     // Uniform in area.
     let s = sqrt(drawn.place.x);
     let weights = vec3f(1.0 - s, s * (1.0 - drawn.place.y), s * drawn.place.y);
-    let place = p0 * weights.x + p1 * weights.y + p2 * weights.z;
+    let place = at * weights;
     let towards = place - origin;
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
-    let normal = normalize_or(triangle_normal(p0, p1, p2), direction);
+    let normal = normalize_or(triangle_normal(at), direction);
     let material = material_at(slot_at(index));
     var radiance = material.emission;
-    if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u || PLAN_VERTEX_COLORS == 1u {
-        let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
+    let facing = -dot(normal, direction);
+    let needs_uvs = PLAN_EMISSION_TEXTURES || PLAN_ALPHA || PLAN_VERTEX_COLORS;
+    var uvs = Uvs();
+    if needs_uvs || (PLAN_COAT_ABSORPTION && PLAN_COAT_TEXTURES) {
+        uvs = uvs_at(triangle, weights, has_flag(material, HAS_BOX));
+    }
+    if needs_uvs {
         radiance = emission_at(material, uvs, vertex_factors(material, triangle, weights));
     }
-    if PLAN_SPOT == 1u {
-        radiance *= spot_share(material, -dot(normal, direction)) * profile_share(material, -direction);
+    if PLAN_SPOT {
+        radiance *= spot_share(material, facing) * profile_share(material, -direction);
     }
-    if PLAN_COAT_ABSORPTION == 1u {
+    if PLAN_COAT_ABSORPTION {
         var coated = material;
-        if PLAN_COAT_TEXTURES == 1u {
-            let uvs = uvs_at(triangle, weights, (material.flags & HAS_BOX) != 0u);
+        if PLAN_COAT_TEXTURES {
             coated = textured_material(material, uvs, vec3f(1.0));
         }
-        let facing = -dot(normal, direction);
         radiance *= coat_over_emission(coated, facing, facing < 0.0);
     }
-    let cosine = abs(dot(normal, direction));
-    let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
+    let cosine = abs(facing);
+    let error = position_error(at, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
         direction, light_density(material.light_luminance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
         material.flags >> LIGHT_GROUP_SHIFT,
@@ -78,7 +75,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
 
 // Share in [0, 1] of its radiance that a spot emits at this cosine to its axis.
 fn spot_share(material: Material, cosine: f32) -> f32 {
-    let ramp = clamp(cosine * material.spot_scale + material.spot_offset, 0.0, 1.0);
+    let ramp = saturate(cosine * material.spot_scale + material.spot_offset);
     return ramp * ramp;
 }
 
@@ -101,15 +98,12 @@ fn angle_cell(table: u32, first: u32, count: u32, angle: f32) -> AngleCell {
     }
     let start = table_number(table, first + low);
     let beyond = (angle - start) / (table_number(table, first + high) - start);
-    return AngleCell(low, clamp(beyond, 0.0, 1.0));
+    return AngleCell(low, saturate(beyond));
 }
-
-// Numbers of a profile's table before its angles.
-const PROFILE_AXES_LENGTH: u32 = 12u;
 
 // The radiance in a unit direction away from a light over its mean, by the table of its profile; 1 without one.
 fn profile_share(material: Material, direction: vec3f) -> f32 {
-    if (material.flags & HAS_PROFILE) == 0u {
+    if !has_flag(material, HAS_PROFILE) {
         return 1.0;
     }
     let table = material.lobe_table;
@@ -132,7 +126,7 @@ fn profile_share(material: Material, direction: vec3f) -> f32 {
         let turned = arctan2(up, across) * (180.0 / PI);
         column = angle_cell(table, horizontals, columns, select(turned, turned + 360.0, turned < 0.0));
     }
-    var shares = vec2f(0.0);
+    var shares = vec2f();
     for (var side = 0u; side < 2u; side++) {
         let place = horizontals + columns + min(column.low + side, columns - 1u) * rows + row.low;
         shares[side] = mix(table_number(table, place), table_number(table, place + 1u), row.beyond);

@@ -7,7 +7,7 @@ enable wgpu_ray_query;
 @group(0) @binding(15) var structures: acceleration_structure;
 
 // Ray queries need finite numbers. A ray with a larger sum of coordinates misses.
-const EXTENT_MAX: f32 = 1e36;
+const EXTENT_MAX = 1e36f;
 
 // The closest hit with 0 < t < t_max, or any hit. As in bvh.wgsl, all triangles are opaque here: holes are the caller's.
 fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
@@ -26,12 +26,8 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
         return nothing;
     }
     let index = committed.primitive_index + committed.instance_custom_data * globals.around_triangle;
-    let triangle = triangle_at(index);
     // Recomputed, so that the numbers equal those of bvh.wgsl on any adapter.
-    let exact = intersect_triangle(
-        ray_frame(origin, direction), bitcast<vec3f>(triangle.corners[0].xyz), bitcast<vec3f>(triangle.corners[1].xyz),
-        bitcast<vec3f>(triangle.corners[2].xyz), t_max,
-    );
+    let exact = intersect_triangle(ray_frame(origin, direction), corners(triangle_at(index)), t_max);
     if exact.x > 0.0 {
         return Hit(exact.x, index, exact.y, exact.z);
     }

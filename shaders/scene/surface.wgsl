@@ -1,6 +1,4 @@
 // A ray's hit made into a surface to shade. Twin of src/scene/surface.rs.
-#import "optics/material"
-#import "scene/intersect"
 #import "scene/texture"
 
 struct SurfacePoint {
@@ -17,14 +15,6 @@ struct SurfacePoint {
     // Offset from the triangle to the rounded surface.
     rise: vec3f,
 }
-
-// Relative rounding error of a position: three products and sums, plus the box test and the transforms.
-const POSITION_ERROR: f32 = 1e-6;
-// Smallest cosine between shading normal and view. A normal that leans further away is bent back.
-const VIEW_COSINE_MIN: f32 = 1e-3;
-
-// Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
-const MIRROR_HEIGHT_MIN: f32 = 0.01;
 
 fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     let lean = dot(shading, wo);
@@ -51,16 +41,18 @@ struct HitPlace {
 }
 
 fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
-    let triangle = triangle_at(hit.triangle);
-    let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
-    let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
-    let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
-    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
-    let position = p0 * weights.x + p1 * weights.y + p2 * weights.z;
-    let out = normalize_or(triangle_normal(p0, p1, p2), -direction);
+    let at = corners(triangle_at(hit.triangle));
+    let weights = hit_weights(hit);
+    let position = at * weights;
+    let out = normalize_or(triangle_normal(at), -direction);
     let is_back = dot(out, -direction) < 0.0;
     let normal = select(out, -out, is_back);
-    return HitPlace(position, position_error(p0, p1, p2, weights, normal), normal, is_back);
+    return HitPlace(position, position_error(at, weights, normal), normal, is_back);
+}
+
+// Barycentric weights of the corners.
+fn hit_weights(hit: Hit) -> vec3f {
+    return vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
 }
 
 // Origin of a ray that continues through a surface.
@@ -77,61 +69,62 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
 // The same for a known material.
 fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> SurfacePoint {
     let triangle = triangle_at(hit.triangle);
-    let w = 1.0 - hit.u - hit.v;
+    let weights = hit_weights(hit);
     let place = hit_place(hit, direction);
     let normal = place.normal;
     let wo = -direction;
-    let a = vertex_at(triangle.corners[0].w);
-    let b = vertex_at(triangle.corners[1].w);
-    let c = vertex_at(triangle.corners[2].w);
-    let interpolated = a.normal * w + b.normal * hit.u + c.normal * hit.v;
+    let indices = vertices(triangle);
+    let a = vertex_at(indices.x);
+    let b = vertex_at(indices.y);
+    let c = vertex_at(indices.z);
+    let normals = mat3x3f(a.normal, b.normal, c.normal);
+    let interpolated = normals * weights;
     let smoothed = normalize_or(interpolated, normal);
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let smooth_normal = bent_normal(side * smoothed, wo);
-    var uvs = Uvs(vec4f(0.0), vec2f(0.0));
+    var uvs = Uvs();
     if looks_up_textures() {
         uvs = hit_uvs(hit, material);
     }
     let tangent = vec4f(
-        a.tangent * w + b.tangent * hit.u + c.tangent * hit.v,
-        vertex_side(a) * w + vertex_side(b) * hit.u + vertex_side(c) * hit.v,
+        mat3x3f(a.tangent, b.tangent, c.tangent) * weights,
+        dot(vec3f(vertex_side(a), vertex_side(b), vertex_side(c)), weights),
     );
+    let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
     var shading = smooth_normal;
     var coat_normal = smooth_normal;
-    if PLAN_NORMAL_MAPS == 1u && material.normal_texture != NO_TEXTURE {
-        let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
+    if PLAN_NORMAL_MAPS && material.normal_texture != NO_TEXTURE {
         let mapped = mapped_normal(material.normal_texture, material.normal_strength, uvs, smoothed, tangent, outward);
         shading = lifted_normal(bent_normal(side * mapped, wo), normal, wo);
     }
-    if PLAN_COAT_NORMALS == 1u && material.coat_normal_texture != NO_TEXTURE {
-        let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
+    if PLAN_COAT_NORMALS && material.coat_normal_texture != NO_TEXTURE {
         let mapped = mapped_normal(
             material.coat_normal_texture, material.coat_normal_strength, uvs, smoothed, tangent, outward,
         );
         coat_normal = lifted_normal(bent_normal(side * mapped, wo), normal, wo);
     }
     var frame = frame_from_normal(shading);
-    if PLAN_ANISOTROPY == 1u && (material.anisotropy != 0.0 || material.coat_anisotropy != 0.0) {
+    if PLAN_ANISOTROPY && (material.anisotropy != 0.0 || material.coat_anisotropy != 0.0) {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
         let is_mirrored = side * tangent.w < 0.0;
         frame = frame_from_tangent(shading, tangent.xyz, select(1.0, -1.0, is_mirrored) * material.rotation_rad);
     }
     var horizon = normal;
-    var rise = vec3f(0.0);
-    if PLAN_SHADOW_TERMINATOR == 1u && globals.rounds_surfaces == 1u && !transmits_anywhere(material) {
-        let turned = side < 0.0;
-        rise = rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[0].xyz), a.normal, w, turned) +
-            rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[1].xyz), b.normal, hit.u, turned) +
-            rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[2].xyz), c.normal, hit.v, turned);
+    var rise = vec3f();
+    if PLAN_SHADOW_TERMINATOR && globals.rounds_surfaces == 1u && !transmits_anywhere(material) {
+        let at = corners(triangle);
+        for (var i = 0u; i < 3u; i++) {
+            rise += rise_to_plane(place.position, at[i], normals[i], weights[i], side < 0.0);
+        }
         let is_round = dot(rise, normal) > place.error;
         horizon = select(normal, smooth_normal, is_round);
-        rise = select(vec3f(0.0), rise, is_round);
+        rise = select(vec3f(), rise, is_round);
     }
     let surface = Surface(frame, horizon, wo, coat_normal, place.is_back);
     var color = vec3f(1.0);
-    let may_be_colored = PLAN_COLOR_TEXTURES == 1u || PLAN_VERTEX_COLORS == 1u;
+    let may_be_colored = PLAN_COLOR_TEXTURES || PLAN_VERTEX_COLORS;
     if may_be_colored && has_flag(material, VERTEX_BASE | VERTEX_EMISSION) {
-        color = corner_color(a).xyz * w + corner_color(b).xyz * hit.u + corner_color(c).xyz * hit.v;
+        color = mat3x3f(corner_color(a).xyz, corner_color(b).xyz, corner_color(c).xyz) * weights;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
 }
@@ -139,7 +132,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
 // Whether the material transmits where its textures make it least metallic.
 fn transmits_anywhere(material: Material) -> bool {
     let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
-    return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && !is_metal;
+    return PLAN_TRANSMISSION && material.transmission_weight > 0.0 && !is_metal;
 }
 
 // Offset from a position in a triangle up to the tangent plane at a corner, if the position lies below it; times the
@@ -155,14 +148,12 @@ fn vertex_side(vertex: Vertex) -> f32 {
 }
 
 fn looks_up_textures() -> bool {
-    return PLAN_COLOR_TEXTURES == 1u || PLAN_ROUGHNESS_TEXTURES == 1u || PLAN_EMISSION_TEXTURES == 1u ||
-        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u || PLAN_COAT_NORMALS == 1u || PLAN_FILM_TEXTURES == 1u ||
-        PLAN_FUZZ_TEXTURES == 1u;
+    return PLAN_COLOR_TEXTURES || PLAN_ROUGHNESS_TEXTURES || PLAN_EMISSION_TEXTURES || PLAN_NORMAL_MAPS
+        || PLAN_COAT_TEXTURES || PLAN_COAT_NORMALS || PLAN_FILM_TEXTURES || PLAN_FUZZ_TEXTURES;
 }
 
 fn hit_uvs(hit: Hit, material: Material) -> Uvs {
-    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
-    return uvs_at(triangle_at(hit.triangle), weights, (material.flags & HAS_BOX) != 0u);
+    return uvs_at(triangle_at(hit.triangle), hit_weights(hit), has_flag(material, HAS_BOX));
 }
 
 // Opacity at a hit, in [0, 1].
@@ -172,15 +163,14 @@ fn hit_opacity(hit: Hit) -> f32 {
     if !material_has_holes(material) {
         return 1.0;
     }
-    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
-    let of_vertices = vertex_factors(material, triangle_at(hit.triangle), weights);
+    let of_vertices = vertex_factors(material, triangle_at(hit.triangle), hit_weights(hit));
     return opacity_at(material, hit_uvs(hit, material), of_vertices.w);
 }
 
 // Error bound along the normal of a position interpolated between a triangle's corners.
-fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f) -> f32 {
-    let w = abs(weights);
-    return POSITION_ERROR * dot(abs(normal), abs(p0) * w.x + abs(p1) * w.y + abs(p2) * w.z + vec3f(0.05));
+fn position_error(corners: mat3x3f, weights: vec3f, normal: vec3f) -> f32 {
+    let size = mat3x3f(abs(corners[0]), abs(corners[1]), abs(corners[2])) * abs(weights);
+    return POSITION_ERROR * dot(abs(normal), size + 0.05);
 }
 
 // Origin of a ray from the surface towards `wi`: outside the position's error bound, behind the surface only if it
@@ -188,7 +178,7 @@ fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f
 fn ray_origin(point: SurfacePoint, wi: vec3f, transmits: bool) -> vec3f {
     let is_below = dot(point.flat, wi) < 0.0;
     let origin = point.position + point.flat * select(point.error, -point.error, transmits && is_below);
-    if PLAN_SHADOW_TERMINATOR == 1u && is_below {
+    if PLAN_SHADOW_TERMINATOR && is_below {
         return origin + point.rise;
     }
     return origin;

@@ -1,23 +1,7 @@
 // Texture maps: filtered in software, so that both engines get the same numbers. Twin of src/scene/texture/mod.rs.
-#import "optics/frame"
 #import "optics/albedo"
 #import "optics/material"
 #import "scene/intersect"
-#import "scene/layout"
-
-const WRAP_REPEAT: u32 = 0u;
-const WRAP_MIRRORED: u32 = 1u;
-const WRAP_CLAMP: u32 = 2u;
-const IS_SRGB: u32 = 1u;
-const IS_NEAREST: u32 = 2u;
-const IS_SECOND_SET: u32 = 4u;
-const IS_FINE: u32 = 8u;
-const IS_BOX: u32 = 16u;
-const TURNS_NORMALS: u32 = 32u;
-const CHANNEL_SHIFT: u32 = 8u;
-const WRAP_SHIFT: u32 = 16u;
-// The least roughness of fuzz.
-const FUZZ_ROUGHNESS_MIN: f32 = 0.01;
 
 // One use of a texture map.
 struct TextureRecord {
@@ -40,11 +24,7 @@ struct Uvs {
 }
 
 fn texture_record(index: u32) -> TextureRecord {
-    var words: array<vec4u, 3>;
-    for (var i = 0u; i < 3u; i++) {
-        let place = texel_place(3u * index + i);
-        words[i] = textureLoad(texture_records, place.xy, place.z, 0);
-    }
+    let words = three_texels(texture_records, index);
     return TextureRecord(
         bitcast<vec3f>(words[0].xyz), words[0].w, bitcast<vec3f>(words[1].xyz), words[1].w,
         words[2].x, words[2].y, bitcast<f32>(words[2].z), bitcast<f32>(words[2].w),
@@ -52,8 +32,7 @@ fn texture_record(index: u32) -> TextureRecord {
 }
 
 fn texture_word(index: u32) -> u32 {
-    let place = texel_place(index);
-    return textureLoad(texture_words, place.xy, place.z, 0).x;
+    return texel_at(texture_words, index).x;
 }
 
 // Value of a texture use: linear RGB and alpha; one channel is repeated four times.
@@ -62,24 +41,22 @@ fn texture_lookup(index: u32, uvs: Uvs) -> vec4f {
     let found = filtered(record, uvs);
     let channel = (record.flags >> CHANNEL_SHIFT) & 7u;
     let chosen = select(found, vec4f(found[max(channel, 1u) - 1u]), channel != 0u);
-    return chosen * record.scale + vec4f(record.offset);
+    return chosen * record.scale + record.offset;
 }
 
 // Filtered texture map: linear RGB and alpha.
 fn filtered(record: TextureRecord, uvs: Uvs) -> vec4f {
     var uv = select(uvs.sets.xy, uvs.sets.zw, (record.flags & IS_SECOND_SET) != 0u);
-    if PLAN_BOX_PROJECTION == 1u && (record.flags & IS_BOX) != 0u {
+    if PLAN_BOX_PROJECTION && (record.flags & IS_BOX) != 0u {
         uv = uvs.on_box;
     }
-    let wrap = vec2u(record.flags >> WRAP_SHIFT, record.flags >> (WRAP_SHIFT + 2u)) & vec2u(3u);
-    let u = record.u_from_uv.x * uv.x + record.u_from_uv.y * uv.y + record.u_from_uv.z;
-    let v = record.v_from_uv.x * uv.x + record.v_from_uv.y * uv.y + record.v_from_uv.z;
-    let x = wrapped(u, wrap.x) * f32(record.width);
-    let y = wrapped(v, wrap.y) * f32(record.height);
+    let wrap = (vec2u(record.flags) >> vec2u(WRAP_SHIFT, WRAP_SHIFT + 2u)) & vec2u(3u);
+    let x = wrapped(dot(record.u_from_uv, vec3f(uv, 1.0)), wrap.x) * f32(record.width);
+    let y = wrapped(dot(record.v_from_uv, vec3f(uv, 1.0)), wrap.y) * f32(record.height);
     // The nearest texel, or the four around the place: a loop, so that the code of a texel is there once.
     var columns = vec2u(min(u32(x), record.width - 1u));
     var rows = vec2u(min(u32(y), record.height - 1u));
-    var share = vec2f(0.0);
+    var share = vec2f();
     var count = 1u;
     if (record.flags & IS_NEAREST) == 0u {
         let left = floor(x - 0.5);
@@ -89,8 +66,8 @@ fn filtered(record: TextureRecord, uvs: Uvs) -> vec4f {
         share = vec2f(x - 0.5 - left, y - 0.5 - top);
         count = 4u;
     }
-    var above = vec4f(0.0);
-    var line = vec4f(0.0);
+    var above = vec4f();
+    var line = vec4f();
     for (var i = 0u; i < count; i++) {
         let is_right = (i & 1u) != 0u;
         let found = texel(record, select(columns.x, columns.y, is_right), select(rows.x, rows.y, i > 1u));
@@ -108,7 +85,7 @@ fn mix_texels(a: vec4f, b: vec4f, t: f32) -> vec4f {
 
 fn wrapped(place: f32, wrap: u32) -> f32 {
     if wrap == WRAP_CLAMP {
-        return clamp(place, 0.0, 1.0);
+        return saturate(place);
     }
     if wrap == WRAP_MIRRORED {
         let turn = place - 2.0 * floor(place / 2.0);
@@ -134,11 +111,9 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
     let first = record.first_texel + select(place, 2u * place, is_fine);
     let word = texture_word(first);
     if is_fine {
-        let next = texture_word(first + 1u);
-        return vec4f(vec4u(word & 0xffffu, word >> 16u, next & 0xffffu, next >> 16u)) / 65535.0;
+        return vec4f(unpack2x16unorm(word), unpack2x16unorm(texture_word(first + 1u)));
     }
-    let codes = vec4u(word & 0xffu, (word >> 8u) & 0xffu, (word >> 16u) & 0xffu, word >> 24u);
-    var color = vec4f(codes) / 255.0;
+    var color = unpack4x8unorm(word);
     let curved = select(0u, 3u, (record.flags & IS_SRGB) != 0u);
     for (var channel = 0u; channel < curved; channel++) {
         let linear = bitcast<f32>(texture_word((word >> (8u * channel)) & 0xffu));
@@ -148,99 +123,68 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 }
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
-    let pictures = PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES;
-    if pictures + PLAN_FILM_TEXTURES + PLAN_FUZZ_TEXTURES + PLAN_VERTEX_COLORS == 0u {
-        return material;
-    }
-    // A map with both roughness and metalness is looked up once.
-    let has_both = material.metalness_texture == material.roughness_texture;
-    // A loop, so that the look-up's code is there once.
-    var found = array<vec4f, 7>(
-        vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0), vec4f(1.0),
-    );
-    let indices = array<u32, 7>(
-        material.base_color_texture, material.roughness_texture, material.emission_texture,
-        select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture, material.coat_roughness_texture,
-        material.coat_color_texture,
-    );
-    // Over the set bits, because drivers unroll a loop of known length.
-    var wanted = 0u;
-    // Those of the coat come last.
-    for (var kind = 0u; kind < select(4u, 7u, PLAN_COAT_TEXTURES == 1u); kind++) {
-        wanted |= select(0u, 1u << kind, indices[kind] != NO_TEXTURE);
-    }
-    if PLAN_ROUGHNESS_TEXTURES + PLAN_COAT_TEXTURES == 0u {
-        wanted &= 7u;
-    }
-    while wanted != 0u {
-        let kind = firstTrailingBit(wanted);
-        wanted &= wanted - 1u;
-        found[kind] = texture_lookup(indices[kind], uvs);
-    }
     var at_point = material;
-    if PLAN_COLOR_TEXTURES == 1u {
-        let color = select(vec3f(1.0), vertex_color, has_flag(material, VERTEX_BASE)) * found[0].xyz;
-        at_point.base_color = material.base_color * color;
-        at_point.transmission_tint = material.transmission_tint * color;
-    }
-    if PLAN_ROUGHNESS_TEXTURES == 1u {
-        at_point.metalness = material.metalness * select(found[3], found[1], has_both).z;
-    }
-    if PLAN_COAT_TEXTURES == 1u {
-        at_point.coat_weight = material.coat_weight * found[4].x;
-        if has_flag(material, COATS_BASE) && material.coat_texture != NO_TEXTURE {
-            at_point.reflecting_ior = ior_under_coat(material, at_point.coat_weight);
-        }
-        at_point.coat_roughness = material.coat_roughness * found[5].y;
-        if material.coat_roughness_texture != NO_TEXTURE && material.coat_blur > 0.0 {
-            let square = at_point.coat_roughness * at_point.coat_roughness;
-            at_point.coat_blur = 2.0 * square * square;
-        }
-        at_point.coat_color = material.coat_color * found[6].xyz;
-    }
-    let has_roughness = PLAN_ROUGHNESS_TEXTURES == 1u && material.roughness_texture != NO_TEXTURE;
-    let coat_varies = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
-    let has_coat = PLAN_COAT_TEXTURES == 1u && coat_varies;
-    let blurs = PLAN_COAT == 1u && material.coat_blur > 0.0 && (has_roughness || has_coat);
-    if has_roughness || blurs {
-        at_point.ggx_roughness = material.texture_roughness * select(1.0, found[1].y, has_roughness);
-        at_point.roughness = at_point.ggx_roughness;
-        if blurs {
-            at_point.roughness = roughness_under_coat(at_point, at_point.roughness, at_point.coat_weight);
-        }
-        if material.roughness_table != NO_TEXTURE {
-            at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
-        }
-        let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
-        at_point.transmission_roughness = clamp(rough, 0.0, 1.0);
-    }
-    if PLAN_EMISSION_TEXTURES == 1u {
-        at_point.emission = material.emission * found[2].xyz;
+    if PLAN_COLOR_TEXTURES && has_flag(material, VERTEX_BASE) {
+        at_point.base_color *= vertex_color;
+        at_point.transmission_tint *= vertex_color;
     }
     if has_vertex_flag(material, VERTEX_EMISSION) {
         at_point.emission *= vertex_color;
     }
-    if PLAN_FILM_TEXTURES == 1u {
-        if material.film_texture != NO_TEXTURE {
-            at_point.film_weight = material.film_weight * texture_lookup(material.film_texture, uvs).x;
+    // A map with both roughness and metalness is looked up once.
+    let has_both = material.metalness_texture == material.roughness_texture;
+    let planned = planned_textures() - select(0u, 1u << TEXTURE_METALNESS, PLAN_ROUGHNESS_TEXTURES && has_both);
+    var rough = material.texture_roughness;
+    // A loop, so that the look-up's code is there once; over the set bits, because drivers unroll a loop of known length.
+    for (var wanted = planned; wanted != 0u; wanted &= wanted - 1u) {
+        let kind = firstTrailingBit(wanted);
+        let texture = material_texture(material, kind);
+        if texture == NO_TEXTURE {
+            continue;
         }
-        if material.film_thickness_texture != NO_TEXTURE {
-            at_point.film_path = material.film_path * texture_lookup(material.film_thickness_texture, uvs).x;
+        let value = texture_lookup(texture, uvs);
+        switch kind {
+            case TEXTURE_BASE_COLOR: {
+                at_point.base_color *= value.xyz;
+                at_point.transmission_tint *= value.xyz;
+            }
+            case TEXTURE_ROUGHNESS: {
+                rough *= value.y;
+                at_point.metalness *= select(1.0, value.z, has_both);
+            }
+            case TEXTURE_METALNESS: { at_point.metalness *= value.z; }
+            case TEXTURE_EMISSION: { at_point.emission *= value.xyz; }
+            case TEXTURE_COAT: { at_point.coat_weight *= value.x; }
+            case TEXTURE_COAT_ROUGHNESS: {
+                at_point.coat_roughness *= value.y;
+                let square = at_point.coat_roughness * at_point.coat_roughness;
+                at_point.coat_blur = select(material.coat_blur, 2.0 * square * square, material.coat_blur > 0.0);
+            }
+            case TEXTURE_COAT_COLOR: { at_point.coat_color *= value.xyz; }
+            case TEXTURE_FILM: { at_point.film_weight *= value.x; }
+            case TEXTURE_FILM_THICKNESS: { at_point.film_path *= value.x; }
+            case TEXTURE_FUZZ: { at_point.fuzz_weight *= value.x; }
+            case TEXTURE_FUZZ_COLOR: { at_point.fuzz_color *= value.xyz; }
+            default: { at_point.fuzz_roughness = max(material.fuzz_roughness * value.w, FUZZ_ROUGHNESS_MIN); }
         }
     }
-    if PLAN_FUZZ_TEXTURES == 1u {
-        let places = vec3u(material.fuzz_texture, material.fuzz_color_texture, material.fuzz_roughness_texture);
-        let is_there = places != vec3u(NO_TEXTURE);
-        var left = dot(select(vec3u(0u), vec3u(1u, 2u, 4u), is_there), vec3u(1u));
-        while left != 0u {
-            let kind = firstTrailingBit(left);
-            left &= left - 1u;
-            let value = texture_lookup(select(select(places.z, places.y, kind == 1u), places.x, kind == 0u), uvs);
-            at_point.fuzz_weight *= select(1.0, value.x, kind == 0u);
-            at_point.fuzz_color *= select(vec3f(1.0), value.xyz, kind == 1u);
-            at_point.fuzz_roughness *= select(1.0, value.w, kind == 2u);
+    if PLAN_COAT_TEXTURES && has_coated_table(material) {
+        at_point.reflecting_ior = ior_under_coat(material, at_point.coat_weight);
+    }
+    let has_roughness = PLAN_ROUGHNESS_TEXTURES && material.roughness_texture != NO_TEXTURE;
+    let coat_varies = material.coat_texture != NO_TEXTURE || material.coat_roughness_texture != NO_TEXTURE;
+    let blurs = PLAN_COAT && material.coat_blur > 0.0 && (has_roughness || (PLAN_COAT_TEXTURES && coat_varies));
+    if has_roughness || blurs {
+        at_point.ggx_roughness = rough;
+        at_point.roughness = rough;
+        if blurs {
+            at_point.roughness = roughness_under_coat(at_point, rough, at_point.coat_weight);
         }
-        at_point.fuzz_roughness = max(at_point.fuzz_roughness, FUZZ_ROUGHNESS_MIN);
+        if material.roughness_table != NO_TEXTURE {
+            at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
+        }
+        let extra = material.transmission_roughness - material.roughness;
+        at_point.transmission_roughness = saturate(at_point.roughness + extra);
     }
     return at_point;
 }
@@ -257,12 +201,12 @@ fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec
         return vec4f(1.0);
     }
     // A loop, so that the code that loads a corner is there once.
-    var corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
+    var indices = vertices(triangle);
     var weight = weights;
-    var sum = vec4f(0.0);
-    while any(weight != vec3f(0.0)) {
-        sum += corner_color(vertex_at(corners.x)) * weight.x;
-        corners = corners.yzx;
+    var sum = vec4f();
+    while any(weight != vec3f()) {
+        sum += corner_color(vertex_at(indices.x)) * weight.x;
+        indices = indices.yzx;
         weight = vec3f(weight.yz, 0.0);
     }
     let color = select(vec3f(1.0), sum.xyz, has_flag(material, VERTEX_EMISSION));
@@ -272,23 +216,16 @@ fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec
 // Emission at a surface point times its opacity; `of_vertices` from vertex_factors.
 fn emission_at(material: Material, uvs: Uvs, of_vertices: vec4f) -> vec3f {
     // The emission map and the opacity map in a loop, so that the look-up's code is in the kernel once.
-    var emission = material.emission * of_vertices.xyz;
-    var opacity = material.opacity * of_vertices.w;
-    let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.emission_texture != NO_TEXTURE;
+    var light = vec4f(material.emission, material.opacity) * of_vertices;
+    let has_emission = PLAN_EMISSION_TEXTURES && material.emission_texture != NO_TEXTURE;
     let has_holes = material_has_holes(material);
     let has_opacity = has_holes && material.opacity_texture != NO_TEXTURE;
-    var wanted = select(0u, 1u, has_emission) + select(0u, 2u, has_opacity);
-    while wanted != 0u {
+    for (var wanted = u32(has_emission) + 2u * u32(has_opacity); wanted != 0u; wanted &= wanted - 1u) {
         let is_emission = (wanted & 1u) != 0u;
-        wanted &= wanted - 1u;
         let found = texture_lookup(select(material.opacity_texture, material.emission_texture, is_emission), uvs);
-        if is_emission {
-            emission *= found.xyz;
-        } else {
-            opacity *= found.w;
-        }
+        light *= select(vec4f(1.0, 1.0, 1.0, found.w), vec4f(found.xyz, 1.0), is_emission);
     }
-    return emission * select(1.0, stopped_share(material, opacity), has_holes);
+    return light.xyz * select(1.0, stopped_share(material, light.w), has_holes);
 }
 
 // The share of light that a surface point stops; `alpha` is that of the vertices.
@@ -302,8 +239,7 @@ fn opacity_at(material: Material, uvs: Uvs, alpha: f32) -> f32 {
 
 // The same for a known opacity.
 fn stopped_share(material: Material, opacity: f32) -> f32 {
-    let masked = select(1.0, 0.0, opacity < material.alpha_cutoff);
-    return select(masked, opacity, material.alpha_cutoff < 0.0);
+    return select(f32(opacity >= material.alpha_cutoff), opacity, material.alpha_cutoff < 0.0);
 }
 
 // The normal that a normal texture gives, in world space; `tangent` with the sign of the bitangent in w, `outward` the normal
@@ -317,7 +253,7 @@ fn mapped_normal(texture: u32, strength: f32, uvs: Uvs, normal: vec3f, tangent: 
         slope = vec2f(turn.x * slope.x - turn.y * slope.y, turn.y * slope.x + turn.x * slope.y);
     }
     var right = tangent;
-    if PLAN_BOX_PROJECTION == 1u && (record.flags & IS_BOX) != 0u {
+    if PLAN_BOX_PROJECTION && (record.flags & IS_BOX) != 0u {
         right = vec4f(box_right(outward), 1.0);
     }
     let along = frame_from_tangent(normal, right.xyz, 0.0);
@@ -328,25 +264,22 @@ fn mapped_normal(texture: u32, strength: f32, uvs: Uvs, normal: vec3f, tangent: 
 
 // Texture coordinates at a position in a triangle; box projection only if `has_box`.
 fn uvs_at(triangle: Triangle, weights: vec3f, has_box: bool) -> Uvs {
-    var corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
+    var indices = vertices(triangle);
     var weight = weights;
-    var sets = vec4f(0.0);
-    var smooth_normal = vec3f(0.0);
+    var sets = vec4f();
+    var smooth_normal = vec3f();
     // Corners that have weight, in turn, so that the code that loads one is there once.
-    while any(weight != vec3f(0.0)) {
-        let at = vertex_at(corners.x);
+    while any(weight != vec3f()) {
+        let at = vertex_at(indices.x);
         sets += at.uvs * weight.x;
         smooth_normal += at.normal * weight.x;
-        corners = corners.yzx;
+        indices = indices.yzx;
         weight = vec3f(weight.yz, 0.0);
     }
-    var on_box = vec2f(0.0);
-    if PLAN_BOX_PROJECTION == 1u && has_box {
-        let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
-        let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
-        let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
-        let place = p0 * weights.x + p1 * weights.y + p2 * weights.z;
-        on_box = box_uv(place, normalize_or(smooth_normal, triangle_normal(p0, p1, p2)));
+    var on_box = vec2f();
+    if PLAN_BOX_PROJECTION && has_box {
+        let at = corners(triangle);
+        on_box = box_uv(at * weights, normalize_or(smooth_normal, triangle_normal(at)));
     }
     return Uvs(sets, on_box);
 }

@@ -1,43 +1,36 @@
 // Intersection and transmittance of rays. Twin of Integrator::intersect and Integrator::transmittance in
 // src/cpu/integrator/rays.rs. One function for both, so that a kernel has the traversal once.
-#import "optics/random"
-#import "scene/camera"
-#import "scene/plan"
 #import "scene/surface"
 #import "scene/traversal"
 
 // First dimension of the opacity tests, one pair per bounce.
-const OPACITY_DIMENSION: u32 = 8192u;
+const OPACITY_DIMENSION = 8192u;
 // Transparent hits per ray at most. Beyond them a path's ray counts as a miss, and a shadow ray as blocked.
-const PASSES_MAX: u32 = 256u;
+const PASSES_MAX = 256u;
 
 // Closest hit of a path's ray (t from the ray's origin), and transmittance of a shadow ray in [0, 1].
 struct Intersection {
     hit: Hit,
     transmittance: f32,
+    // Rays traced.
+    rays: u32,
 }
 
 // The closest hit of a ray, which passes surfaces at random by their opacity; or the transmittance of a shadow ray.
 fn intersect(
-    ray: Ray,
-    length: f32,
-    is_shadow_ray: bool,
-    is_camera_ray: bool,
-    opacity_number: f32,
-    rays: ptr<function, u32>,
+    ray: Ray, length: f32, is_shadow_ray: bool, is_camera_ray: bool, opacity_number: f32,
 ) -> Intersection {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
+    if !PLAN_ALPHA {
         let hit = trace(ray.origin, ray.direction, length, is_shadow_ray);
-        return Intersection(hit, select(0.0, 1.0, hit.triangle == NO_HIT));
+        return Intersection(hit, f32(hit.triangle == NO_HIT), 1u);
     }
     var origin = ray.origin;
     var xi = opacity_number;
     var distance = 0.0;
     var remaining = length;
-    var intersection = Intersection(Hit(0.0, NO_HIT, 0.0, 0.0), 1.0);
+    var intersection = Intersection(Hit(0.0, NO_HIT, 0.0, 0.0), 1.0, 0u);
     for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
+        intersection.rays += 1u;
         let hit = trace(origin, ray.direction, remaining, false);
         if hit.triangle == NO_HIT {
             return intersection;

@@ -46,19 +46,8 @@ pub struct DenoisedHalves<'a> {
     pub width: usize,
 }
 
-/// Luminances A, B, D and E of a pixel.
-#[derive(Clone, Copy, Debug)]
-struct Luminances([f32; 4]);
-
-impl Luminances {
-    fn differences(self) -> Differences {
-        let [a, b, d, e] = self.0.map(f64::from);
-        Differences {
-            noisy: [a - d, b - e],
-            between: [a - b, d - e],
-        }
-    }
-}
+/// A, B, D and E of a pixel.
+type Luminances = [f32; 4];
 
 /// Differences of a pixel's luminances.
 struct Differences {
@@ -69,6 +58,14 @@ struct Differences {
 }
 
 impl Differences {
+    fn of(luminances: Luminances) -> Self {
+        let [a, b, d, e] = luminances.map(f64::from);
+        Self {
+            noisy: [a - d, b - e],
+            between: [a - b, d - e],
+        }
+    }
+
     /// Estimates the square of the filter's bias.
     fn squared_bias(&self) -> f64 {
         self.noisy[0] * self.noisy[1]
@@ -97,11 +94,9 @@ impl Errors {
     pub fn of(halves: &DenoisedHalves<'_>) -> Self {
         let bright = |color: [f32; 3]| luminance(color.map(f64::from)) as f32;
         let [[a, b], [d, e]] = [halves.noisy, halves.denoised];
-        let of_pixel = |i: usize| Luminances([a[i], b[i], d[i], e[i]].map(bright));
+        let of_pixel = |i: usize| [a[i], b[i], d[i], e[i]].map(bright);
         let luminances: Vec<_> = parallel::map(a.len(), of_pixel);
-        let denoised = luminances
-            .iter()
-            .map(|Luminances([_, _, d, e])| f64::from(*d) + f64::from(*e));
+        let denoised = luminances.iter().map(|[_, _, d, e]| f64::from(*d) + f64::from(*e));
         let grid = TileGrid {
             width: halves.width as u32,
             height: (a.len() / halves.width.max(1)) as u32,
@@ -116,7 +111,7 @@ impl Errors {
     }
 
     fn moments(&self, pixel: usize) -> Moments {
-        let of_pixel = self.luminances[pixel].differences();
+        let of_pixel = Differences::of(self.luminances[pixel]);
         let [noise, clean] = of_pixel.between;
         let known = clean * clean / 4.0;
         Moments {
@@ -263,7 +258,10 @@ fn squared_variance(apart: f64) -> f64 {
 /// A correlation is estimated by products of D − E at two pixels. Its square is taken over pairs of different products, which
 /// leaves out the noise of each.
 fn correlation(luminances: &[Luminances], width: usize) -> f64 {
-    let noise: Vec<f64> = luminances.iter().map(|pixel| pixel.differences().between[1]).collect();
+    let noise: Vec<f64> = luminances
+        .iter()
+        .map(|pixel| Differences::of(*pixel).between[1])
+        .collect();
     let height = noise.len() / width.max(1);
     let step = height.div_ceil(CORRELATED_ROWS).max(1);
     let rows = || (0..height).step_by(step);
@@ -321,7 +319,7 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> Vec
     let last = (rows.end + MAP_RADIUS).min(height);
     let differences: Vec<_> = luminances[first * width..last * width]
         .iter()
-        .map(|pixel| pixel.differences())
+        .map(|pixel| Differences::of(*pixel))
         .collect();
     let around = |of: &dyn Fn(&Differences) -> f64| -> Vec<f64> {
         let values: Vec<f64> = differences.iter().map(of).collect();

@@ -1,6 +1,6 @@
 //! Signed difference of two images, in linear light.
 
-use super::error::relative_mean_squared_error;
+use super::error::{colors, relative_mean_squared_error};
 use crate::job::film::Image;
 
 /// Share of the pixels within the automatic scale.
@@ -30,7 +30,6 @@ pub fn difference(a: &Image, b: &Image) -> Option<Difference> {
     if (a.width, a.height) != (b.width, b.height) {
         return None;
     }
-    let colors = |image: &Image| -> Vec<f32> { image.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect() };
     let luminance = |[r, g, b, _]: [f32; 4]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
     let pairs = std::iter::zip(&a.pixels, &b.pixels);
     Some(Difference {

@@ -1,9 +1,15 @@
 //! Distance of two images: relative mean squared error, and a test whether only noise separates them.
 
 use super::chi_square::upper_tail;
+use crate::job::film::Image;
 
 /// Keeps dark pixels from ruling the relative error.
 pub const RELATIVE_FLOOR: f64 = 0.01;
+
+/// Red, green and blue of all pixels, one after the other.
+pub fn colors(image: &Image) -> Vec<f32> {
+    image.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
+}
 
 /// Relative mean squared error of linear radiance, mean((x − ref)²/(ref² + 0.01)) over all numbers of both slices
 /// (equally long, any number of channels). Unweighted by luminance. 0 for empty slices.

@@ -50,7 +50,8 @@ pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
 /// The relative error of a render; `None` without samples in both halves. A black image has no error.
 pub fn noise(film: &Film) -> Option<Noise> {
     let bands = parallel::map_into(bands(film.grid()), |rows| Sums::of(&Band::of(film, rows)));
-    let sums = bands.iter().fold(Sums::default(), Sums::with);
+    let mut sums = Sums::default();
+    bands.into_iter().for_each(|band| sums += band);
     let pixels = film.pixel_count() as f64;
     if sums.measured < MEASURED_SHARE * pixels || pixels == 0.0 {
         return None;
@@ -142,19 +143,38 @@ impl<'a> Band<'a> {
     }
 }
 
-/// Sums over the pixels of an image.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sums {
-    /// Number of pixels with samples in both halves.
-    measured: f64,
-    luminance: f64,
-    /// Variances by the halves' differences, and by the samples' spread.
-    variance: f64,
-    spread: f64,
-    /// Squared variances in three ways, see [`Sums::squared_variance`].
-    of_pixels: f64,
-    of_neighbours: f64,
-    of_differences: f64,
+/// Declares numbers that are summed each by itself.
+macro_rules! sums {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub(super) struct $name {
+            $($(#[$field_doc])* pub(super) $field: f64,)*
+        }
+
+        impl std::ops::AddAssign for $name {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)*
+            }
+        }
+    };
+}
+pub(super) use sums;
+
+sums! {
+    /// Sums over the pixels of an image.
+    Sums {
+        /// Number of pixels with samples in both halves.
+        measured,
+        luminance,
+        /// Variances by the halves' differences, and by the samples' spread.
+        variance,
+        spread,
+        /// Squared variances in three ways, see [`Sums::squared_variance`].
+        of_pixels,
+        of_neighbours,
+        of_differences,
+    }
 }
 
 impl Sums {
@@ -172,18 +192,6 @@ impl Sums {
                 .map(|[sum, count]| (sum / count.max(1.0)).powi(2))
                 .sum(),
             of_differences: finite_sum(band.halves.iter().map(|variance| variance * variance / KURTOSIS)),
-        }
-    }
-
-    fn with(self, other: &Self) -> Self {
-        Self {
-            measured: self.measured + other.measured,
-            luminance: self.luminance + other.luminance,
-            variance: self.variance + other.variance,
-            spread: self.spread + other.spread,
-            of_pixels: self.of_pixels + other.of_pixels,
-            of_neighbours: self.of_neighbours + other.of_neighbours,
-            of_differences: self.of_differences + other.of_differences,
         }
     }
 

@@ -3,6 +3,7 @@
 //! Polar coordinates around a lobe's peak tame it: the factor sin θ of the solid angle cancels a 1/distance peak.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
 
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::vector::{Vec3, vec3};
@@ -12,12 +13,7 @@ const DEPTH_MAX: u32 = 9;
 /// Halvings before agreement is believed.
 const DEPTH_MIN: u32 = 1;
 /// Nodes and weights of the adaptive rule along each coordinate: Gauss's of four, exact to the seventh degree.
-const PATCH_NODES: [[f64; 2]; 4] = [
-    [-0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
-    [-0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
-    [0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
-    [0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
-];
+static PATCH_NODES: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| gauss_legendre(4));
 
 /// Nodes and weights of the Gauss–Legendre rule with `order` nodes on [−1, 1], ascending. Exact for polynomials up to
 /// degree 2 `order` − 1. The nodes are found by Newton's method from Tricomi's estimate.

@@ -226,20 +226,19 @@ pub fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Comman
         Some(_) if focused != viewport => true,
         _ => keys::take_search(ctx),
     };
-    // Shift first: a shortcut without it would match, too.
-    let mut commands: Vec<_> = Command::ALL.iter().filter_map(|c| Some((*c, c.shortcut()?))).collect();
-    commands.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
-    let free = commands
-        .into_iter()
-        .filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any() || is_function(shortcut.logical_key));
-    let mut free = free.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
-    ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)))
-        .map(|(command, _)| command)
-}
-
-/// A key that types nothing.
-fn is_function(key: Key) -> bool {
-    matches!(key, Key::F1 | Key::F11)
+    let all = Command::ALL
+        .iter()
+        .filter_map(|command| Some((*command, command.shortcut()?)));
+    let all = all.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
+    // Function keys type nothing.
+    let is_free = |(_, shortcut): &(Command, KeyboardShortcut)| {
+        !is_typing || shortcut.modifiers.any() || matches!(shortcut.logical_key, Key::F1 | Key::F11)
+    };
+    let (first, then): (Vec<_>, Vec<_>) = all.filter(is_free).partition(|(_, shortcut)| shortcut.modifiers.shift);
+    // A shortcut without shift would match with it, too.
+    let mut free = first.into_iter().chain(then);
+    let pressed = ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)));
+    pressed.map(|(command, _)| command)
 }
 
 /// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.

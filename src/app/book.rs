@@ -31,19 +31,14 @@ pub struct Section {
     pub text: String,
 }
 
-/// Where a link stands: the pages of the book, and the folder of its own page.
-#[derive(Clone, Copy)]
-struct Origin<'a> {
-    pages: Pages,
-    folder: &'a str,
-}
+/// What a link leads to.
+type Resolve<'a> = &'a dyn Fn(&str) -> String;
 
 /// The heading's anchor as GitHub and mdBook make it.
 pub fn anchor(heading: &str) -> String {
     let kept = heading.to_lowercase().replace(' ', "-");
-    kept.chars()
-        .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_'))
-        .collect()
+    let is_kept = |c: &char| c.is_alphanumeric() || matches!(c, '-' | '_');
+    kept.chars().filter(is_kept).collect()
 }
 
 /// Page and anchor of an address; the anchor is empty without one.
@@ -56,10 +51,8 @@ pub fn sections(pages: Pages, path: &str) -> Vec<Section> {
     let Some((_, page)) = pages.iter().find(|(name, _)| *name == path) else {
         return Vec::new();
     };
-    let from = Origin {
-        pages,
-        folder: path.rsplit_once('/').map_or("", |(folder, _)| folder),
-    };
+    let folder = path.rsplit_once('/').map_or("", |(folder, _)| folder);
+    let resolve: Resolve<'_> = &|target| resolved(target, folder, pages);
     let mut sections: Vec<Section> = Vec::new();
     let mut is_code = false;
     let mut head = None;
@@ -81,11 +74,11 @@ pub fn sections(pages: Pages, path: &str) -> Vec<Section> {
         if is_code {
             section.text += line;
         } else if line.starts_with('|') {
-            section.text += &row(&cells(line), &mut head, from);
+            section.text += &row(&cells(line), &mut head, resolve);
         } else {
             head = None;
             if !line.starts_with("<!--") {
-                section.text += &linked(line, from);
+                section.text += &linked(line, resolve);
             }
         }
         section.text.push('\n');
@@ -100,12 +93,12 @@ fn cells(line: &str) -> Vec<String> {
 }
 
 /// A line of a table as an item of a list: it wraps in a narrow window. The first line of a table becomes its head.
-fn row(cells: &[String], head: &mut Option<Vec<String>>, from: Origin<'_>) -> String {
+fn row(cells: &[String], head: &mut Option<Vec<String>>, resolve: Resolve<'_>) -> String {
     let Some(head) = head else {
         *head = Some(cells.to_vec());
         return String::new();
     };
-    let mut texts = cells.iter().map(|cell| linked(cell, from));
+    let mut texts = cells.iter().map(|cell| linked(cell, resolve));
     let first = texts.next().unwrap_or_default();
     if first.trim_start_matches([':', '-']).is_empty() {
         return String::new();
@@ -125,7 +118,7 @@ fn row(cells: &[String], head: &mut Option<Vec<String>>, from: Origin<'_>) -> St
 }
 
 /// The line with links that [`SCHEME`] marks where they lead to a page of the book; images by their descriptions.
-fn linked(line: &str, from: Origin<'_>) -> String {
+fn linked(line: &str, resolve: Resolve<'_>) -> String {
     let mut text = String::new();
     let mut rest = line;
     while let Some((before, after)) = rest.split_once("](") {
@@ -138,16 +131,16 @@ fn linked(line: &str, from: Origin<'_>) -> String {
                 text += &before[..image];
                 text += &format!("(image: {})", &before[image + 2..]);
             }
-            _ => text += &format!("{before}]({})", resolved(target, from)),
+            _ => text += &format!("{before}]({})", resolve(target)),
         }
     }
     text + rest
 }
 
 /// A link's target: with [`SCHEME`] and from `docs/` on where it is a page of the book.
-fn resolved(target: &str, from: Origin<'_>) -> String {
+fn resolved(target: &str, folder: &str, pages: Pages) -> String {
     let (file, anchor) = parts(target);
-    let mut path: Vec<&str> = from.folder.split('/').filter(|part| !part.is_empty()).collect();
+    let mut path: Vec<&str> = folder.split('/').filter(|part| !part.is_empty()).collect();
     for part in file.split('/') {
         match part {
             ".." => drop(path.pop()),
@@ -155,7 +148,7 @@ fn resolved(target: &str, from: Origin<'_>) -> String {
         }
     }
     let path = path.join("/");
-    let is_page = from.pages.iter().any(|(name, _)| *name == path);
+    let is_page = pages.iter().any(|(name, _)| *name == path);
     match (is_page, anchor) {
         (true, "") => format!("{SCHEME}{path}"),
         (true, anchor) => format!("{SCHEME}{path}#{anchor}"),

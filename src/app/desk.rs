@@ -1,31 +1,29 @@
 //! What the parts of the window work on: the document, the renderer's state, a queue of actions, and what they share.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::{Response, Ui};
 
 use crate::app::actions::{Action, Command};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::parameter_row;
-use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
+use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::app::services::compare::Compare;
 use crate::app::services::edits::Edits;
-use crate::app::services::environments::Environments;
-use crate::app::services::library::Library;
-use crate::app::services::lobe_plots::{LobePlots, VIEW_ANGLE_DEG};
+use crate::app::services::library::{Library, Snapshots};
 use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
+use crate::app::services::pictures::Pictures;
 use crate::app::services::recent::Recent;
 use crate::app::services::reference::ReferenceImage;
-use crate::app::services::rendering::Rendering;
 use crate::app::services::selection::Selection;
 use crate::app::services::shelves::Shelves;
-use crate::app::services::snapshots::Snapshots;
-use crate::app::services::viewing::{Pick, Viewing};
+use crate::app::services::viewing::{Pick, Rendering, Viewing};
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::queue::Queue;
 use crate::render::worker::{Scene, Snapshot};
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{BUILT_IN, EnvironmentSource};
+use crate::scene::path_text::file_name;
 use crate::scene::texture::TextureTarget;
 
 /// What panels work on.
@@ -43,7 +41,8 @@ pub struct Shared {
     pub selection: Selection,
     /// What was said, oldest first.
     pub messages: Vec<Entry>,
-    pub environments: Environments,
+    /// Thumbnails of materials and environments.
+    pub pictures: Pictures,
     /// The files opened and saved last.
     pub recent: Recent,
     /// The lobe of the materials of models that are opened.
@@ -56,8 +55,10 @@ pub struct Shared {
     pub look: Look,
     /// The window may offer to download what it lacks.
     pub offers_downloads: bool,
-    /// What the plots of lobes share.
-    pub lobe_plots: LobePlots,
+    /// The angle between view and normal in plots of lobes and of their samples, degrees.
+    pub view_angle_deg: f32,
+    /// The file of a measured material, to compare lobes with.
+    pub measured: Option<PathBuf>,
     /// The materials to choose from.
     pub library: Library,
     /// What the browser keeps, and the folders that it watches.
@@ -71,6 +72,8 @@ pub struct Shared {
     pub reference: ReferenceImage,
 }
 
+/// The angle in plots of lobes at first, degrees.
+pub const VIEW_ANGLE_DEG: f32 = 45.0;
 /// The group of the settings that only count where the viewport has the image's size.
 pub const PICTURE_SIZE: &str = "Image size";
 
@@ -89,7 +92,7 @@ impl Desk<'_> {
     pub fn file_row(
         &mut self,
         ui: &mut Ui,
-        name: Name<'_>,
+        name: [&str; 3],
         file: Option<&Path>,
         choose: Action,
         (remove, help): (&str, &str),
@@ -104,8 +107,7 @@ impl Desk<'_> {
                 return button;
             };
             is_removed = icons::button(ui, Icon::Close, remove, help).clicked();
-            let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
-            ui.add(egui::Label::new(name).truncate())
+            ui.add(egui::Label::new(file_name(file)).truncate())
                 .on_hover_text(file.display().to_string())
         });
         is_removed
@@ -121,16 +123,17 @@ impl Desk<'_> {
         response
     }
 
-    /// Asks for the images of the environments that a part of the window shows, and takes those that are there.
-    pub fn make_environment_pictures(
-        &mut self,
-        ctx: &egui::Context,
-        shown_by: &'static str,
-        shown: &[EnvironmentSource],
-    ) {
-        let scene = self.snapshot.scene.as_deref();
-        let loaded = scene.map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
-        self.shared.environments.make_pictures(ctx, (shown_by, shown), loaded);
+    /// The environments to choose from: those that come with the program, and so many files, the one in use and those opened
+    /// last.
+    pub fn environments(&self, files_max: usize) -> Vec<EnvironmentSource> {
+        let current = std::iter::once(self.document.lighting.environment.clone());
+        let mut sources: Vec<_> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
+        for source in current.chain(self.shared.recent.environments()) {
+            if !sources.contains(&source) && sources.len() - BUILT_IN.len() < files_max {
+                sources.push(source);
+            }
+        }
+        sources
     }
 
     /// The scene being rendered, where it is of the document's model.
@@ -150,6 +153,13 @@ impl Desk<'_> {
     /// The material of the selected slot.
     pub fn material(&self) -> MaterialSettings {
         self.document.material(self.shared.selection.slot)
+    }
+
+    /// Gives a slot a material that was dropped on it.
+    pub fn drop_on(&mut self, slot: usize, material: &MaterialSettings) {
+        let material = Box::new(material.clone());
+        self.actions
+            .extend([Action::SelectSlot(slot), Action::UseMaterial(material)]);
     }
 
     /// The slots of the model whose materials are as asked for.
@@ -198,9 +208,9 @@ impl Desk<'_> {
 
     /// The row of a setting.
     fn setting(&mut self, ui: &mut Ui, setting: &'static Parameter<Document>) {
-        let mut value = setting.get(self.document);
-        if parameter_row::show(ui, setting, &mut value) && setting.set(self.document, value).is_ok() {
-            self.edits.note(setting.full_name(), setting.key);
+        let full = setting.full_name();
+        if parameter_row::edit(ui, setting, &full, self.document, None) {
+            self.edits.note(full, setting.key);
         }
     }
 
@@ -219,19 +229,17 @@ impl Desk<'_> {
         response.accessible_name(name).on_hover_text(setting.help);
     }
 
-    /// Notes an edit of a setting, and resets it where that was asked for.
-    pub fn edited<T: PartialEq + Clone>(
+    /// The row of a part of the document; edits are noted under its name.
+    pub fn row<T: Clone>(
         &mut self,
-        response: RowResponse,
-        label: &'static str,
-        field: impl Fn(&mut Document) -> &mut T,
+        ui: &mut Ui,
+        name: [&'static str; 3],
+        field: fn(&mut Document) -> &mut T,
+        control: impl FnOnce(&mut Ui, &mut T) -> Response,
     ) {
-        if response.reset {
-            let default = field(&mut Document::default()).clone();
-            *field(self.document) = default;
-        }
-        if response.changed || response.reset {
-            self.edits.note(label, label);
+        let default = field(&mut Document::default()).clone();
+        if widgets::value_row(ui, name, field(self.document), default, control) {
+            self.edits.note(name[0], name[0]);
         }
     }
 
@@ -244,10 +252,10 @@ impl Desk<'_> {
             symbol: "θ",
             help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
         };
-        let angle = &mut self.shared.lobe_plots.view_angle_deg;
-        if widgets::row(ui, name, |ui| widgets::number(ui, angle, &style)).reset {
-            self.shared.lobe_plots.view_angle_deg = VIEW_ANGLE_DEG;
-        }
+        let angle = &mut self.shared.view_angle_deg;
+        widgets::value_row(ui, name, angle, VIEW_ANGLE_DEG, |ui, angle| {
+            widgets::number(ui, angle, &style)
+        });
     }
 
     /// What A and B are called.

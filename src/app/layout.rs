@@ -1,6 +1,6 @@
 //! The panels and how they are docked.
 
-use egui::{Color32, Response, Sense, Stroke, TextStyle, Ui, Vec2, Visuals, WidgetInfo, WidgetText, vec2};
+use egui::{Color32, Response, Sense, Stroke, TextStyle, Ui, Vec2, Visuals, WidgetText};
 use egui_tiles::{
     Behavior, Container, Linear, LinearDir, ResizeState, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles,
     Tree, UiResponse,
@@ -40,9 +40,9 @@ const LOOK_PANES: [Pane; 8] = [
 /// The layout of *Look*: presets over light and camera on the left, the image, the material on the right.
 pub fn to_look() -> Tree<Pane> {
     let mut tree = all_docked();
-    let place = |tree: &Tree<Pane>, pane| tree.tiles.find_pane(&pane);
-    let beside = |tree: &Tree<Pane>| tree.tiles.parent_of(place(tree, Pane::Material)?);
-    if let Some((curve, tabs)) = place(&tree, Pane::Curve).zip(beside(&tree)) {
+    let place = |pane| tree.tiles.find_pane(&pane);
+    let tabs = place(Pane::Material).and_then(|material| tree.tiles.parent_of(material));
+    if let Some((curve, tabs)) = place(Pane::Curve).zip(tabs) {
         tree.move_tile_to_container(curve, tabs, 1, false);
     }
     for pane in Pane::ALL.into_iter().filter(|pane| !LOOK_PANES.contains(pane)) {
@@ -98,11 +98,9 @@ pub fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
         if tree.tiles.find_pane(&pane).is_some() {
             continue;
         }
-        let neighbors = panes_of(pane.home()?);
-        let tabs = neighbors
-            .filter_map(|neighbor| tree.tiles.parent_of(tree.tiles.find_pane(&neighbor)?))
-            .next()
-            .or(tree.root())?;
+        let mut neighbors = panes_of(pane.home()?);
+        let beside = neighbors.find_map(|neighbor| tree.tiles.parent_of(tree.tiles.find_pane(&neighbor)?));
+        let tabs = beside.or(tree.root())?;
         let tile = tree.tiles.insert_pane(pane);
         tree.move_tile_to_container(tile, tabs, usize::MAX, false);
     }
@@ -130,32 +128,27 @@ pub fn close(tree: &mut Tree<Pane>, pane: Pane) {
 fn set_open(tiles: &mut Tiles<Pane>, pane: Pane, is_open: bool) {
     let Some(mut tile) = tiles.find_pane(&pane) else { return };
     tiles.set_visible(tile, is_open);
-    while let Some(parent) = tiles.parent_of(tile) {
-        let children: Vec<TileId> = match tiles.get_container(parent) {
-            Some(container) => container.children().copied().collect(),
-            None => return,
-        };
-        let is_used = children.iter().any(|child| tiles.is_visible(*child));
+    while let Some(parent) = tiles.parent_of(tile)
+        && let Some(container) = tiles.get_container(parent)
+    {
+        let is_used = container.children().any(|child| tiles.is_visible(*child));
         tiles.set_visible(parent, is_used);
         tile = parent;
     }
 }
 
-/// The titles of the open panels below a tile.
-fn titles(tiles: &Tiles<Pane>, tile: TileId) -> Vec<&'static str> {
+/// The open panels of a tile.
+fn panes(tiles: &Tiles<Pane>, tile: TileId) -> Vec<Pane> {
     match tiles.get(tile) {
-        Some(Tile::Pane(pane)) if tiles.is_visible(tile) => vec![pane.title()],
-        Some(Tile::Container(container)) => container.children().flat_map(|child| titles(tiles, *child)).collect(),
+        Some(Tile::Pane(pane)) if tiles.is_visible(tile) => vec![*pane],
+        Some(Tile::Container(container)) => container.children().flat_map(|child| panes(tiles, *child)).collect(),
         _ => Vec::new(),
     }
 }
 
-/// The text of a tab.
-fn tab_text(ui: &Ui, tiles: &Tiles<Pane>, tile: TileId) -> std::sync::Arc<egui::Galley> {
-    let font = TextStyle::Button.resolve(ui.style());
-    // Painted in the colour of its state.
-    ui.painter()
-        .layout_no_wrap(titles(tiles, tile).join(" | "), font, Color32::PLACEHOLDER)
+fn title(tiles: &Tiles<Pane>, tile: TileId) -> String {
+    let titles: Vec<&str> = panes(tiles, tile).into_iter().map(Pane::title).collect();
+    titles.join(" | ")
 }
 
 /// The tabs for which there is no room: behind the others they would be cut off in the middle of a word, and stand in a
@@ -167,13 +160,15 @@ pub fn hidden_tabs(ui: &Ui, tree: &Tree<Pane>) -> Vec<TileId> {
             return Vec::new();
         };
         let is_front = |tile: &TileId| tabs.active == Some(*tile);
-        let width = |tile: TileId| tab_text(ui, tiles, tile).size().x + 2.0 * TAB_SPACING;
-        let mut open: Vec<TileId> = tabs
-            .children
-            .iter()
-            .copied()
-            .filter(|tile| tiles.is_visible(*tile))
-            .collect();
+        let font = TextStyle::Button.resolve(ui.style());
+        let width = |tile: TileId| {
+            let text = ui
+                .painter()
+                .layout_no_wrap(title(tiles, tile), font.clone(), Color32::PLACEHOLDER);
+            text.size().x + 2.0 * TAB_SPACING
+        };
+        let mut open = tabs.children.clone();
+        open.retain(|tile| tiles.is_visible(*tile));
         let room = tiles.rect(*bar).map_or(f32::INFINITY, |rect| rect.width() - HELP_WIDTH);
         if open.iter().map(|tile| width(*tile)).sum::<f32>() <= room {
             return Vec::new();
@@ -193,14 +188,6 @@ pub fn hidden_tabs(ui: &Ui, tree: &Tree<Pane>) -> Vec<TileId> {
     tiles.iter().flat_map(of_bar).collect()
 }
 
-/// The panels of a tile, the first of which stands for it.
-fn first_pane(tiles: &Tiles<Pane>, tile: TileId) -> Option<Pane> {
-    match tiles.get(tile)? {
-        Tile::Pane(pane) => Some(*pane),
-        Tile::Container(container) => container.children().find_map(|child| first_pane(tiles, *child)),
-    }
-}
-
 /// Shows panes.
 pub struct Panes<'a, 'd> {
     pub desk: &'a mut Desk<'d>,
@@ -213,28 +200,46 @@ pub struct Panes<'a, 'd> {
 impl Panes<'_, '_> {
     /// The menu of the tabs for which there is no room.
     fn more_tabs(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, tabs: &Tabs) {
-        let hidden: Vec<TileId> = tabs
-            .children
-            .iter()
-            .copied()
-            .filter(|tile| self.hidden.contains(tile))
-            .collect();
+        let mut hidden = tabs.children.clone();
+        hidden.retain(|tile| self.hidden.contains(tile));
         if hidden.is_empty() {
             return;
         }
         let button = ui.menu_button("…", |ui| {
             for tile in &hidden {
-                let chosen = ui.button(titles(tiles, *tile).join(" | ")).clicked();
-                let pane = first_pane(tiles, *tile).filter(|_| chosen);
-                self.desk.actions.extend(pane.map(Action::Reveal));
+                let chosen = ui.button(title(tiles, *tile)).clicked();
+                let first = panes(tiles, *tile).into_iter().take(usize::from(chosen));
+                self.desk.actions.extend(first.map(Action::Reveal));
             }
         });
-        let front = tabs
-            .active
-            .map(|tile| titles(tiles, tile).join(" | "))
-            .unwrap_or_default();
+        let front = tabs.active.map_or_else(String::new, |tile| title(tiles, tile));
         let button = button.response.on_hover_text("Panels for whose tabs there is no room");
         button.accessible_name(format!("More panels beside {front}"));
+    }
+}
+
+/// Draws the tabs for which there is room.
+struct TabsWithRoom;
+
+impl Behavior<Pane> for TabsWithRoom {
+    fn pane_ui(&mut self, _: &mut Ui, _: TileId, _: &mut Pane) -> UiResponse {
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.title().into()
+    }
+
+    fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile: TileId) -> WidgetText {
+        title(tiles, tile).into()
+    }
+
+    fn tab_title_spacing(&self, _: &Visuals) -> f32 {
+        TAB_SPACING
+    }
+
+    fn tab_outline_stroke(&self, _: &Visuals, _: &Tiles<Pane>, _: TileId, _: &TabState) -> Stroke {
+        Stroke::NONE
     }
 }
 
@@ -260,7 +265,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
     }
 
     fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile_id: TileId) -> WidgetText {
-        titles(tiles, tile_id).join(" | ").into()
+        title(tiles, tile_id).into()
     }
 
     fn top_bar_right_ui(&mut self, tiles: &Tiles<Pane>, ui: &mut Ui, _: TileId, tabs: &Tabs, _: &mut f32) {
@@ -273,7 +278,6 @@ impl Behavior<Pane> for Panes<'_, '_> {
         self.more_tabs(tiles, ui, tabs);
     }
 
-    /// As the trait's own, but for those without room.
     fn tab_ui(
         &mut self,
         tiles: &mut Tiles<Pane>,
@@ -282,28 +286,10 @@ impl Behavior<Pane> for Panes<'_, '_> {
         tile: TileId,
         state: &TabState,
     ) -> Response {
-        if self.hidden.contains(&tile) {
-            return ui.allocate_response(Vec2::ZERO, Sense::hover());
+        match self.hidden.contains(&tile) {
+            true => ui.allocate_response(Vec2::ZERO, Sense::hover()),
+            false => TabsWithRoom.tab_ui(tiles, ui, id, tile, state),
         }
-        let text = tab_text(ui, tiles, tile);
-        let (_, place) = ui.allocate_space(vec2(text.size().x + 2.0 * TAB_SPACING, ui.available_height()));
-        let response = ui.interact(place, id, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, state.active, text.text()));
-        if ui.is_rect_visible(place) && !state.is_being_dragged {
-            let fill = self.tab_bg_color(ui.visuals(), tiles, tile, state);
-            ui.painter().rect_filled(place.shrink(0.5), 0.0, fill);
-            if state.active {
-                // It connects with what it is the tab of.
-                ui.painter()
-                    .hline(place.x_range(), place.bottom(), Stroke::new(1.0, fill));
-            }
-            let color = self.tab_text_color(ui.visuals(), tiles, tile, state);
-            let at = egui::Align2::CENTER_CENTER
-                .align_size_within_rect(text.size(), place)
-                .min;
-            ui.painter().galley(at, text, color);
-        }
-        response.on_hover_cursor(egui::CursorIcon::Grab)
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
@@ -318,16 +304,8 @@ impl Behavior<Pane> for Panes<'_, '_> {
         140.0
     }
 
-    fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
-        TAB_SPACING
-    }
-
     fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {
         theme::ground(visuals.dark_mode)
-    }
-
-    fn tab_outline_stroke(&self, _: &Visuals, _: &Tiles<Pane>, _: TileId, _: &TabState) -> Stroke {
-        Stroke::NONE
     }
 
     fn tab_bar_hline_stroke(&self, _visuals: &Visuals) -> Stroke {
@@ -337,7 +315,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
     fn resize_stroke(&self, style: &egui::Style, state: ResizeState) -> Stroke {
         let color = match state {
             ResizeState::Idle => theme::ground(style.visuals.dark_mode),
-            ResizeState::Hovering | ResizeState::Dragging => theme::accent(style.visuals.dark_mode),
+            ResizeState::Hovering | ResizeState::Dragging => style.visuals.hyperlink_color,
         };
         Stroke::new(self.gap_width(style), color)
     }
@@ -362,22 +340,21 @@ pub fn viewport_tile(tree: &Tree<Pane>) -> Option<TileId> {
 
 /// The panel that is seen at a point of the window.
 pub fn pane_at(tree: &Tree<Pane>, at: egui::Pos2) -> Option<Pane> {
-    let is_there = |tile: TileId| tree.tiles.rect(tile).is_some_and(|rect| rect.contains(at));
-    let panes = Pane::ALL.into_iter().filter(|pane| is_open(tree, *pane));
-    panes
-        .into_iter()
-        .find(|pane| tree.tiles.find_pane(pane).is_some_and(is_there))
+    let is_there =
+        |tile: TileId| tree.tiles.is_visible(tile) && tree.tiles.rect(tile).is_some_and(|rect| rect.contains(at));
+    let mut all = Pane::ALL.into_iter();
+    all.find(|pane| tree.tiles.find_pane(pane).is_some_and(is_there))
 }
 
 /// Hides all panels but the image, or shows them.
 pub fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
-    let Some(root) = tree.root() else { return };
-    let viewport = viewport_tile(tree);
-    let others: Vec<TileId> = match tree.tiles.get_container(root) {
-        Some(Container::Linear(linear)) => linear.children.to_vec(),
+    let root = tree.root().and_then(|root| tree.tiles.get_container(root));
+    let mut others = match root {
+        Some(Container::Linear(linear)) => linear.children.clone(),
         _ => Vec::new(),
     };
-    for tile in others.into_iter().filter(|tile| Some(*tile) != viewport) {
+    others.retain(|tile| Some(*tile) != viewport_tile(tree));
+    for tile in others {
         tree.set_visible(tile, !is_maximised);
     }
 }

@@ -21,7 +21,7 @@ mod viewport;
 pub mod workspaces;
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -29,24 +29,22 @@ use egui::Ui;
 use egui_tiles::Tree;
 
 use actions::Action;
-use desk::{Desk, Shared};
-use handlers::dropped;
-use handlers::models::ENVIRONMENT_CHANGED;
+use desk::{Desk, Shared, VIEW_ANGLE_DEG};
+use handlers::models::{self, ENVIRONMENT_CHANGED};
 use kit::{keys, theme};
 use layout::Pane;
 use panels::Panels;
 use services::autosave::{self, Autosave, Leftover};
 pub use services::crash::report_panics;
 use services::edits::Edits;
-use services::lobe_plots::LobePlots;
+use services::library::{Change, Folder};
+use services::messages::{self, Entry};
+use services::pictures::Pictures;
 use services::recent::Recent;
-use services::rendering::Rendering;
 use services::selection::Selection;
-use services::snapshots;
 pub use services::viewing::Resolution;
-use services::viewing::Viewing;
+use services::viewing::{Rendering, Viewing};
 pub use services::{compare, library};
-use services::{environments, messages};
 use sheets::book::Manual;
 use sheets::dialogs::Dialogs;
 use sheets::export::ExportSheet;
@@ -60,7 +58,7 @@ use workspaces::Workspaces;
 use crate::document::of_model::import_report;
 use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
-use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
+use crate::render::worker::{Activity, Event, Level, Scene, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -73,12 +71,13 @@ const MOVING: Duration = Duration::from_millis(150);
 
 /// Opens the editor with files: models, environments, materials, projects. Returns when the window is closed.
 pub fn run(files: Vec<PathBuf>, engine: EngineChoice, pages: book::Pages) -> anyhow::Result<()> {
+    let [data, cache] = settings::folders().map_or([None, None], |folders| folders.map(Some));
     let options = Options {
         files,
         engine,
         pages,
-        data: settings::data_folder(),
-        cache: settings::cache_folder(),
+        data,
+        cache,
         offers_downloads: true,
         ..Options::default()
     };
@@ -161,16 +160,11 @@ pub struct App {
 
 /// What a new document is: the still life, or for files to come the default document.
 fn new_document(denoise: Denoise, is_for_files: bool) -> Document {
-    let document = if is_for_files {
+    let mut document = if is_for_files {
         Document::default()
     } else {
         still_life()
     };
-    denoised_by(denoise, document)
-}
-
-/// The document, denoised as before.
-fn denoised_by(denoise: Denoise, mut document: Document) -> Document {
     document.view.denoise = denoise;
     document
 }
@@ -182,6 +176,10 @@ impl App {
         let kept = settings::KeptSettings::load(creation);
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
+        let repaint = || {
+            let ctx = ctx.clone();
+            move || ctx.request_repaint()
+        };
         // The command line overrides what was chosen in the window.
         let engine = match options.engine {
             EngineChoice::Auto => kept.engine,
@@ -190,16 +188,13 @@ impl App {
         if RayQueries::chosen() == RayQueries::Auto {
             kept.ray_queries.choose();
         }
-        let worker = Worker::spawn(engine, move || ctx.request_repaint())?;
-        let ctx = creation.egui_ctx.clone();
-        let queue = Queue::new(worker.assets().clone(), move || ctx.request_repaint())?;
+        let worker = Worker::spawn(engine, repaint())?;
+        let queue = Queue::new(worker.assets().clone(), repaint())?;
         let document = options
             .document
             .unwrap_or_else(|| new_document(kept.denoise, !options.files.is_empty()));
-        let materials = options.data.as_ref().map(|data| data.join("materials"));
-        let library = library::Library::new(materials, options.cache.clone());
-        let environments = environments::Environments::new(options.cache.clone(), library.holder());
-        let (workspaces, layout) = Workspaces::new(kept.workspaces, kept.layout, options.workspace);
+        let folder = |name: &str| options.data.as_ref().map(|data| data.join(name));
+        let (workspaces, layout) = Workspaces::new(kept.workspaces, options.workspace);
         let mut app = Self {
             edits: Edits::new(document.clone()),
             document,
@@ -214,20 +209,27 @@ impl App {
             shared: Shared {
                 selection: Selection::default(),
                 messages: Vec::new(),
-                environments,
+                pictures: Pictures::new(options.cache),
                 recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
-                rendering: Rendering::new(engine, (kept.engine, kept.ray_queries)),
+                rendering: Rendering {
+                    engine,
+                    kept_engine: kept.engine,
+                    kept_ray_queries: kept.ray_queries,
+                    is_paused: false,
+                    is_measuring: false,
+                },
                 viewing: Viewing {
                     resolution: options.resolution.unwrap_or(kept.resolution),
                     ..Viewing::default()
                 },
                 look: services::look::Look::default(),
                 offers_downloads: options.offers_downloads,
-                lobe_plots: LobePlots::default(),
-                library,
+                view_angle_deg: VIEW_ANGLE_DEG,
+                measured: None,
+                library: Folder::new(folder("materials")),
                 shelves: services::shelves::Shelves::new(kept.shelves),
-                snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
+                snapshots: Folder::new(folder("snapshots")),
                 compare: compare::Compare::default(),
                 queue,
                 reference: services::reference::ReferenceImage::default(),
@@ -242,11 +244,11 @@ impl App {
             manual: Manual::new(options.pages),
             turntable: TurntableSheet::default(),
             export: ExportSheet::default(),
-            files: handlers::files::Files::new(creation.egui_ctx.clone())?,
+            files: handlers::files::Files::new(ctx.clone())?,
             autosave: match options.data {
                 Some(data) => {
                     let interval = options.autosave_interval.unwrap_or(autosave::INTERVAL);
-                    Autosave::begin(data.join("recovery"), interval, creation.egui_ctx.clone())?
+                    Autosave::begin(data.join("recovery"), interval, ctx)?
                 }
                 None => Autosave::default(),
             },
@@ -257,8 +259,8 @@ impl App {
             title: String::new(),
             theme: kept.theme,
         };
-        app.list_library();
-        app.list_snapshots();
+        app.change_library(Change::List);
+        app.change_snapshots(Change::List);
         app.awaited += app.open_all(options.files);
         Ok(app)
     }
@@ -272,13 +274,20 @@ impl App {
         self.worker.snapshot()
     }
 
+    /// What is rendered.
+    fn scene(&self) -> Option<Arc<Scene>> {
+        self.worker.snapshot().scene.clone()
+    }
+
     /// Whether the image shown is the finished one of the document as it is.
     pub fn is_settled(&self) -> bool {
         let snapshot = self.worker.snapshot();
-        let is_current = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
         self.submitted.is_some()
             && snapshot.activity == Activity::Done
-            && snapshot.picture.as_deref().is_some_and(is_current)
+            && snapshot
+                .picture
+                .as_deref()
+                .is_some_and(|picture| self.is_whole(picture))
     }
 
     /// Whether a file, a model or an environment that was asked for is still being opened: an edit to come.
@@ -293,11 +302,14 @@ impl App {
 
     /// Brings a panel to the front.
     pub fn reveal(&mut self, pane: Pane) {
-        if self.is_maximised {
-            self.is_maximised = false;
-            layout::set_maximised(&mut self.layout, false);
-        }
+        self.maximise(false);
         layout::reveal(&mut self.layout, pane);
+    }
+
+    fn maximise(&mut self, is_maximised: bool) {
+        if std::mem::replace(&mut self.is_maximised, is_maximised) != is_maximised {
+            layout::set_maximised(&mut self.layout, is_maximised);
+        }
     }
 
     /// What was said so far, oldest first.
@@ -306,20 +318,40 @@ impl App {
     }
 
     fn report(&mut self, level: Level, text: impl Into<String>) {
-        messages::add(&mut self.shared.messages, level, text.into());
+        self.say(Entry::new(level, text.into()));
     }
 
-    /// Reports what was done, in a note over the viewport.
-    fn report_success(&mut self, done: Option<messages::Success>) {
-        if let Some(done) = done {
-            messages::add_success(&mut self.shared.messages, done);
-        }
+    fn note(&mut self, text: impl Into<String>) {
+        self.report(Level::Info, text);
+    }
+
+    fn warn(&mut self, text: impl Into<String>) {
+        self.report(Level::Warning, text);
+    }
+
+    fn fail(&mut self, error: impl ToString) {
+        self.report(Level::Error, error.to_string());
+    }
+
+    /// What was asked for; where there is none, the reason is reported.
+    fn taken<T>(&mut self, outcome: Result<T, impl ToString>) -> Option<T> {
+        outcome.map_err(|error| self.fail(error)).ok()
+    }
+
+    fn say(&mut self, entry: Entry) {
+        messages::add(&mut self.shared.messages, entry);
+    }
+
+    fn say_all(&mut self, entries: impl IntoIterator<Item = Entry>) {
+        entries.into_iter().for_each(|entry| self.say(entry));
     }
 
     fn take_events(&mut self, ctx: &egui::Context) {
         self.take_files(ctx);
         self.take_autosave_reports();
-        self.take_queue_news();
+        for ended in self.shared.queue.take_news() {
+            self.report_outcome(ended.map(Entry::done));
+        }
         if self.awaited > 0 && self.files.is_reading() {
             // Projects and materials first, whichever is read faster: a model given beside a project changes it.
             return;
@@ -333,8 +365,7 @@ impl App {
                 }
                 Event::ModelOpened(source, options, model) => {
                     if let ModelSource::File(path) = &source {
-                        self.report(Level::Info, format!("opened {}", path.display()));
-                        self.shared.recent.add(path);
+                        self.note_opened(path);
                     }
                     let report = import_report(&model, self.shared.import_lobe);
                     messages::add_import(&mut self.shared.messages, &model.name, &report);
@@ -344,8 +375,7 @@ impl App {
                 }
                 Event::EnvironmentOpened(source, _) => {
                     if let EnvironmentSource::File(path) = &source {
-                        self.report(Level::Info, format!("opened {}", path.display()));
-                        self.shared.recent.add(path);
+                        self.note_opened(path);
                     }
                     self.document.lighting.environment = source;
                     self.edits.note(ENVIRONMENT_CHANGED, "");
@@ -369,6 +399,11 @@ impl App {
         }
     }
 
+    fn note_opened(&mut self, path: &Path) {
+        self.note(format!("opened {}", path.display()));
+        self.shared.recent.add(path);
+    }
+
     fn desk_material(&self) -> MaterialSettings {
         self.document.material(self.shared.selection.slot)
     }
@@ -376,7 +411,7 @@ impl App {
     /// Records what was edited since this was last done.
     fn record(&mut self, is_dragging: bool) {
         if self.edits.record(&self.document, is_dragging) {
-            let label = self.edits.undo_label().unwrap_or("an edit undone");
+            let label = self.edits.history.undo_label().unwrap_or("an edit undone");
             self.autosave.witness.note(label);
         }
     }
@@ -385,7 +420,7 @@ impl App {
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
         let is_changing = is_dragging(ctx) || self.edits.is_in_flow();
-        self.shared.library.hold(!has_picture || is_changing);
+        self.shared.pictures.hold(!has_picture || is_changing);
         self.shared.queue.give_way(is_changing);
         if is_changing {
             ctx.request_repaint_after(MOVING);
@@ -394,10 +429,12 @@ impl App {
 
     fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let snapshot = self.worker.snapshot();
-        let is_dark = ui.visuals().dark_mode;
-        let bar = egui::Frame::new()
-            .fill(ui.visuals().panel_fill)
-            .inner_margin(egui::Margin::symmetric(8, 3));
+        let frame = |fill, across| {
+            egui::Frame::new()
+                .fill(fill)
+                .inner_margin(egui::Margin::symmetric(across, 3))
+        };
+        let bar = frame(ui.visuals().panel_fill, 8);
         egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
@@ -417,9 +454,7 @@ impl App {
                 let has_numbers = self.workspaces.current() == workspaces::MEASURE;
                 status::show(ui, &snapshot, &self.meter, has_numbers, actions);
             });
-        let ground = egui::Frame::new()
-            .fill(theme::ground(is_dark))
-            .inner_margin(egui::Margin::symmetric(0, 3));
+        let ground = frame(theme::ground(ui.visuals().dark_mode), 0);
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
             let mut desk = Desk {
                 document: &mut self.document,
@@ -438,20 +473,11 @@ impl App {
             self.layout.ui(&mut panes, ui);
         });
         let material = self.desk_material();
-        let scene = self.worker.snapshot().scene.clone();
-        let model = scene
-            .as_ref()
-            .filter(|scene| scene.document.model == self.document.model);
-        let model = model.map(|scene| scene.model.as_ref());
-        let desk = (&self.document, &material);
-        menu::sheet(
-            ui.ctx(),
-            &mut self.sheet,
-            desk,
-            (model, self.shared.import_lobe),
-            actions,
-        );
-        match self.dialogs.show(ui, self.shared.recent.paths()) {
+        let scene = self.scene().filter(|scene| scene.document.model == self.document.model);
+        let scene = scene.as_ref();
+        let model = (scene.map(|scene| scene.model.as_ref()), self.shared.import_lobe);
+        menu::sheet(ui.ctx(), &mut self.sheet, (&self.document, &material), model, actions);
+        match self.dialogs.show(ui, &self.shared.recent.paths) {
             Some((purpose, Some(path))) => self.chosen(purpose, path),
             Some((purpose, None)) if purpose.is_saving() => self.report_unsaved(purpose),
             _ => {}
@@ -477,7 +503,7 @@ impl App {
 
     fn save_for_recovery(&mut self, ctx: &egui::Context) {
         if let Some(engine) = &self.worker.snapshot().engine {
-            self.autosave.witness.see_engine(&engine.to_string());
+            self.autosave.witness.known().engine = engine.to_string();
         }
         let is_saved = self.edits.is_saved(&self.document);
         let project = self.files.project.as_deref();
@@ -520,6 +546,11 @@ impl eframe::App for App {
         self.shared.selection.begin_frame();
         self.shared.look.begin_frame();
         self.show(ui, &mut actions);
+        let scene = self.scene();
+        let loaded = scene
+            .as_ref()
+            .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
+        self.shared.pictures.make(&ctx, loaded);
         let look = &self.shared.look;
         if look.is_shown != look.was_shown {
             self.worker.set_inspected(look.is_shown);
@@ -531,7 +562,7 @@ impl eframe::App for App {
         // After the viewport, which selects what a file is dropped on.
         let focused = ctx.memory(|memory| memory.focused());
         let takes_text = !self.is_covered() && focused.is_none_or(|id| Some(id) == self.viewport.id());
-        actions.extend(dropped::handed_over(&ctx, takes_text));
+        actions.extend(models::handed_over(&ctx, takes_text));
         for action in actions {
             self.apply(&ctx, action);
         }
@@ -551,20 +582,19 @@ impl eframe::App for App {
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         let mut layout = self.layout.clone();
         layout::set_maximised(&mut layout, false);
-        let kept = settings::KeptSettings {
-            allowed: crate::import::resource::allowed(),
+        settings::KeptSettings {
+            allowed: crate::import::limits::allowed(),
             theme: self.theme,
-            layout: None,
-            workspaces: self.workspaces.kept(layout),
+            workspaces: self.workspaces.with(layout),
             resolution: self.shared.viewing.resolution,
             import_lobe: self.shared.import_lobe,
             engine: self.shared.rendering.kept_engine,
             ray_queries: self.shared.rendering.kept_ray_queries,
             denoise: self.document.view.denoise,
-            recent: self.shared.recent.paths().to_vec(),
+            recent: self.shared.recent.paths.clone(),
             shelves: self.shared.shelves.kept.clone(),
-        };
-        kept.save(storage);
+        }
+        .save(storage);
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

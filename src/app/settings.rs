@@ -1,18 +1,16 @@
 //! What the window is opened with, and what is remembered from one start to the next.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::ThemePreference;
-use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
 use crate::app::services::viewing::Resolution;
-use crate::app::workspaces;
+use crate::app::workspaces::Workspaces;
 use crate::document::{Denoise, ImportLobe};
-use crate::import::resource;
+use crate::import::limits;
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, RayQueries};
 
@@ -21,7 +19,8 @@ const KEY: &str = "editor";
 
 pub fn native_options() -> eframe::NativeOptions {
     let viewport = egui::ViewportBuilder::default()
-        .with_app_id(app_id())
+        // The name of the menu entry that desktops find the icon by: inside a Flatpak the program's id there.
+        .with_app_id(std::env::var("FLATPAK_ID").unwrap_or_else(|_| "glossmith".to_owned()))
         .with_icon(icon())
         .with_title("Glossmith")
         .with_inner_size([1440.0, 900.0])
@@ -36,19 +35,10 @@ pub fn native_options() -> eframe::NativeOptions {
     options
 }
 
-/// The name of the menu entry that desktops find the window's icon by: inside a Flatpak the program's id there.
-fn app_id() -> String {
-    std::env::var("FLATPAK_ID").unwrap_or_else(|_| "glossmith".to_owned())
-}
-
 /// The window's image, which desktops show beside its name.
 fn icon() -> Arc<egui::IconData> {
     let png = include_bytes!("../../assets/desktop/glossmith.png");
-    let icon = eframe::icon_data::from_png_bytes(png);
-    if let Err(error) = &icon {
-        log::debug!("the window has no icon: {error}");
-    }
-    Arc::new(icon.unwrap_or_default())
+    Arc::new(eframe::icon_data::from_png_bytes(png).unwrap_or_default())
 }
 
 /// Frames after the start in which the window is fitted to the screen: by then the system has reported both sizes.
@@ -68,17 +58,12 @@ pub fn fit_to_screen(ctx: &egui::Context) {
     let around = info
         .outer_rect
         .map_or(egui::Vec2::ZERO, |outer| outer.size() - inner.size());
-    if let Some(size) = smaller(screen, inner.size(), around) {
-        ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(size));
+    let most = (screen - around.max(egui::Vec2::ZERO)).max(egui::Vec2::splat(1.0));
+    let fitted = inner.size().min(most);
+    if fitted != inner.size() {
+        ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(fitted));
         ctx.send_viewport_cmd(egui::ViewportCommand::Maximized(true));
     }
-}
-
-/// The size of a window that is too large for the screen with what is around it, points.
-fn smaller(screen: egui::Vec2, inner: egui::Vec2, around: egui::Vec2) -> Option<egui::Vec2> {
-    let most = (screen - around.max(egui::Vec2::ZERO)).max(egui::Vec2::splat(1.0));
-    let fitted = inner.min(most);
-    (fitted != inner).then_some(fitted)
 }
 
 /// The window only draws triangles with textures: it takes what limits the adapter has, as the defaults ask for compute
@@ -97,22 +82,10 @@ fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static>
     }
 }
 
-/// The folder for what belongs to the user, where the system has one.
-pub fn data_folder() -> Option<PathBuf> {
-    Some(
-        directories::ProjectDirs::from("", "", "glossmith")?
-            .data_local_dir()
-            .to_owned(),
-    )
-}
-
-/// The folder for what can be made again, where the system has one.
-pub fn cache_folder() -> Option<PathBuf> {
-    Some(
-        directories::ProjectDirs::from("", "", "glossmith")?
-            .cache_dir()
-            .to_owned(),
-    )
+/// The folder for what belongs to the user, and that for what can be made again, where the system has them.
+pub fn folders() -> Option<[PathBuf; 2]> {
+    let folders = directories::ProjectDirs::from("", "", "glossmith")?;
+    Some([folders.data_local_dir(), folders.cache_dir()].map(Path::to_owned))
 }
 
 /// What is remembered.
@@ -120,11 +93,8 @@ pub fn cache_folder() -> Option<PathBuf> {
 #[serde(default)]
 pub struct KeptSettings {
     pub theme: ThemePreference,
-    /// The arrangement of versions without workspaces: read, not written any more.
-    #[serde(skip_serializing)]
-    pub layout: Option<Tree<Pane>>,
-    /// The workspaces, with their arrangements of the panels.
-    pub workspaces: workspaces::KeptWorkspaces,
+    /// With their arrangements of the panels.
+    pub workspaces: Workspaces,
     pub resolution: Resolution,
     pub import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
@@ -146,8 +116,7 @@ impl Default for KeptSettings {
     fn default() -> Self {
         Self {
             theme: ThemePreference::Dark,
-            layout: None,
-            workspaces: workspaces::KeptWorkspaces::default(),
+            workspaces: Workspaces::default(),
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
             engine: EngineChoice::Auto,
@@ -167,11 +136,10 @@ impl KeptSettings {
             denoise: first_denoise(),
             ..Self::default()
         };
-        let mut kept: Self = creation.storage.map_or_else(Self::default, |storage| {
+        let kept: Self = creation.storage.map_or_else(Self::default, |storage| {
             eframe::get_value(storage, KEY).unwrap_or_else(first)
         });
-        kept.layout = kept.layout.and_then(layout::complete);
-        resource::allow(&kept.allowed);
+        limits::allow(&kept.allowed);
         kept
     }
 
@@ -183,9 +151,5 @@ impl KeptSettings {
 
 /// Denoises from the start where the library is installed.
 fn first_denoise() -> Denoise {
-    if Library::get().is_ok() {
-        Denoise::Auto
-    } else {
-        Denoise::Off
-    }
+    Library::get().map_or(Denoise::Off, |_| Denoise::Auto)
 }

@@ -8,13 +8,14 @@ use egui::Ui;
 
 use crate::app::actions::Command;
 use crate::app::desk::Desk;
-use crate::app::kit::start_stop::{Pressed, start_or_stop};
-use crate::app::kit::widgets;
-use crate::app::kit::words::time_left;
+use crate::app::kit::{
+    start_stop::{Pressed, start_or_stop},
+    widgets,
+    words::time_left,
+};
 use crate::app::services::beside::started;
 use crate::document::{Change, Document};
-use crate::render::EngineChoice;
-use crate::render::background::Background;
+use crate::render::{EngineChoice, background::Background};
 use crate::study::{StudyError, StudyProgress, Watch};
 
 /// How often what is left is updated.
@@ -28,7 +29,6 @@ type Work<R> = Box<dyn FnOnce(&mut Watch<'_>) -> Result<R, StudyError> + Send>;
 enum Status<R> {
     Running(StudyProgress),
     Done(Arc<R>),
-    Stopped,
     Failed(String),
 }
 
@@ -137,7 +137,6 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             Some(Status::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
             }
-            Some(Status::Stopped) => widgets::note(ui, "Stopped."),
             _ => {}
         });
         widgets::comes_and_goes(ui, |ui| {
@@ -186,11 +185,11 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                     responder.publish(Status::Running(progress));
                     !stop.load(Ordering::Relaxed) && !responder.is_superseded()
                 };
-                responder.publish(match work(&mut watch) {
-                    Ok(result) => Status::Done(Arc::new(result)),
-                    Err(StudyError::Stopped) => Status::Stopped,
-                    Err(error) => Status::Failed(error.to_string()),
-                });
+                match work(&mut watch) {
+                    Ok(result) => responder.publish(Status::Done(Arc::new(result))),
+                    Err(StudyError::Stopped) => {}
+                    Err(error) => responder.publish(Status::Failed(error.to_string())),
+                }
             })
         });
         // Without a thread the button does nothing; the log says why.

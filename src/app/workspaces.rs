@@ -7,8 +7,6 @@ use crate::app::layout::{self, Pane};
 use crate::app::services::workspaces::is_built_in;
 pub use crate::app::services::workspaces::{Change, LOOK, MEASURE};
 
-/// The name of an arrangement that was left before there were workspaces.
-const FORMER: &str = "Mine";
 /// Longest name of a workspace, characters: a row of them fits beside the menus.
 const NAME_MAX: usize = 16;
 
@@ -19,42 +17,50 @@ struct Workspace {
     layout: Tree<Pane>,
 }
 
-/// What is kept of them from one start to the next.
+/// The workspaces, the program's own first; the editor shows the arrangement of the current one.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct KeptWorkspaces {
-    current: String,
-    all: Vec<Workspace>,
-}
-
-/// The workspaces but for the arrangement of the current one, which the editor shows.
-#[derive(Debug)]
 pub struct Workspaces {
     current: String,
     all: Vec<Workspace>,
 }
 
 impl Workspaces {
-    /// The workspaces as they were left, with the arrangement of the current one. `former` is an arrangement without a
-    /// name, which earlier versions kept.
-    pub fn new(kept: KeptWorkspaces, former: Option<Tree<Pane>>, requested: Option<String>) -> (Self, Tree<Pane>) {
-        let mut all: Vec<Workspace> = [LOOK, MEASURE].map(built_in).into();
-        let whole = |kept: Workspace| Some((kept.name, layout::complete(kept.layout)?));
-        for (name, layout) in kept.all.into_iter().filter_map(whole) {
-            put(&mut all, &name, layout);
+    /// The workspaces as they were left, with the arrangement of the current one.
+    pub fn new(kept: Self, requested: Option<String>) -> (Self, Tree<Pane>) {
+        let all = [LOOK, MEASURE].map(built_in).into();
+        let current = requested.unwrap_or(kept.current);
+        let mut workspaces = Self { current, all };
+        for Workspace { name, layout } in kept.all {
+            if let Some(layout) = layout::complete(layout) {
+                workspaces.put(&name, layout);
+            }
         }
-        let mut current = kept.current;
-        if let Some(former) = former {
-            put(&mut all, FORMER, former);
-            current = FORMER.to_owned();
+        let place = workspaces.place(&workspaces.current).unwrap_or(0);
+        let layout = workspaces.shown(place);
+        (workspaces, layout)
+    }
+
+    fn place(&self, name: &str) -> Option<usize> {
+        self.all.iter().position(|workspace| workspace.name == name)
+    }
+
+    /// Makes a workspace the current one; its arrangement.
+    fn shown(&mut self, place: usize) -> Tree<Pane> {
+        let Workspace { name, layout } = self.all[place].clone();
+        self.current = name;
+        layout
+    }
+
+    /// Keeps an arrangement under a name, in the place of one that has it.
+    fn put(&mut self, name: &str, layout: Tree<Pane>) {
+        match self.place(name) {
+            Some(place) => self.all[place].layout = layout,
+            None => self.all.push(Workspace {
+                name: name.to_owned(),
+                layout,
+            }),
         }
-        let current = requested.unwrap_or(current);
-        let shown = all
-            .iter()
-            .find(|workspace| workspace.name == current)
-            .unwrap_or(&all[0]);
-        let (current, layout) = (shown.name.clone(), shown.layout.clone());
-        (Self { current, all }, layout)
     }
 
     /// The name of the current one.
@@ -67,44 +73,37 @@ impl Workspaces {
         self.all.iter().map(|workspace| workspace.name.as_str())
     }
 
-    /// What is kept for the next start.
-    pub fn kept(&self, layout: Tree<Pane>) -> KeptWorkspaces {
-        let mut all = self.all.clone();
-        put(&mut all, &self.current, layout);
-        let current = self.current.clone();
-        KeptWorkspaces { current, all }
+    /// The same with this arrangement of the current one.
+    pub fn with(&self, layout: Tree<Pane>) -> Self {
+        let mut kept = self.clone();
+        kept.put(&self.current, layout);
+        kept
     }
 
     /// Makes a change; `layout` is the arrangement of the current one.
     pub fn change(&mut self, change: Change, layout: &mut Tree<Pane>) {
         match change {
-            Change::Use(name) => self.show(&name, layout),
+            Change::Use(name) => {
+                if let Some(place) = self.place(&name) {
+                    *self = self.with(layout.clone());
+                    *layout = self.shown(place);
+                }
+            }
             Change::Save(name) => {
                 let name: String = name.trim().chars().take(NAME_MAX).collect();
                 if !name.is_empty() {
-                    put(&mut self.all, &name, layout.clone());
+                    self.put(&name, layout.clone());
                     self.current = name;
                 }
             }
             Change::Remove(name) if !is_built_in(&name) => {
                 self.all.retain(|workspace| workspace.name != name);
                 if self.current == name {
-                    let first = &self.all[0];
-                    (self.current, *layout) = (first.name.clone(), first.layout.clone());
+                    *layout = self.shown(0);
                 }
             }
             Change::Remove(_) => {}
         }
-    }
-
-    fn show(&mut self, name: &str, layout: &mut Tree<Pane>) {
-        let Some(next) = self.all.iter().find(|workspace| workspace.name == name) else {
-            return;
-        };
-        let next = next.layout.clone();
-        let left = std::mem::replace(layout, next);
-        put(&mut self.all, &self.current, left);
-        self.current = name.to_owned();
     }
 
     /// The arrangement that the current one has at first.
@@ -119,19 +118,6 @@ fn built_in(name: &str) -> Workspace {
         MEASURE => layout::to_measure(),
         _ => layout::to_look(),
     };
-    Workspace {
-        name: name.to_owned(),
-        layout,
-    }
-}
-
-/// Keeps an arrangement under a name, in the place of one that has it.
-fn put(all: &mut Vec<Workspace>, name: &str, layout: Tree<Pane>) {
-    match all.iter_mut().find(|workspace| workspace.name == name) {
-        Some(known) => known.layout = layout,
-        None => all.push(Workspace {
-            name: name.to_owned(),
-            layout,
-        }),
-    }
+    let name = name.to_owned();
+    Workspace { name, layout }
 }

@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::Answer;
-use super::study::Bar;
+use super::study::watched;
 use crate::console::output;
 use crate::render::EngineChoice;
 use crate::study::benchmark::compare::compare;
@@ -67,6 +67,5 @@ fn measured(arguments: &BenchmarkArguments) -> anyhow::Result<Report> {
         seconds: arguments.seconds.unwrap_or(SECONDS[usize::from(arguments.quick)]),
         quick: arguments.quick,
     };
-    let bar = Bar::new()?;
-    Ok(benchmark(&options, &mut |progress| bar.show(progress))?)
+    watched(|watch| benchmark(&options, watch))
 }

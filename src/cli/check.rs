@@ -152,7 +152,7 @@ fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
             case.group,
             case.name,
             check.measure,
-            (case.naive)()
+            case.naive
         );
         if verbose || !check.passed {
             output!("         {}; {}; {}", case.danger, case.made, case.must);

@@ -10,13 +10,13 @@ use super::names;
 use super::parse::check_writable;
 use crate::console::message;
 use crate::document::ImportLobe;
-use crate::plot::{PictureSheet, write_picture_sheet};
+use crate::plot::{PictureSheet, plot_file};
 use crate::render::looks::compared;
 use crate::scene::path_text::path_text;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
 use crate::store::preset;
-use crate::store::replace::save_by;
+use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith convert`.
 #[derive(Debug, Args)]
@@ -48,11 +48,7 @@ pub struct ConvertArguments {
 fn formats_help() -> String {
     let line = |format: &Registered| {
         let endings: Vec<String> = format.extensions.iter().map(|ending| format!(".{ending}")).collect();
-        let ways = match (format.is_read, format.is_written) {
-            (true, true) => "in, out",
-            (true, false) => "in",
-            _ => "out",
-        };
+        let ways = if format.is_read() { "in, out" } else { "out" };
         format!(
             "  {:<16} {:<12} {ways:<8} {}",
             format.name,
@@ -181,7 +177,7 @@ fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
             format!("-{}", index + 1)
         };
         let picture = path.with_file_name(format!("{stem}-{of_file}{number}.png"));
-        save_by(&picture, |file| write_picture_sheet(file, &sheet))?;
+        save_atomically(&picture, &plot_file(&picture, &sheet)?)?;
         message!("wrote {}", picture.display());
     }
     Ok(())

@@ -7,7 +7,6 @@ use super::answer::Answer;
 use super::parse;
 use super::scene::SceneArguments;
 use crate::console;
-use crate::render::{EngineChoice, Session};
 use crate::study::explain::{PathAccount, explain};
 
 /// Arguments of `glossmith explain`: a pixel, a sample, and those of `glossmith render` that describe the scene.
@@ -40,8 +39,7 @@ pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
 
 fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {
     // Only the CPU reports what happens on a path.
-    let mut session = Session::open(EngineChoice::Cpu)?;
-    let document = arguments.scene.document(&mut session)?;
+    let (session, document) = arguments.scene.on_cpu()?;
     let size = [document.render.width, document.render.height];
     let [x, y] = arguments.pixel;
     if x >= size[0] || y >= size[1] {
@@ -51,7 +49,6 @@ fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {
             size[1]
         );
     }
-    session.submit(&document)?;
     let model = session.assets().model(&document.model, &document.import)?;
     let job = session.job().context("the scene has no job")?;
     Ok(explain(&document, &model, job, arguments.pixel, arguments.sample))

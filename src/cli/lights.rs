@@ -17,7 +17,7 @@ const POWER: RangeInclusive<f64> = 0.0..=1e12;
 
 /// A light as an option says it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LightArgument {
+pub struct LightArgument {
     light: AreaLight,
     /// See [`AreaLight::power`]: replaces the strength.
     power: Option<f64>,
@@ -25,7 +25,7 @@ pub(super) struct LightArgument {
 
 impl LightArgument {
     /// The light in a scene whose bounding radius measures this many metres.
-    pub(super) fn in_scene(&self, radius_m: f64) -> AreaLight {
+    pub fn in_scene(&self, radius_m: f64) -> AreaLight {
         let mut light = self.light;
         if let Some(power) = self.power {
             light.set_power(power, radius_m);
@@ -34,14 +34,14 @@ impl LightArgument {
     }
 
     /// Whether its profile can be read.
-    pub(super) fn check_profile(&self) -> Result<(), LightProfileError> {
+    pub fn check_profile(&self) -> Result<(), LightProfileError> {
         let profile = self.light.profile;
         profile.map_or(Ok(()), |file| light_profile::load(file.path()).map(drop))
     }
 }
 
 /// A rectangle, triangle, disc or sphere: six numbers, then words; white where no colour is given.
-pub(super) fn area_light(text: &str) -> Result<LightArgument, String> {
+pub fn area_light(text: &str) -> Result<LightArgument, String> {
     let length = range::AREA_LENGTH;
     let ranges = [
         range::YAW_DEG,
@@ -67,12 +67,12 @@ pub(super) fn area_light(text: &str) -> Result<LightArgument, String> {
 }
 
 /// A spot, all of whose numbers may be left out.
-pub(super) fn spot(text: &str) -> Result<LightArgument, String> {
+pub fn spot(text: &str) -> Result<LightArgument, String> {
     with_words(AreaLight::spot(), text)
 }
 
 /// The same for a sun.
-pub(super) fn sun(text: &str) -> Result<LightArgument, String> {
+pub fn sun(text: &str) -> Result<LightArgument, String> {
     with_words(AreaLight::sun(), text)
 }
 
@@ -106,8 +106,7 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
             "triangle" => light.shape = AreaLightShape::Triangle,
             "disc" => light.shape = AreaLightShape::Disc,
             "sphere" => light.shape = AreaLightShape::Sphere,
-            color if color.starts_with('#') => light.color = parse_color(color).map_err(crate::in_words)?,
-            color if color.ends_with('K') => light.color = color_of_temperature(color)?,
+            color if color.starts_with('#') || color.ends_with('K') => light.color = color_of(color)?,
             other => return Err(format!("{other}: {}", expected(light))),
         }
         return Ok(());
@@ -163,15 +162,14 @@ fn group_name(text: &str) -> Result<GroupName, String> {
 }
 
 /// A group's name, a factor of its light, and perhaps a colour or its temperature.
-pub(super) fn light_mix(text: &str) -> Result<LightMix, String> {
+pub fn light_mix(text: &str) -> Result<LightMix, String> {
     let (name, factors) = text
         .split_once('=')
         .ok_or_else(|| format!("{text}: write GROUP=FACTOR, such as key=0.5 or key=0.5,3200K"))?;
     let (factor, color) = factors.split_once(',').unwrap_or((factors, ""));
     let color = match color {
         "" => [1.0; 3],
-        temperature if temperature.ends_with('K') => color_of_temperature(temperature)?,
-        color => parse_color(color).map_err(crate::in_words)?,
+        color => color_of(color)?,
     };
     let factor = number_in(range::LIGHT_MIX)(factor).map_err(|expected| format!("{factor}: {expected}"))?;
     Ok(LightMix {
@@ -182,6 +180,13 @@ pub(super) fn light_mix(text: &str) -> Result<LightMix, String> {
 }
 
 /// The colour of a body that shines at a temperature, as in 3200K.
+fn color_of(text: &str) -> Result<[f32; 3], String> {
+    match text.ends_with('K') {
+        true => color_of_temperature(text),
+        false => parse_color(text).map_err(crate::in_words),
+    }
+}
+
 fn color_of_temperature(text: &str) -> Result<[f32; 3], String> {
     let [coldest, hottest] = TEMPERATURES_K;
     let temperature_k = number_in(coldest..=hottest)(text.trim_end_matches('K'));

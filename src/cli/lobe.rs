@@ -8,14 +8,15 @@ use clap::Args;
 use super::answer::{Answer, file_names};
 use super::lobe_spec::lobe_model;
 use super::names;
-use super::parse::check_writable;
+use super::parse::{check_writable, number_in};
+use super::scene::material;
 use crate::console::message;
+use crate::document::ImportLobe;
 use crate::matching::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
-use crate::plot::lobe_view_file;
-use crate::store::exchange::{self, ReadOptions};
+use crate::plot::plot_file;
 use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith lobe`.
@@ -36,20 +37,13 @@ pub struct LobeArguments {
     #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = names::choice::<Horizon>)]
     horizon: Horizon,
     /// Angles between view and normal, from 0 to below 90 [default: 45, or all where the plot is against the angle].
-    #[arg(long, value_name = "DEG[,DEG…]", value_delimiter = ',', value_parser = parse_angle)]
+    #[arg(long, value_name = "DEG[,DEG…]", value_delimiter = ',', value_parser = number_in(0.0..=89.9))]
     view_angle: Vec<f64>,
     /// The plot, or its numbers.
     #[arg(long, value_name = "FILE.png|FILE.svg|FILE.csv")]
     output: PathBuf,
     #[command(flatten)]
     answer: Answer,
-}
-
-fn parse_angle(text: &str) -> Result<f64, String> {
-    let angle = text.trim().parse().ok();
-    angle
-        .filter(|angle: &f64| (0.0..=89.9).contains(angle))
-        .ok_or_else(|| format!("{text} is no angle of a view; give degrees from 0 to 89.9"))
 }
 
 /// Computes and writes the view.
@@ -78,7 +72,7 @@ pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
 }
 
 /// Before the work, not after it.
-pub(super) fn check_ending(path: &Path) -> anyhow::Result<()> {
+pub fn check_ending(path: &Path) -> anyhow::Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !matches!(ending, "png" | "svg" | "csv") {
         bail!(
@@ -90,11 +84,11 @@ pub(super) fn check_ending(path: &Path) -> anyhow::Result<()> {
 }
 
 /// Writes a view in the format that the file's ending says.
-pub(super) fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
+pub fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
     let contents = if path.extension().is_some_and(|ending| ending == "csv") {
         view.csv().into_bytes()
     } else {
-        lobe_view_file(path, view)?
+        plot_file(path, view)?
     };
     save_atomically(path, &contents)?;
     message!("wrote {}", path.display());
@@ -108,9 +102,7 @@ fn lobes(arguments: &LobeArguments) -> anyhow::Result<Vec<LobeModel>> {
         lobe.horizon = arguments.horizon;
     }
     for name in &arguments.materials {
-        let loaded = exchange::find(name, ReadOptions::default())?;
-        loaded.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        let lobe = lobe_of_material(&loaded.value);
+        let lobe = lobe_of_material(&material(name, ImportLobe::default())?);
         if !lobe.has_density() {
             bail!(
                 "--material {name}: its roughness of {} is a mirror's, which has no density; choose a rougher one",

@@ -11,15 +11,9 @@ const ROUGHNESS_DEFAULT: f64 = 0.3;
 
 /// The lobe that `NAME[:ROUGHNESS][/CURVE]` describes. `:alpha=A` stands for the roughness √A, A being the width of the
 /// microfacet lobes.
-pub(super) fn lobe_model(text: &str) -> Result<LobeModel, String> {
-    let (front, curve_name) = match text.split_once('/') {
-        Some((front, name)) => (front, Some(name)),
-        None => (text, None),
-    };
-    let (name, number) = match front.split_once(':') {
-        Some((name, number)) => (name, Some(number)),
-        None => (front, None),
-    };
+pub fn lobe_model(text: &str) -> Result<LobeModel, String> {
+    let (front, curve_name) = parted(text, '/');
+    let (name, number) = parted(front, ':');
     let lobe = choice::<Lobe>(name)?;
     let curve = match curve_name {
         None => Curve::Smooth,
@@ -39,6 +33,11 @@ pub(super) fn lobe_model(text: &str) -> Result<LobeModel, String> {
             roughness_min(lobe)
         ))
     }
+}
+
+fn parted(text: &str, separator: char) -> (&str, Option<&str>) {
+    text.split_once(separator)
+        .map_or((text, None), |(front, rest)| (front, Some(rest)))
 }
 
 /// A roughness in [0, 1], or the root of an α.

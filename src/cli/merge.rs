@@ -6,7 +6,7 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::{Answer, file_names};
-use super::render::{add_denoised, check_takes, report_written, write_pictures};
+use super::render::{add_denoised, check_takes, rendered, report_written, write_pictures};
 use super::{names, parse};
 use crate::console::message;
 use crate::document::Denoise;
@@ -55,12 +55,11 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         false => None,
     };
     let denoised = denoised(&whole)?;
+    let rendered = rendered(&image, denoised.as_ref(), &lights);
     let rendered = Rendered {
-        denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
-        lights: &lights,
         sums: Some(&whole),
-        ..Rendered::from(&image)
+        ..rendered
     };
     write_pictures(&arguments.outputs, rendered, &whole.document)?;
     message!("{samples:.0} samples per pixel of {} films", arguments.films.len());
@@ -78,7 +77,7 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
 }
 
 /// The films as one.
-fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
+pub fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
     let mut films = Vec::new();
     for path in paths {
         films.push((path, KeptFilm::read(path)?));
@@ -98,7 +97,7 @@ fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
 ///
 /// # Errors
 /// Where the denoiser is not there or fails, or the film lacks what it is guided by.
-pub(super) fn denoised(film: &KeptFilm) -> anyhow::Result<Option<Denoised>> {
+pub fn denoised(film: &KeptFilm) -> anyhow::Result<Option<Denoised>> {
     let how = film.document.view.denoise;
     if how == Denoise::Off {
         return Ok(None);

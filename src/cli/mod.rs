@@ -28,7 +28,6 @@ mod signals;
 mod study;
 mod textures;
 mod turntable;
-mod waiting;
 
 use std::iter;
 use std::path::PathBuf;

@@ -18,7 +18,7 @@ use crate::scene::path_text::{path_of_text, path_text};
 use crate::store::replace::check_saving;
 
 /// An instruction set that this processor has.
-pub(super) fn instructions(text: &str) -> Result<Instructions, String> {
+pub fn instructions(text: &str) -> Result<Instructions, String> {
     let chosen: Instructions = super::names::choice(text)?;
     chosen
         .level()
@@ -27,7 +27,7 @@ pub(super) fn instructions(text: &str) -> Result<Instructions, String> {
 }
 
 /// A parser for a number in a range; it refuses NaN.
-pub(super) fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+pub fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
     move |text| {
         let number = text.trim().parse().ok().filter(|x| range.contains(x));
         number.ok_or_else(|| format!("give a number from {} to {}", range.start(), range.end()))
@@ -35,7 +35,7 @@ pub(super) fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f
 }
 
 /// A parser for numbers with commas between them, each in its range.
-pub(super) fn numbers_in<const N: usize>(
+pub fn numbers_in<const N: usize>(
     ranges: [RangeInclusive<f64>; N],
 ) -> impl Fn(&str) -> Result<[f64; N], String> + Clone + Send + Sync {
     move |text| {
@@ -53,7 +53,7 @@ pub(super) fn numbers_in<const N: usize>(
 }
 
 /// The part of an image: left, top, right, bottom as shares of it.
-pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
+pub fn region(text: &str) -> Result<[f64; 4], String> {
     let sides = numbers_in([range::REGION, range::REGION, range::REGION, range::REGION])(text)?;
     if sides[0] >= sides[2] || sides[1] >= sides[3] {
         return Err("left must be less than right, and top less than bottom".to_owned());
@@ -61,36 +61,27 @@ pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
     Ok(sides)
 }
 
-/// Yaw and pitch in degrees.
-pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
-    numbers_in([range::YAW_DEG, range::PITCH_DEG])(text)
+/// Two whole numbers around a letter.
+pub fn pair(text: &str, between: &[char]) -> Option<[u32; 2]> {
+    let (first, second) = text.split_once(between)?;
+    Some([first.trim().parse().ok()?, second.trim().parse().ok()?])
 }
 
 /// Width and height, as in 640x480.
-pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
-    let side = |text: &str| text.parse().ok().filter(|side| range::SIZE.contains(&f64::from(*side)));
-    let sides = text.split_once(['x', 'X']);
-    let size: Option<[u32; 2]> = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    match size {
-        Some(size) => Ok(size),
-        None => Err(format!(
-            "give a width and a height from {} to {}, such as 640x480",
-            range::SIZE.start(),
-            range::SIZE.end()
-        )),
-    }
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let size = pair(text, &['x', 'X']).filter(|size| size.iter().all(|side| range::SIZE.contains(&f64::from(*side))));
+    let [least, most] = [range::SIZE.start(), range::SIZE.end()];
+    size.ok_or_else(|| format!("give a width and a height from {least} to {most}, such as 640x480"))
 }
 
 /// Column and row of a pixel, as in 40,22.
-pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
-    let place: Option<[u32; 2]> = text
-        .split_once(',')
-        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+pub fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let place = pair(text, &[',']);
     place.ok_or_else(|| "give a column and a row from 0,0 at the top left, such as 40,22".to_owned())
 }
 
 /// What the camera sees where it hits nothing.
-pub(super) fn background(text: &str) -> Result<Background, String> {
+pub fn background(text: &str) -> Result<Background, String> {
     match text {
         "environment" => Ok(Background::Environment),
         "transparent" => Ok(Background::Transparent),
@@ -101,7 +92,7 @@ pub(super) fn background(text: &str) -> Result<Background, String> {
 }
 
 /// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the document.
-pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
+pub fn assignment(text: &str) -> Result<String, ParameterError> {
     match Document::default().assign(text) {
         // The texture comes with another option, or with the document.
         Ok(()) | Err(ParameterError::NoTexture { .. }) => Ok(text.to_owned()),
@@ -110,7 +101,7 @@ pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
 }
 
 /// The name of a file or of something built in: files whose names are not Unicode go by their addresses.
-pub(super) fn name_of_file<T, E>(
+pub fn name_of_file<T, E>(
     read: impl Fn(&str) -> Result<T, E> + Clone + Send + Sync + 'static,
 ) -> impl TypedValueParser<Value = T>
 where
@@ -124,22 +115,17 @@ where
 }
 
 /// A model.
-pub(super) fn model(text: &str) -> Result<ModelSource, Infallible> {
+pub fn model(text: &str) -> Result<ModelSource, Infallible> {
     Ok(text.into())
 }
 
 /// A file.
-pub(super) fn file(text: &str) -> Result<PathBuf, Infallible> {
+pub fn file(text: &str) -> Result<PathBuf, Infallible> {
     Ok(path_of_text(text))
 }
 
-/// A material's name or file.
-pub(super) fn material(text: &str) -> Result<String, Infallible> {
-    Ok(text.to_owned())
-}
-
 /// A file to open. A word without an ending that names no file is taken for a command.
-pub(super) fn opened() -> impl TypedValueParser<Value = PathBuf> {
+pub fn opened() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path: PathBuf| match path.extension() {
         None if !path.exists() => {
             let hint = super::meant(&path.display().to_string());
@@ -150,7 +136,7 @@ pub(super) fn opened() -> impl TypedValueParser<Value = PathBuf> {
 }
 
 /// The name of an image; its ending is one of those that are written.
-pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
+pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };
     PathBufValueParser::new().try_map(checked)
 }
@@ -159,36 +145,25 @@ pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
 ///
 /// # Errors
 /// What the system says.
-pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
-    if path.exists() && !path.is_file() {
-        // To open a pipe would wait for its reader.
-        return Ok(check_saving(path)?);
+pub fn check_writable(path: &Path) -> anyhow::Result<()> {
+    let existed = path.exists();
+    if !existed || path.is_file() {
+        let opened = OpenOptions::new().append(true).create(true).open(path);
+        opened.with_context(|| {
+            format!(
+                "{}: cannot be written; check the folder and its permissions",
+                path.display()
+            )
+        })?;
     }
-    check_opens(path)?;
+    if !existed {
+        // What is left here holds nothing.
+        let _ = std::fs::remove_file(path);
+    }
     Ok(check_saving(path)?)
 }
 
-fn check_opens(path: &Path) -> anyhow::Result<()> {
-    let existed = path.exists();
-    let opened = OpenOptions::new().append(true).create(true).open(path);
-    opened.with_context(|| {
-        format!(
-            "{}: cannot be written; check the folder and its permissions",
-            path.display()
-        )
-    })?;
-    if !existed {
-        // The rest is about to be overwritten.
-        let _ = std::fs::remove_file(path);
-    }
-    Ok(())
-}
-
 /// `display` or `linear`.
-pub(super) fn environment_encoding(text: &str) -> Result<EnvironmentEncoding, String> {
-    match text {
-        "display" => Ok(EnvironmentEncoding::Display),
-        "linear" => Ok(EnvironmentEncoding::Linear),
-        other => Err(format!("{other} is neither display nor linear")),
-    }
+pub fn environment_encoding(text: &str) -> Result<EnvironmentEncoding, String> {
+    serde_json::from_value(text.into()).map_err(|_| format!("{text} is neither display nor linear"))
 }

@@ -8,7 +8,6 @@ use super::scene::SceneArguments;
 use crate::console::output;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::plan::Plan;
-use crate::render::{EngineChoice, Session};
 
 /// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]
@@ -25,9 +24,7 @@ pub struct PlanArguments {
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &PlanArguments) -> anyhow::Result<()> {
     arguments.answer.check_writable()?;
-    let mut session = Session::open(EngineChoice::Cpu)?;
-    let document = arguments.scene.document(&mut session)?;
-    session.submit(&document)?;
+    let (session, _) = arguments.scene.on_cpu()?;
     let job = session.job().context("the scene has no plan")?;
     if arguments.answer.has_words() {
         print(&job.plan);

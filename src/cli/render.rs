@@ -1,29 +1,33 @@
 //! `glossmith render`: a document from arguments, an image in a file.
 
+use std::fmt;
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use super::answer::{Destination, file_names, write_json};
 use super::parse;
 use super::scene::SceneArguments;
 use super::signals::Signals;
-use super::waiting::Waiting;
 use crate::console::message;
-use crate::document::{Denoise, Document};
+use crate::document::{Denoise, Document, ViewSettings};
+use crate::job::film::Image;
 use crate::render::denoise::Denoised;
+use crate::render::display::display;
+use crate::render::light_layers::LightLayer;
 use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StepDenoiser, StopReason, to_end};
+use crate::scene::Loading;
 
 /// Time limit of the image that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 
 /// Arguments of `glossmith render`.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub struct RenderArguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -90,63 +94,43 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let begun = Instant::now();
     let scene = &arguments.scene;
     let mut session = Session::open(scene.engine)?;
-    let waiting = Waiting::on(session.assets().loading());
+    let waiting = Bar::waiting(session.assets().loading())?;
     let mut document = scene.document(&mut session)?;
     drop(waiting);
     arguments.put_samples(&mut document)?;
-    let targets = Targets {
-        outputs: &arguments.outputs,
-        has_layers: arguments.aovs,
-        has_sums: arguments.keep_sums,
-        report: arguments.report.as_ref(),
-    };
-    render(session, scene.engine, &document, begun, &targets)
+    render(session, &document, begun, arguments)
 }
 
-/// What is written.
-struct Targets<'a> {
-    outputs: &'a [PathBuf],
-    /// .exr images have layers.
-    has_layers: bool,
-    /// .exr images have the film's sums.
-    has_sums: bool,
-    report: Option<&'a Destination>,
-}
-
-/// Renders the default scene, with the files given in the place of its parts, to `glossmith.png` in the working folder.
-///
-/// # Errors
-/// One line that names the file, what is wrong and what to do.
+/// Renders the default scene with these files in the place of its parts, for some seconds.
 pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
     let path = std::path::absolute("glossmith.png")?;
     parse::check_writable(&path)?;
     let begun = Instant::now();
     let mut session = Session::open(engine)?;
-    let mut document = SceneArguments::of_files(files, engine).document(&mut session)?;
+    let scene = SceneArguments::of_files(files, engine);
+    let mut document = scene.document(&mut session)?;
     document.render.time_s = Some(DEFAULT_SCENE_SECONDS);
-    let targets = Targets {
-        outputs: &[path],
-        has_layers: false,
-        has_sums: false,
-        report: None,
-    };
-    render(session, engine, &document, begun, &targets)
+    render(
+        session,
+        &document,
+        begun,
+        &RenderArguments {
+            scene,
+            outputs: vec![path],
+            ..RenderArguments::default()
+        },
+    )
 }
 
 /// Renders a document to files.
-fn render(
-    mut session: Session,
-    engine: EngineChoice,
-    document: &Document,
-    begun: Instant,
-    targets: &Targets<'_>,
-) -> anyhow::Result<()> {
-    if targets.has_layers {
+fn render(mut session: Session, document: &Document, begun: Instant, targets: &RenderArguments) -> anyhow::Result<()> {
+    let engine = targets.scene.engine;
+    if targets.aovs {
         session.keep_guides("layers of the image are written");
-    } else if targets.has_sums {
+    } else if targets.keep_sums {
         session.keep_guides("sums of the image are kept");
     }
-    let waiting = Waiting::on(session.assets().loading());
+    let waiting = Bar::waiting(session.assets().loading())?;
     to_end::submit(&mut session, engine, document)?;
     drop(waiting);
     let signals = Signals::watch()?;
@@ -158,23 +142,22 @@ fn render(
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
     let (image, lights) = (session.image()?, session.light_layers()?);
-    let layers = targets.has_layers.then(|| session.layers()).transpose()?;
-    let sums = targets.has_sums.then(|| session.kept_film()).transpose()?;
+    let layers = targets.aovs.then(|| session.layers()).transpose()?;
+    let sums = targets.keep_sums.then(|| session.kept_film()).transpose()?;
+    let rendered = rendered(&image, denoised.as_ref(), &lights);
     let rendered = Rendered {
-        denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
-        lights: &lights,
         sums: sums.as_ref(),
-        ..Rendered::from(&image)
+        ..rendered
     };
-    write_pictures(targets.outputs, rendered, document)?;
+    write_pictures(&targets.outputs, rendered, document)?;
     // Words come after the image: who does not read them must not hold it up.
     message!("{}", summary(&progress));
-    report_written(targets.outputs);
-    if let Some(destination) = targets.report {
-        let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
+    report_written(&targets.outputs);
+    if let Some(destination) = &targets.report {
+        let mut report = json_report(&mut session, document, setup_seconds, progress, targets.aovs)?;
         add_denoised(&mut report, document, denoised.as_ref());
-        report["files"] = serde_json::json!(file_names(targets.outputs));
+        report["files"] = serde_json::json!(file_names(&targets.outputs));
         if ended_by.is_some() {
             report["stopped_by"] = "signal".into();
         }
@@ -187,15 +170,24 @@ fn render(
     ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
 
+pub fn rendered<'a>(image: &'a Image, denoised: Option<&'a Denoised>, lights: &'a [LightLayer]) -> Rendered<'a> {
+    let denoised = denoised.map(|denoised| denoised.image.as_ref());
+    Rendered {
+        denoised,
+        lights,
+        ..Rendered::from(image)
+    }
+}
+
 /// Writes an image in all formats that are asked for.
-pub(super) fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, document: &Document) -> anyhow::Result<()> {
+pub fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, document: &Document) -> anyhow::Result<()> {
     outputs
         .iter()
         .try_for_each(|path| Ok(output::write(path, rendered, document)?))
 }
 
 /// Says where images are.
-pub(super) fn report_written(outputs: &[PathBuf]) {
+pub fn report_written(outputs: &[PathBuf]) {
     outputs.iter().for_each(|path| message!("wrote {}", path.display()));
 }
 
@@ -203,7 +195,7 @@ pub(super) fn report_written(outputs: &[PathBuf]) {
 ///
 /// # Errors
 /// Where none is written.
-pub(super) fn check_takes(option: &str, outputs: &[PathBuf]) -> anyhow::Result<()> {
+pub fn check_takes(option: &str, outputs: &[PathBuf]) -> anyhow::Result<()> {
     let is_exr = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
     if !outputs.iter().any(is_exr) {
         bail!("{option} writes into .exr images; give --output FILE.exr");
@@ -212,15 +204,55 @@ pub(super) fn check_takes(option: &str, outputs: &[PathBuf]) -> anyhow::Result<(
 }
 
 /// A progress bar on a terminal, else none.
-pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
-    if !std::io::stderr().is_terminal() {
-        return Ok(ProgressBar::hidden());
+pub struct Bar(ProgressBar);
+
+/// Steps of a part of the work.
+const BAR_STEPS: f64 = 1000.0;
+
+impl Bar {
+    pub fn new(template: &str, parts: u32) -> anyhow::Result<Self> {
+        if !std::io::stderr().is_terminal() {
+            return Ok(Self(ProgressBar::hidden()));
+        }
+        let bar = ProgressBar::new(u64::from(parts) * BAR_STEPS as u64);
+        Ok(Self(bar.with_style(ProgressStyle::with_template(template)?)))
     }
-    Ok(ProgressBar::new(steps).with_style(ProgressStyle::with_template(template)?))
+
+    /// A line that says what is being loaded.
+    fn waiting(loading: &Loading) -> anyhow::Result<Self> {
+        let loading = loading.clone();
+        let doing = move |_: &ProgressState, text: &mut dyn fmt::Write| {
+            // A terminal that takes no text shows none.
+            let _ = write!(text, "{}", loading.doing());
+        };
+        let line = Self::new("{spinner} {doing}", 1)?;
+        line.0.set_style(line.0.style().with_key("doing", doing));
+        line.0.enable_steady_tick(Duration::from_millis(100));
+        Ok(line)
+    }
+
+    /// Shows how many parts are done.
+    pub fn show(&self, done: f64, message: String) {
+        self.0.set_position((BAR_STEPS * done) as u64);
+        self.0.set_message(message);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// A picture as it is displayed, its longer side at most this.
+pub fn thumbnail(image: &Image, view: &ViewSettings, side: u32) -> Option<image::DynamicImage> {
+    let pixels = image::RgbaImage::from_raw(image.width, image.height, display(image, view))?;
+    let side = side.min(image.width.max(image.height));
+    Some(image::DynamicImage::from(pixels).thumbnail(side, side))
 }
 
 /// What became of the denoised image, for the report: which quality, null without; seconds; error with its band.
-pub(super) fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
+pub fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
     let error = denoised.and_then(|denoised| denoised.error);
     report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
     report["denoise_seconds"] = denoised.map(|denoised| denoised.seconds).into();
@@ -233,7 +265,7 @@ pub(super) fn add_denoised(report: &mut serde_json::Value, document: &Document, 
 ///
 /// # Errors
 /// What the engine says.
-pub(super) fn render_to_end(
+pub fn render_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
@@ -250,19 +282,18 @@ fn step_to_end(
     document: &Document,
     keep_going: &dyn Fn() -> bool,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
-    const BAR_STEPS: f64 = 1000.0;
-    let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
+    let bar = Bar::new("{bar:40} {msg}, {eta} left", 1)?;
     let mut show_progress = |progress: &Progress| {
-        bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
         let error = progress.noise.map_or(String::new(), |noise| {
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
-        bar.set_message(format!("{:.0} samples per pixel{error}", progress.mean_samples));
+        let message = format!("{:.0} samples per pixel{error}", progress.mean_samples);
+        bar.show(progress.share_done(document.render.time_s), message);
         keep_going()
     };
     let mut step_denoiser = StepDenoiser::new(document);
     let ended = to_end::step_to_end(session, engine, document, &mut step_denoiser, &mut show_progress)?;
-    bar.finish_and_clear();
+    drop(bar);
     if ended.progress.is_done {
         return Ok((ended.progress, ended.denoised));
     }

@@ -1,6 +1,6 @@
 //! `glossmith scatter`: samples of a lobe as numbers or as an image.
 
-use std::io::{self, Write};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
@@ -9,10 +9,11 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::console::message;
 use crate::import::endings::ending;
-use crate::job::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::scatter::ScatterRequest;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
+use crate::plot::{ScatterPlot, plot_file};
 use crate::render::EngineChoice;
 use crate::store::replace::{save_atomically, save_by};
 
@@ -88,12 +89,20 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
             request.count
         );
     }
-    match format_of(&arguments.output)? {
-        Format::Csv => save_by(&arguments.output, |file| write_csv(file, &cloud))?,
-        Format::Png => {
-            let contents = crate::plot::scatter_png(&arguments.output, &request, &cloud)?;
-            save_atomically(&arguments.output, &contents)?;
-        }
+    if is_picture(&arguments.output)? {
+        let plot = ScatterPlot {
+            request: &request,
+            cloud: &cloud,
+        };
+        save_atomically(&arguments.output, &plot_file(&arguments.output, &plot)?)?;
+    } else {
+        save_by(&arguments.output, |file| {
+            writeln!(file, "x,y,z,density")?;
+            cloud
+                .samples
+                .iter()
+                .try_for_each(|[x, y, z, density]| writeln!(file, "{x},{y},{z},{density}"))
+        })?;
     }
     message!("wrote {}", arguments.output.display());
     arguments.answer.write(&serde_json::json!({
@@ -108,24 +117,11 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     }))
 }
 
-fn write_csv(file: &mut impl Write, cloud: &ScatterCloud) -> io::Result<()> {
-    writeln!(file, "x,y,z,density")?;
-    for [x, y, z, density] in &cloud.samples {
-        writeln!(file, "{x},{y},{z},{density}")?;
-    }
-    Ok(())
-}
-
-/// How samples are written.
-enum Format {
-    Csv,
-    Png,
-}
-
-fn format_of(path: &Path) -> anyhow::Result<Format> {
+/// Whether a file takes a picture of the samples, not their numbers.
+fn is_picture(path: &Path) -> anyhow::Result<bool> {
     match ending(path).as_str() {
-        "csv" => Ok(Format::Csv),
-        "png" => Ok(Format::Png),
+        "csv" => Ok(false),
+        "png" => Ok(true),
         _ => bail!(
             "{}: samples are written as .csv or .png; give the file one of these endings",
             path.display()
@@ -145,9 +141,6 @@ fn named_curve(text: &str) -> Result<Curve, String> {
 
 /// The name of the file; its ending is one of those that are written.
 fn output() -> impl TypedValueParser<Value = PathBuf> {
-    let checked = |path: PathBuf| match format_of(&path) {
-        Ok(_) => Ok(path),
-        Err(error) => Err(error.to_string()),
-    };
+    let checked = |path: PathBuf| is_picture(&path).map(|_| path).map_err(|error| error.to_string());
     PathBufValueParser::new().try_map(checked)
 }

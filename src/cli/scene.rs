@@ -12,7 +12,7 @@ use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::of_model::{import_report, lights_left_out, materials_of};
-use crate::document::{Background, Document, GroupName, ImportLobe, LightMix, ParameterError, range};
+use crate::document::{Background, Document, GroupName, ImportLobe, LightMix, MaterialSettings, ParameterError, range};
 use crate::import::is_model;
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
@@ -48,7 +48,7 @@ pub struct SceneArguments {
     texture_size: Option<f64>,
     /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
     #[arg(long, value_name = "FILE")]
-    pub(super) import_report: Option<PathBuf>,
+    pub import_report: Option<PathBuf>,
     /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky,
     /// furnace), an image of the whole sphere (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp; lat-long or cube map), or a
     /// folder with the six faces of a cube [default: product].
@@ -78,7 +78,7 @@ pub struct SceneArguments {
     background: Option<Background>,
     /// The material of everything: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
     /// Without it a file's own materials stay.
-    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(String::from_str))]
     material: Option<String>,
     /// Put an image on a material: base-colour, roughness, metalness, normal, opacity, emission, coat, coat-roughness,
     /// coat-color, coat-normal, film, film-thickness, fuzz, fuzz-color or fuzz-roughness. SLOT is a material's name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
@@ -93,7 +93,7 @@ pub struct SceneArguments {
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,
     /// Where the camera is, in degrees around and above its target.
-    #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera-position")]
+    #[arg(long, value_name = "YAW,PITCH", value_parser = parse::numbers_in([range::YAW_DEG, range::PITCH_DEG]), allow_hyphen_values = true, conflicts_with = "camera-position")]
     camera_orbit: Option<[f64; 2]>,
     /// A table of colours (.cube) that the image for screens goes through last, as codes of sRGB: a look.
     #[arg(long, value_name = "FILE")]
@@ -106,19 +106,19 @@ pub struct SceneArguments {
     #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
     region: Option<[f64; 4]>,
     #[command(flatten)]
-    pub(super) settings: SettingOptions,
+    pub settings: SettingOptions,
     /// Which effects are simulated: those that the scene calls for (auto); all, needed or not; or these alone (names of
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for) [default: auto].
     #[arg(long, value_name = "auto|all|LIST", allow_hyphen_values = true)]
     effects: Option<EffectSwitches>,
     /// The engine: a hardware GPU if there is one, else the CPU; the GPU; the CPU.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
-    pub(super) engine: EngineChoice,
+    pub engine: EngineChoice,
 }
 
 impl SceneArguments {
     /// Those of files alone.
-    pub(super) fn of_files(files: &[PathBuf], engine: EngineChoice) -> Self {
+    pub fn of_files(files: &[PathBuf], engine: EngineChoice) -> Self {
         Self {
             files: files.to_owned(),
             engine,
@@ -130,16 +130,14 @@ impl SceneArguments {
     ///
     /// # Errors
     /// One line that names the file, what is wrong and what to do.
-    pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
+    pub fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
         let mut document = Document::default();
         for file in &self.files {
             open(file, &mut document, self.read_options())?;
         }
         self.put_model(&mut document, session)?;
         if let Some(name) = &self.material {
-            let material = exchange::find(name, self.read_options())?;
-            warn(&material.warnings);
-            document.materials = vec![material.value];
+            document.materials = vec![material(name, self.import_lobe)?];
         }
         if !self.textures.is_empty() {
             let model = session.assets().model(&document.model, &document.import)?;
@@ -160,16 +158,24 @@ impl SceneArguments {
         Ok(document)
     }
 
+    /// A session of the CPU engine with the scene, and its document.
+    pub fn on_cpu(&self) -> anyhow::Result<(Session, Document)> {
+        let mut session = Session::open(EngineChoice::Cpu)?;
+        let document = self.document(&mut session)?;
+        session.submit(&document)?;
+        Ok((session, document))
+    }
+
     /// Refuses images that are named here and can't be had; those that files name are logged. What is read stays with the
     /// session.
     fn check_textures(&self, document: &Document, session: &mut Session) -> anyhow::Result<()> {
-        let files = || self.textures.iter().flat_map(TextureArgument::files);
-        if self.textures.is_empty() {
+        let files: Vec<_> = self.textures.iter().flat_map(TextureArgument::files).collect();
+        if files.is_empty() {
             return Ok(());
         }
         for own in session.user_texture_files(document)? {
             if let Err(why) = own.picture
-                && files().any(|file| *file == own.file)
+                && files.contains(&&own.file)
             {
                 bail!(
                     "{}: this texture can't be had: {why}; give another file",
@@ -356,6 +362,19 @@ fn open(path: &Path, document: &mut Document, options: ReadOptions) -> anyhow::R
         ),
     }
     Ok(())
+}
+
+/// A shipped material, or one of a file.
+pub fn material(name: &str, lobe: ImportLobe) -> anyhow::Result<MaterialSettings> {
+    let found = exchange::find(
+        name,
+        ReadOptions {
+            lobe,
+            ..ReadOptions::default()
+        },
+    )?;
+    warn(&found.warnings);
+    Ok(found.value)
 }
 
 fn warn(warnings: &[String]) {

@@ -13,13 +13,13 @@ const CONFLICTS: [[&str; 2]; 1] = [["camera-distance", "camera-position"]];
 
 /// The settings that were given on the command line; those that were not are as the document has them.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SettingOptions {
+pub struct SettingOptions {
     given: Vec<(&'static Parameter<Document>, Value)>,
 }
 
 impl SettingOptions {
     /// Sets what was given.
-    pub(super) fn apply(&self, document: &mut Document) -> anyhow::Result<()> {
+    pub fn apply(&self, document: &mut Document) -> anyhow::Result<()> {
         for (setting, value) in &self.given {
             setting.set(document, value.clone())?;
         }
@@ -27,7 +27,7 @@ impl SettingOptions {
     }
 
     /// Whether the setting of this key was given, and not as what is left to the program.
-    pub(super) fn has(&self, key: &str) -> bool {
+    pub fn has(&self, key: &str) -> bool {
         let is_it = |(setting, value): &(&Parameter<Document>, Value)| setting.key == key && *value != Value::Absent;
         self.given.iter().any(is_it)
     }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
+use super::names::names;
 use crate::document::Document;
 use crate::import::endings;
 use crate::named::Named as _;
@@ -15,14 +16,14 @@ use crate::scene::texture::{TextureTarget, UserTexture, set};
 
 /// Images, and the material that they are assigned to.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct TextureArgument {
+pub struct TextureArgument {
     /// Name or number of the slot; every material where none is given.
     slot: Option<String>,
     textures: Vec<(TextureTarget, UserTexture)>,
 }
 
 /// `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
-pub(super) fn argument() -> impl TypedValueParser<Value = TextureArgument> {
+pub fn argument() -> impl TypedValueParser<Value = TextureArgument> {
     OsStringValueParser::new().try_map(|argument| texture(&argument))
 }
 
@@ -34,21 +35,14 @@ fn around(argument: &OsStr, place: Option<usize>) -> Option<(&str, PathBuf)> {
 }
 
 fn texture(argument: &OsStr) -> Result<TextureArgument, String> {
-    let uses = || {
-        TextureTarget::ALL
-            .iter()
-            .map(|target| target.name())
-            .collect::<Vec<_>>()
-            .join(", ")
-    };
     let bytes = argument.as_encoded_bytes();
     if let Some((left, file)) = around(argument, bytes.iter().position(|byte| *byte == b'=')) {
         let (slot, name) = match left.rsplit_once(':') {
             Some((slot, name)) => (Some(slot.to_owned()), name),
             None => (None, left),
         };
-        let target =
-            TextureTarget::by_name(name).ok_or_else(|| format!("{name} takes no texture; give one of {}", uses()))?;
+        let target = TextureTarget::by_name(name)
+            .ok_or_else(|| format!("{name} takes no texture; give one of {}", names::<TextureTarget>()))?;
         let file = existing(file)?;
         let named = set::targets_of(&file).into_iter().find(|(known, _)| *known == target);
         let texture = named.map_or_else(|| UserTexture::of(file), |(_, texture)| texture);
@@ -70,7 +64,7 @@ fn texture(argument: &OsStr) -> Result<TextureArgument, String> {
         return Err(format!(
             "{}: no name here says what a texture is for, as wood_basecolor.png does; write USE={0}, with one of {}",
             path.display(),
-            uses()
+            names::<TextureTarget>()
         ));
     }
     Ok(TextureArgument { slot, textures })
@@ -85,7 +79,7 @@ fn existing(path: PathBuf) -> Result<PathBuf, String> {
 
 impl TextureArgument {
     /// The images.
-    pub(super) fn files(&self) -> impl Iterator<Item = &PathBuf> {
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
         self.textures.iter().map(|(_, texture)| &texture.file)
     }
 
@@ -93,7 +87,7 @@ impl TextureArgument {
     ///
     /// # Errors
     /// Where the model has no such slot.
-    pub(super) fn apply(&self, document: &mut Document, model: &Model) -> anyhow::Result<()> {
+    pub fn apply(&self, document: &mut Document, model: &Model) -> anyhow::Result<()> {
         let slots = match &self.slot {
             None => 0..document.materials.len().max(1),
             Some(slot) => {

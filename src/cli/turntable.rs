@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 
 use super::answer::{Destination, file_names, write_json};
-use super::render::bar;
+use super::render::Bar;
 use super::scene::SceneArguments;
 use super::signals::Signals;
 use super::{names, parse};
@@ -40,7 +40,7 @@ pub struct TurntableArguments {
     #[arg(long, value_name = "FILE", value_parser = video_file())]
     video: Option<PathBuf>,
     /// Frames a second of the video, 1 to 120.
-    #[arg(long, default_value_t = FPS, value_name = "N", allow_negative_numbers = true, value_parser = fps)]
+    #[arg(long, default_value_t = FPS, value_name = "N", allow_negative_numbers = true, value_parser = parse::number_in(video::FPS))]
     fps: f64,
     /// Write what was rendered, how and how fast, as JSON; - is standard output.
     #[arg(long, visible_alias = "json", value_name = "FILE|-")]
@@ -54,19 +54,11 @@ fn video_file() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| VideoFormat::of(&path).map(|_| path))
 }
 
-fn fps(text: &str) -> Result<f64, String> {
-    let fps: Option<f64> = text.trim().parse().ok();
-    let [from, to] = [video::FPS.start(), video::FPS.end()];
-    fps.filter(|fps| video::FPS.contains(fps))
-        .ok_or_else(|| format!("give frames a second from {from} to {to}"))
-}
-
 /// Renders the frames as the arguments say.
 ///
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
-    const BAR_STEPS: f64 = 1000.0;
     arguments.report.iter().try_for_each(Destination::check_writable)?;
     arguments
         .video
@@ -85,16 +77,13 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     };
     let signals = Signals::watch()?;
     message!("{} ({})", session.engine(), session.engine().reason);
-    let bar = bar(
-        "{bar:40} frame {msg}, {eta} left",
-        u64::from(table.frames) * BAR_STEPS as u64,
-    )?;
+    let bar = Bar::new("{bar:40} frame {msg}, {eta} left", table.frames)?;
     let outcome = render(&mut session, arguments.scene.engine, &table, &mut |progress| {
-        bar.set_position((BAR_STEPS * (f64::from(progress.done) + progress.share)) as u64);
-        bar.set_message(format!("{} of {}", progress.done + 1, table.frames));
+        let message = format!("{} of {}", progress.done + 1, table.frames);
+        bar.show(f64::from(progress.done) + progress.share, message);
         signals.received().is_none()
     })?;
-    bar.finish_and_clear();
+    drop(bar);
     let pictures: Vec<PathBuf> = match &table.folder {
         Some(folder) => (1..=outcome.frames).map(|frame| frame_path(folder, frame)).collect(),
         None => Vec::new(),

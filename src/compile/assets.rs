@@ -1,6 +1,9 @@
 //! Cache of assets: models, their textures and geometry, environments.
 
+use std::any::Any;
 use std::cell::RefCell;
+use std::fmt::Debug;
+use std::mem::discriminant;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -14,20 +17,39 @@ use crate::scene::ground::Ground;
 use crate::scene::texture::{Pack, TextureAssignment, Textures};
 use crate::scene::{AreaShape, Geometry, Loading, Model, ModelOptions, ModelSource, Texture};
 
-/// Key of a geometry: model, ground, area lights, hidden objects.
-type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
-
 /// Key of a model: source and options.
 type ModelKey = (ModelSource, ModelOptions);
 
-/// Key of a texture map: file, and whether it is read as colours.
-type PictureKey = (PathBuf, bool);
+/// What an asset is made from.
+#[derive(Clone, Debug, PartialEq)]
+enum Key {
+    Model(ModelKey),
+    /// A texture map: file, and whether it is read as colours.
+    Picture(PathBuf, bool),
+    /// A model's textures, and the user's own, each with whether its green channel is flipped.
+    Pack(ModelKey, Vec<((PathBuf, bool), bool)>),
+    Textures(ModelKey, Vec<TextureAssignment>),
+    /// Model, ground, area lights, hidden objects.
+    Geometry(ModelKey, Ground, Vec<AreaShape>, Vec<usize>),
+    Environment(EnvironmentSource, EnvironmentEncoding),
+}
 
-/// A model's textures, and the user's own, each with whether its green channel is flipped.
-type PackKey = (ModelKey, Vec<(PictureKey, bool)>);
+/// What is kept.
+trait Asset: Any + Send + Sync + Debug {
+    fn bytes(&self) -> usize;
+}
 
-/// Key of an environment: source and encoding.
-type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
+macro_rules! assets {
+    ($($type:ident)*) => {
+        $(impl Asset for $type {
+            fn bytes(&self) -> usize {
+                $type::bytes(self)
+            }
+        })*
+    };
+}
+
+assets! { Model Texture Pack Textures Geometry Environment }
 
 /// Memory budget in bytes. The most recently used asset of each kind is kept at any size.
 const MEMORY: usize = 1 << 30;
@@ -58,26 +80,23 @@ pub struct Reloaded {
 
 #[derive(Debug)]
 struct Cache {
-    models: Shelf<ModelKey, Model>,
-    pictures: Shelf<PictureKey, Texture>,
-    packs: Shelf<PackKey, Pack>,
-    textures: Shelf<(ModelKey, Vec<TextureAssignment>), Textures>,
-    geometries: Shelf<GeometryKey, Geometry>,
-    environments: Shelf<EnvironmentKey, Environment>,
+    entries: Vec<Entry>,
     /// Counts the uses.
     clock: u64,
     memory: usize,
 }
 
+#[derive(Debug)]
+struct Entry {
+    key: Key,
+    value: Arc<dyn Asset>,
+    used: u64,
+}
+
 impl Default for Cache {
     fn default() -> Self {
         Self {
-            models: Shelf::new(Model::bytes),
-            pictures: Shelf::new(Texture::bytes),
-            packs: Shelf::new(Pack::bytes),
-            textures: Shelf::new(Textures::bytes),
-            geometries: Shelf::new(Geometry::bytes),
-            environments: Shelf::new(Environment::bytes),
+            entries: Vec::new(),
             clock: 0,
             memory: MEMORY,
         }
@@ -110,7 +129,7 @@ impl Assets {
     /// The model of a source, loaded if not cached.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, AssetError> {
         let mut kept = self.kept();
-        let model = kept.model(&(source.clone(), options.clone()), &self.loading)?;
+        let model = kept.model((source.clone(), options.clone()), &self.loading)?;
         kept.tidy();
         Ok(model)
     }
@@ -138,8 +157,8 @@ impl Assets {
         hidden: Vec<usize>,
     ) -> Result<Arc<Geometry>, AssetError> {
         let mut kept = self.kept();
-        let key = ((source.clone(), options.clone()), ground, area_lights, hidden);
-        let geometry = kept.geometry(key, &self.loading)?;
+        let of_model = (source.clone(), options.clone());
+        let geometry = kept.geometry(of_model, ground, area_lights, hidden, &self.loading)?;
         kept.tidy();
         Ok(geometry)
     }
@@ -151,7 +170,7 @@ impl Assets {
         encoding: EnvironmentEncoding,
     ) -> Result<Arc<Environment>, AssetError> {
         let mut kept = self.kept();
-        let environment = kept.environment(&(source.clone(), encoding), &self.loading)?;
+        let environment = kept.environment(source.clone(), encoding, &self.loading)?;
         kept.tidy();
         Ok(environment)
     }
@@ -160,19 +179,17 @@ impl Assets {
     pub fn keep_model(&self, source: ModelSource, model: Model) {
         let key = (source, ModelOptions::default());
         let mut kept = self.kept();
-        kept.packs.retain(|(of, _)| *of != key);
-        kept.textures.retain(|(of, _)| *of != key);
-        kept.geometries.retain(|(of, ..)| *of != key);
-        let now = kept.now();
-        kept.models.put(key, Arc::new(model), now);
+        kept.entries.retain(|entry| match &entry.key {
+            Key::Pack(of, _) | Key::Textures(of, _) | Key::Geometry(of, ..) => *of != key,
+            _ => true,
+        });
+        kept.put(Key::Model(key), model);
     }
 
     /// The same for an environment.
     pub fn keep_environment(&self, source: EnvironmentSource, environment: Environment) {
-        let key = (source, EnvironmentEncoding::default());
-        let mut kept = self.kept();
-        let now = kept.now();
-        kept.environments.put(key, Arc::new(environment), now);
+        let key = Key::Environment(source, EnvironmentEncoding::default());
+        self.kept().put(key, environment);
     }
 
     /// Reloads a model and an environment and drops all others. Returns them, and the model before. If either fails, nothing
@@ -185,12 +202,12 @@ impl Assets {
         encoding: EnvironmentEncoding,
     ) -> Result<Reloaded, AssetError> {
         let mut fresh = Cache::default();
-        let (of_model, of_environment) = ((source.clone(), options.clone()), (environment.clone(), encoding));
-        let model = fresh.model(&of_model, &self.loading)?;
-        let environment = fresh.environment(&of_environment, &self.loading)?;
+        let of_model = (source.clone(), options.clone());
+        let model = fresh.model(of_model.clone(), &self.loading)?;
+        let environment = fresh.environment(environment.clone(), encoding, &self.loading)?;
         let mut kept = self.kept();
         fresh.memory = kept.memory;
-        let before = kept.models.get(&of_model, 0);
+        let before = kept.get(&Key::Model(of_model));
         *kept = fresh;
         Ok(Reloaded {
             before,
@@ -201,23 +218,50 @@ impl Assets {
 }
 
 impl Cache {
-    fn now(&mut self) -> u64 {
+    fn get<V: Asset>(&mut self, key: &Key) -> Option<Arc<V>> {
+        let entry = self.entries.iter_mut().find(|entry| entry.key == *key)?;
         self.clock += 1;
-        self.clock
+        entry.used = self.clock;
+        let value: Arc<dyn Any + Send + Sync> = entry.value.clone();
+        value.downcast().ok()
     }
 
-    fn model(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Model>, AssetError> {
-        let now = self.now();
-        if let Some(model) = self.models.get(key, now) {
+    fn put<V: Asset>(&mut self, key: Key, value: V) -> Arc<V> {
+        let value = Arc::new(value);
+        self.entries.retain(|entry| entry.key != key);
+        self.clock += 1;
+        self.entries.push(Entry {
+            key,
+            value: value.clone(),
+            used: self.clock,
+        });
+        value
+    }
+
+    /// Drops the least recently used of some entries, so that fewer than `most` stay.
+    fn keep_fewer(&mut self, most: usize, among: impl Fn(&Key) -> bool) {
+        let mut uses: Vec<u64> = self
+            .entries
+            .iter()
+            .filter(|entry| among(&entry.key))
+            .map(|entry| entry.used)
+            .collect();
+        uses.sort_unstable();
+        let dropped = (uses.len() + 1).saturating_sub(most);
+        self.entries.retain(|entry| !uses[..dropped].contains(&entry.used));
+    }
+
+    fn model(&mut self, key: ModelKey, loading: &Loading) -> Result<Arc<Model>, AssetError> {
+        let (source, options) = &key;
+        let known = Key::Model(key.clone());
+        if let Some(model) = self.get(&known) {
             return Ok(model);
         }
-        let (source, options) = key;
-        let model = Arc::new(import::load_watched(source, options, loading)?);
+        let model = import::load_watched(source, options, loading)?;
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
         }
-        self.models.put(key.clone(), model.clone(), now);
-        Ok(model)
+        Ok(self.put(known, model))
     }
 
     fn textures(
@@ -226,184 +270,106 @@ impl Cache {
         assigned: &[TextureAssignment],
         loading: &Loading,
     ) -> Result<Arc<Textures>, AssetError> {
-        let now = self.now();
-        let key = (of, assigned.to_vec());
-        if let Some(textures) = self.textures.get(&key, now) {
+        let key = Key::Textures(of.clone(), assigned.to_vec());
+        if let Some(textures) = self.get(&key) {
             return Ok(textures);
         }
-        let model = self.model(&key.0, loading)?;
-        let textures = Arc::new(self.pack(&key.0, &model, assigned).textures(&model, assigned));
+        let model = self.model(of.clone(), loading)?;
+        let textures = self.pack(of, &model, assigned).textures(&model, assigned);
         // Each assignment is an entry of its own and takes little memory; only the last few are ever needed again.
-        while self.textures.count(|_| true) >= TEXTURES {
-            self.textures.drop_oldest(|_| true);
-        }
-        self.textures.put(key, textures.clone(), now);
-        Ok(textures)
+        self.keep_fewer(TEXTURES, |key| matches!(key, Key::Textures(..)));
+        Ok(self.put(key, textures))
     }
 
     /// The packed texels of a model's and users' maps, for any mapping.
-    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
-        let now = self.now();
+    fn pack(&mut self, of: ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
         let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
         own.sort();
         own.dedup();
-        let key = (of.clone(), own);
-        if let Some(pack) = self.packs.get(&key, now) {
+        let side_max = of.1.texture_side_max;
+        let key = Key::Pack(of, own);
+        if let Some(pack) = self.get(&key) {
             return pack;
         }
-        let pictures = RefCell::new(&mut self.pictures);
         // The user's own are of one import with the model's.
         let budget = Budget::of_import();
         let _ = budget.take((model.bytes() as u64).min(budget.left()));
+        let cache = RefCell::new(&mut *self);
         let read = |path: &Path, is_color: bool| {
-            let key = (path.to_owned(), is_color);
-            if let Some(picture) = pictures.borrow_mut().get(&key, now) {
+            let key = Key::Picture(path.to_owned(), is_color);
+            if let Some(picture) = cache.borrow_mut().get::<Texture>(&key) {
                 let taken = budget.take(picture.bytes() as u64);
                 return taken.map(|()| picture).map_err(|over| over.to_string());
             }
-            let picture = Arc::new(read_texture(path, is_color, of.1.texture_side_max, &budget)?);
-            pictures.borrow_mut().put(key, picture.clone(), now);
-            Ok(picture)
+            let picture = read_texture(path, is_color, side_max, &budget)?;
+            Ok(cache.borrow_mut().put(key, picture))
         };
-        let pack = Arc::new(Pack::new(model, assigned, &read));
+        let pack = Pack::new(model, assigned, &read);
         pack.warnings().iter().for_each(|warning| log::warn!("{warning}"));
-        self.packs.put(key, pack.clone(), now);
-        pack
+        self.put(key, pack)
     }
 
-    fn geometry(&mut self, key: GeometryKey, loading: &Loading) -> Result<Arc<Geometry>, AssetError> {
-        let now = self.now();
-        if let Some(geometry) = self.geometries.get(&key, now) {
+    fn geometry(
+        &mut self,
+        of: ModelKey,
+        ground: Ground,
+        area_lights: Vec<AreaShape>,
+        hidden: Vec<usize>,
+        loading: &Loading,
+    ) -> Result<Arc<Geometry>, AssetError> {
+        let key = Key::Geometry(of.clone(), ground, area_lights.clone(), hidden.clone());
+        if let Some(geometry) = self.get(&key) {
             return Ok(geometry);
         }
-        let (of_model, ground, area_lights, hidden) = &key;
-        let is_of_same = |(of, _, _, without): &GeometryKey| of == of_model && without == hidden;
-        let alike = match self.geometries.find(is_of_same) {
+        let of_same = self
+            .entries
+            .iter()
+            .map(|entry| &entry.key)
+            .find(|key| matches!(key, Key::Geometry(other, _, _, without) if *other == of && *without == hidden));
+        let alike = of_same.cloned().and_then(|alike| self.get::<Geometry>(&alike));
+        let alike = match alike {
             Some(alike) => alike,
             None => {
-                let model = self.model(of_model, loading)?;
-                Arc::new(Geometry::of_model(&model, hidden, loading).map_err(ModelError::from)?)
+                let model = self.model(of.clone(), loading)?;
+                Arc::new(Geometry::of_model(&model, &hidden, loading).map_err(ModelError::from)?)
             }
         };
-        let geometry = Arc::new(alike.surrounded(*ground, area_lights));
-        let others = |(of, ..): &GeometryKey| of == of_model;
-        while self.geometries.count(others) >= GEOMETRIES_OF_MODEL {
-            self.geometries.drop_oldest(others);
-        }
-        self.geometries.put(key, geometry.clone(), now);
-        Ok(geometry)
+        let geometry = alike.surrounded(ground, &area_lights);
+        self.keep_fewer(
+            GEOMETRIES_OF_MODEL,
+            |key| matches!(key, Key::Geometry(other, ..) if *other == of),
+        );
+        Ok(self.put(key, geometry))
     }
 
-    fn environment(&mut self, key: &EnvironmentKey, loading: &Loading) -> Result<Arc<Environment>, AssetError> {
-        let now = self.now();
-        if let Some(environment) = self.environments.get(key, now) {
+    fn environment(
+        &mut self,
+        source: EnvironmentSource,
+        encoding: EnvironmentEncoding,
+        loading: &Loading,
+    ) -> Result<Arc<Environment>, AssetError> {
+        let key = Key::Environment(source.clone(), encoding);
+        if let Some(environment) = self.get(&key) {
             return Ok(environment);
         }
-        let environment = Arc::new(import::environment::load_watched(&key.0, key.1, loading)?);
+        let environment = import::environment::load_watched(&source, encoding, loading)?;
         environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        self.environments.put(key.clone(), environment.clone(), now);
-        Ok(environment)
+        Ok(self.put(key, environment))
     }
 
-    /// Evicts the least recently used assets until the rest fits the memory budget. Hierarchies count from when they are
-    /// built.
+    /// Evicts the least recently used assets until the rest fits the memory budget, but for the last one of each kind. Hierarchies
+    /// count from when they are built.
     fn tidy(&mut self) {
-        loop {
-            let mut shelves: [&mut dyn Tidied; 6] = [
-                &mut self.models,
-                &mut self.pictures,
-                &mut self.packs,
-                &mut self.textures,
-                &mut self.geometries,
-                &mut self.environments,
-            ];
-            if shelves.iter().map(|shelf| shelf.bytes()).sum::<usize>() <= self.memory {
-                return;
-            }
-            let oldest = shelves.iter_mut().filter(|shelf| shelf.spare().is_some());
-            let Some(shelf) = oldest.min_by_key(|shelf| shelf.spare()) else {
+        while self.entries.iter().map(|entry| entry.value.bytes()).sum::<usize>() > self.memory {
+            let has_others = |entry: &&Entry| {
+                let is_alike = |other: &&Entry| discriminant(&other.key) == discriminant(&entry.key);
+                self.entries.iter().filter(is_alike).count() > 1
+            };
+            let spare = self.entries.iter().filter(has_others);
+            let Some(oldest) = spare.map(|entry| entry.used).min() else {
                 return;
             };
-            shelf.drop_spare();
-        }
-    }
-}
-
-/// Values of one kind by their keys.
-#[derive(Debug)]
-struct Shelf<K, V> {
-    entries: Vec<Entry<K, V>>,
-    bytes_of: fn(&V) -> usize,
-}
-
-#[derive(Debug)]
-struct Entry<K, V> {
-    key: K,
-    value: Arc<V>,
-    used: u64,
-}
-
-impl<K: PartialEq, V> Shelf<K, V> {
-    fn new(bytes_of: fn(&V) -> usize) -> Self {
-        Self {
-            entries: Vec::new(),
-            bytes_of,
-        }
-    }
-
-    fn get(&mut self, key: &K, now: u64) -> Option<Arc<V>> {
-        let entry = self.entries.iter_mut().find(|entry| entry.key == *key)?;
-        entry.used = now;
-        Some(entry.value.clone())
-    }
-
-    /// Any value whose key satisfies the predicate.
-    fn find(&self, is_wanted: impl Fn(&K) -> bool) -> Option<Arc<V>> {
-        let entry = self.entries.iter().find(|entry| is_wanted(&entry.key))?;
-        Some(entry.value.clone())
-    }
-
-    fn put(&mut self, key: K, value: Arc<V>, now: u64) {
-        self.retain(|known| *known != key);
-        self.entries.push(Entry { key, value, used: now });
-    }
-
-    fn retain(&mut self, stays: impl Fn(&K) -> bool) {
-        self.entries.retain(|entry| stays(&entry.key));
-    }
-
-    fn count(&self, counts: impl Fn(&K) -> bool) -> usize {
-        self.entries.iter().filter(|entry| counts(&entry.key)).count()
-    }
-
-    /// Drops the least recently used of some entries.
-    fn drop_oldest(&mut self, among: impl Fn(&K) -> bool) {
-        let candidates = self.entries.iter().filter(|entry| among(&entry.key));
-        if let Some(oldest) = candidates.map(|entry| entry.used).min() {
             self.entries.retain(|entry| entry.used != oldest);
         }
-    }
-}
-
-/// A shelf of any type of value.
-trait Tidied {
-    fn bytes(&self) -> usize;
-    /// Last use of the entry to drop first, if any can be dropped: the last one of its kind can't.
-    fn spare(&self) -> Option<u64>;
-    fn drop_spare(&mut self);
-}
-
-impl<K: PartialEq, V> Tidied for Shelf<K, V> {
-    fn bytes(&self) -> usize {
-        self.entries.iter().map(|entry| (self.bytes_of)(&entry.value)).sum()
-    }
-
-    fn spare(&self) -> Option<u64> {
-        let oldest = self.entries.iter().map(|entry| entry.used).min();
-        oldest.filter(|_| self.entries.len() > 1)
-    }
-
-    fn drop_spare(&mut self) {
-        self.drop_oldest(|_| true);
     }
 }

@@ -386,9 +386,9 @@ fn scattering_key(material: &Material<f32>) -> TableKey {
     let of_interface = |x: f32| if transmits { x } else { 0.0 };
     TableKey {
         material: Material {
-            specular_color: Vec3::zero(),
-            eta: Vec3::zero(),
-            k: Vec3::zero(),
+            specular_color: Vec3::ZERO,
+            eta: Vec3::ZERO,
+            k: Vec3::ZERO,
             ior: of_interface(material.ior),
             reflecting_ior: of_interface(material.reflecting_ior),
             // The samplings of GGX share one model.

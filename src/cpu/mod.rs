@@ -44,7 +44,7 @@ impl CpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) {
         job.geometry.prepare();
         let [width, height] = job.settings.image_size;
-        self.schedule = Schedule::starting_at(width, height, job.settings.first_sample);
+        self.schedule = Schedule::new(width, height, job.settings.first_sample);
         // The old one goes first: two would take twice the memory.
         self.film = Film::default();
         self.film = Film::of(&job);

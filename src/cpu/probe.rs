@@ -11,10 +11,9 @@ use crate::optics::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_conductor, 
 use crate::optics::layer::{MaterialNumbers, material_density, material_evaluate, material_layers, material_sample};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
 use crate::optics::material::{Material, Surface};
+use crate::optics::prelude::*;
 use crate::optics::random::{Sequence, random_pair_bits, random_state};
-use crate::optics::real::{Real, Scalar};
 use crate::optics::thin_film::FilmTerms;
-use crate::optics::vector::Vec3;
 use crate::parallel;
 
 fn by_number<E: Copy>(all: &[E], number: u32) -> E {

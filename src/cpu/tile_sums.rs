@@ -4,12 +4,10 @@
 use super::integrator::{BLOCK_PIXELS, Results, Tile, is_sound};
 use crate::job::film::{Film, HalfSums};
 use crate::job::guides::GUIDE_SAMPLES;
-use crate::optics::elementary::Single;
-use crate::optics::real::Scalar;
-use crate::optics::vector::vec3;
+use crate::optics::prelude::*;
 
 /// A tile's sums and its part of the film.
-pub(super) struct TileSums<'a> {
+pub struct TileSums<'a> {
     tile: &'a Tile,
     film: &'a mut Film,
     /// Even and odd samples of each block.
@@ -48,23 +46,20 @@ impl<'a> TileSums<'a> {
         let costs = &mut self.film.costs[0];
         costs.rays += results.rays() as f64;
         costs.cut += results.cut;
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for (block, halves) in tile.blocks().zip(halves) {
-                    for sample in 0..count {
-                        let colors = results.radiances(block.path([sample, count]));
-                        let mut are_sound = [false; BLOCK_PIXELS];
-                        for (i, sound) in are_sound.iter_mut().enumerate() {
-                            *sound = is_sound(vec3(colors[0][i], colors[1][i], colors[2][i]));
-                        }
-                        halves[(first + sample) as usize % 2].add(&colors, &are_sound);
-                        let of_pixels = &are_sound[..block.places.len()];
-                        costs.dropped += of_pixels.iter().filter(|is_sound| !**is_sound).count() as u64;
+        vectorized!(T, {
+            for (block, halves) in tile.blocks().zip(halves) {
+                for sample in 0..count {
+                    let colors = results.radiances(block.path([sample, count]));
+                    let mut are_sound = [false; BLOCK_PIXELS];
+                    for (i, sound) in are_sound.iter_mut().enumerate() {
+                        *sound = is_sound(vec3(colors[0][i], colors[1][i], colors[2][i]));
                     }
+                    halves[(first + sample) as usize % 2].add(&colors, &are_sound);
+                    let of_pixels = &are_sound[..block.places.len()];
+                    costs.dropped += of_pixels.iter().filter(|is_sound| !**is_sound).count() as u64;
                 }
-            },
-        );
+            }
+        });
         self.add_more([first, count], results);
     }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{GroupName, MaterialSettings, ProfileFile, range};
-use crate::named::named;
+use crate::named::{named, with_defaults};
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::NearLight;
@@ -17,72 +17,50 @@ pub const SUN_DISTANCE: f64 = 1e4;
 /// The narrowest ramp of a spot's edge, in the cosine.
 const RAMP_MIN: f64 = 1e-4;
 
-/// A surface that shines and is seen by the camera like anything else: with the same radiance to both sides, or into a cone
-/// where it is a spot. It looks at its target, around which yaw and pitch turn as a camera's. Lengths are in units of the
-/// model's bounding radius.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct AreaLight {
-    /// Azimuth, degrees.
-    pub yaw_deg: f64,
-    /// Height, degrees in [−90, 90].
-    pub pitch_deg: f64,
-    /// Distance from the target, bounding radii; a sun's is [`SUN_DISTANCE`].
-    pub distance: f64,
-    /// What it looks at, relative to the centre of the model's bounding box, bounding radii.
-    pub target: [f64; 3],
-    /// Turn about the line to its target, clockwise seen from there, degrees.
-    pub turn_deg: f64,
-    /// Horizontal side, bounding radii.
-    pub width: f64,
-    /// Other side, bounding radii.
-    pub height: f64,
-    pub shape: AreaLightShape,
-    /// The angle across a spot's cone, degrees.
-    pub cone_deg: f64,
-    /// The share of the cone's angle over which it fades to its edge, in [0, 1].
-    pub softness: f64,
-    /// The angle across a sun, degrees.
-    pub angle_deg: f64,
-    /// Linear RGB in [0, 1].
-    pub color: [f32; 3],
-    /// Radiance of white; a sun's irradiance at the model.
-    pub strength: f32,
-    /// The file of its intensities by direction, which a sphere alone takes; the power is as without.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub profile: Option<ProfileFile>,
-    /// Its light group; without a name that of its kind, see [`AreaLight::group_name`].
-    #[serde(skip_serializing_if = "GroupName::is_empty")]
-    pub group: GroupName,
-    /// It shines and throws shadows, but the camera does not see it, except in mirrors and through glass.
-    #[serde(rename = "hidden_from_camera", skip_serializing_if = "std::ops::Not::not")]
-    pub is_hidden: bool,
-    /// It does not shine, and is not there.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub is_muted: bool,
-}
-
-impl Default for AreaLight {
-    fn default() -> Self {
-        Self {
-            yaw_deg: -35.0,
-            pitch_deg: 40.0,
-            distance: 3.0,
-            target: [0.0; 3],
-            turn_deg: 0.0,
-            width: 1.0,
-            height: 1.0,
-            shape: AreaLightShape::Quad,
-            cone_deg: 40.0,
-            softness: 0.2,
-            angle_deg: 0.53,
-            color: [1.0; 3],
-            strength: 10.0,
-            profile: None,
-            group: GroupName::default(),
-            is_hidden: false,
-            is_muted: false,
-        }
+with_defaults! {
+    /// A surface that shines and is seen by the camera like anything else: with the same radiance to both sides, or into a cone
+    /// where it is a spot. It looks at its target, around which yaw and pitch turn as a camera's. Lengths are in units of the
+    /// model's bounding radius.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct AreaLight {
+        /// Azimuth, degrees.
+        pub yaw_deg: f64 = -35.0,
+        /// Height, degrees in [−90, 90].
+        pub pitch_deg: f64 = 40.0,
+        /// Distance from the target, bounding radii; a sun's is [`SUN_DISTANCE`].
+        pub distance: f64 = 3.0,
+        /// What it looks at, relative to the centre of the model's bounding box, bounding radii.
+        pub target: [f64; 3],
+        /// Turn about the line to its target, clockwise seen from there, degrees.
+        pub turn_deg: f64,
+        /// Horizontal side, bounding radii.
+        pub width: f64 = 1.0,
+        /// Other side, bounding radii.
+        pub height: f64 = 1.0,
+        pub shape: AreaLightShape = AreaLightShape::Quad,
+        /// The angle across a spot's cone, degrees.
+        pub cone_deg: f64 = 40.0,
+        /// The share of the cone's angle over which it fades to its edge, in [0, 1].
+        pub softness: f64 = 0.2,
+        /// The angle across a sun, degrees.
+        pub angle_deg: f64 = 0.53,
+        /// Linear RGB in [0, 1].
+        pub color: [f32; 3] = [1.0; 3],
+        /// Radiance of white; a sun's irradiance at the model.
+        pub strength: f32 = 10.0,
+        /// The file of its intensities by direction, which a sphere alone takes; the power is as without.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub profile: Option<ProfileFile>,
+        /// Its light group; without a name that of its kind, see [`AreaLight::group_name`].
+        #[serde(skip_serializing_if = "GroupName::is_empty")]
+        pub group: GroupName,
+        /// It shines and throws shadows, but the camera does not see it, except in mirrors and through glass.
+        #[serde(rename = "hidden_from_camera", skip_serializing_if = "std::ops::Not::not")]
+        pub is_hidden: bool,
+        /// It does not shine, and is not there.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        pub is_muted: bool,
     }
 }
 
@@ -179,9 +157,10 @@ impl AreaLight {
     /// Radiance of white.
     pub fn radiance(&self) -> f64 {
         let strength = f64::from(self.strength);
-        match self.is_sun() {
-            true => strength / (PI * self.half_angle_rad().sin().powi(2)),
-            false => strength,
+        if self.is_sun() {
+            strength / (PI * self.half_angle_rad().sin().powi(2))
+        } else {
+            strength
         }
     }
 
@@ -213,13 +192,12 @@ impl AreaLight {
         };
         let area_m2 = share * self.width * self.seen_height() * radius_m * radius_m;
         // What leaves a place, over its radiance: π to each side, or the integral of share × cosine over the cone.
-        let projected_sr = match self.is_spot() {
-            true => {
-                let [inner, outer] = self.cone_cosines();
-                let ramp = inner - outer;
-                PI * (1.0 - inner * inner) + 2.0 * PI * ramp * (outer / 3.0 + ramp / 4.0)
-            }
-            false => 2.0 * PI,
+        let projected_sr = if self.is_spot() {
+            let [inner, outer] = self.cone_cosines();
+            let ramp = inner - outer;
+            PI * (1.0 - inner * inner) + 2.0 * PI * ramp * (outer / 3.0 + ramp / 4.0)
+        } else {
+            2.0 * PI
         };
         luminance * area_m2 * projected_sr
     }

@@ -3,39 +3,28 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Document, MaterialSettings};
-use crate::named::named;
+use crate::named::{named, with_defaults};
 use crate::scene::ground::{Cyclorama, Ground};
 
 /// The least albedo of a shadow catcher, whose light is known by what it reflects.
 const CATCHER_ALBEDO_MIN: f32 = 1e-3;
 
-/// What the ground is, where there is one. Its colour stands beside it. Lengths are in bounding radii of the model.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct GroundSettings {
-    pub kind: GroundKind,
-    /// How much of a varnish lies on it, in [0, 1]: its reflection is that of glass, times this.
-    pub reflection: f32,
-    /// Roughness of the reflection, in [0, 1].
-    pub roughness: f32,
-    /// Azimuth of the cyclorama's open side as a camera's, degrees.
-    pub yaw_deg: f64,
-    /// From the model's centre to the cyclorama's wall, above 0.
-    pub wall_distance: f64,
-    /// Radius of the cyclorama's bend, above 0; no more than the wall's distance is used.
-    pub bend_radius: f64,
-}
-
-impl Default for GroundSettings {
-    fn default() -> Self {
-        Self {
-            kind: GroundKind::default(),
-            reflection: 0.0,
-            roughness: 0.2,
-            yaw_deg: 0.0,
-            wall_distance: 4.0,
-            bend_radius: 2.0,
-        }
+with_defaults! {
+    /// What the ground is, where there is one. Its colour stands beside it. Lengths are in bounding radii of the model.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct GroundSettings {
+        pub kind: GroundKind,
+        /// How much of a varnish lies on it, in [0, 1]: its reflection is that of glass, times this.
+        pub reflection: f32,
+        /// Roughness of the reflection, in [0, 1].
+        pub roughness: f32 = 0.2,
+        /// Azimuth of the cyclorama's open side as a camera's, degrees.
+        pub yaw_deg: f64,
+        /// From the model's centre to the cyclorama's wall, above 0.
+        pub wall_distance: f64 = 4.0,
+        /// Radius of the cyclorama's bend, above 0; no more than the wall's distance is used.
+        pub bend_radius: f64 = 2.0,
     }
 }
 

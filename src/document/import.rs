@@ -3,7 +3,7 @@
 
 use std::sync::LazyLock;
 
-use super::{CoatLobe, MaterialSettings};
+use super::{CoatLobe, MaterialSettings, parameter};
 use crate::named::named;
 use crate::optics::lobe::{Lobe, Width};
 use crate::optics::material::MATCHED_NODES;
@@ -23,16 +23,6 @@ named! {
 }
 
 impl ImportLobe {
-    /// The lobe of a slot's material: GGX where any of it is rougher than the geometric lobe can be. Of a textured slot the
-    /// texels count, if the factor is 1, which alone is a factor that the geometric lobe has beyond its reach.
-    pub fn of_slot(self, slot: &Slot) -> Self {
-        if slot.specular.max(slot.metalness).max(slot.transmission) == 0.0 {
-            return self;
-        }
-        let is_whole = slot.roughness == 1.0;
-        self.at_roughest(if is_whole { slot.roughest_texel } else { slot.roughness })
-    }
-
     /// The lobe of a material that is as rough as this at its roughest: beyond [`ROUGHNESS_MAX`] it is GGX.
     pub fn at_roughest(self, roughest: f32) -> Self {
         if roughest > ROUGHNESS_MAX { Self::Ggx } else { self }
@@ -75,64 +65,88 @@ impl MaterialSettings {
         };
     }
 
+    /// The material of a file that says nothing of it: other programs know GGX alone.
+    pub fn of_file() -> Self {
+        Self {
+            name: String::new(),
+            metalness: 0.0,
+            specular_on_metal: false,
+            lobe: Lobe::Ggx,
+            roughness: 0.5,
+            coat_lobe: CoatLobe::Ggx,
+            coat_roughness: 0.0,
+            coat_on_base: false,
+            coat_darkening: 0.0,
+            ..Self::default()
+        }
+    }
+
     /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
     /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
     pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
-        let unit = |x: f32| x.clamp(0.0, 1.0);
-        let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
         let mut material = Self {
             name: slot.name.clone(),
-            base_color: slot.base_color,
-            diffuse_roughness: slot.diffuse_roughness,
-            metalness: slot.metalness,
-            roughness: unit(slot.roughness),
-            ior: slot.ior,
-            specular_weight: slot.specular,
-            specular_on_metal: false,
-            specular_color: slot.specular_color,
-            anisotropy: slot.anisotropy,
             extra: slot.kept.clone(),
-            ..Self::default()
+            ..Self::of_file()
         };
-        lobe.of_slot(slot).apply(&mut material);
+        for (key, value) in &slot.values {
+            if let Ok(parameter) = parameter(key) {
+                parameter.put_rgb(&mut material, *value);
+            }
+        }
+        let uses = &mut material.textures;
         for &target in TextureTarget::ALL {
-            material.textures[target] |= slot.texture(target).is_some();
+            uses[target] |= slot.texture(target).is_some();
         }
-        material.textures[TextureTarget::BaseColor] |= slot.has_vertex_colors && !slot.is_unlit;
-        material.textures[TextureTarget::Emission] |= slot.has_vertex_colors && slot.is_unlit;
-        material.textures[TextureTarget::Opacity] = slot.alpha_mode != AlphaMode::Opaque;
-        material.normal_strength = slot.normal_scale;
-        if slot.alpha_mode != AlphaMode::Opaque {
-            material.opacity = slot.opacity;
+        uses[TextureTarget::BaseColor] |= slot.has_vertex_colors && !slot.is_unlit;
+        uses[TextureTarget::Emission] |= slot.has_vertex_colors && slot.is_unlit;
+        uses[TextureTarget::Opacity] = slot.alpha_mode != AlphaMode::Opaque;
+        if slot.alpha_mode == AlphaMode::Opaque {
+            material.opacity = 1.0;
         }
-        material.coat_weight = slot.coat;
-        material.coat_ior = slot.coat_ior;
-        material.coat_normal_strength = slot.coat_normal_scale;
-        if slot.coat > 0.0 {
-            material.set_coat_ggx_roughness(unit(slot.coat_roughness), lobe);
-            (material.coat_on_base, material.coat_darkening) = (slot.coat_on_base, slot.coat_darkening);
-            (material.coat_color, material.coat_anisotropy) = (slot.coat_color, slot.coat_anisotropy);
-        }
-        (material.fuzz_weight, material.fuzz_color) = (slot.fuzz, slot.fuzz_color);
-        material.fuzz_roughness = slot.fuzz_roughness;
-        material.film_weight = slot.film;
-        material.film_thickness = slot.film_thickness;
-        material.film_ior = slot.film_ior;
-        material.transmission_weight = slot.transmission;
-        if slot.attenuation_distance.is_finite() {
-            material.transmission_color = slot.attenuation_color;
-            material.transmission_depth = slot.attenuation_distance;
-        } else if slot.transmission > 0.0 {
+        if material.transmission_weight > 0.0 && material.transmission_depth == 0.0 {
             material.transmission_color = material.base_color;
         }
-        if strength > 0.0 {
-            material.emission_color = slot.emission.map(|x| x / strength);
-            material.emission_strength = strength;
-        }
-        material.bring_into_range();
         // A turn may be several.
-        material.rotation_deg = slot.anisotropy_rotation_rad.to_degrees();
-        material
+        material.rotation_deg %= 360.0;
+        material.with_lobe(lobe, slot.roughest_texel)
+    }
+
+    /// A file's material in range, by a lobe that looks like its GGX. GGX it stays where any of it is rougher than the geometric lobe
+    /// can be. Of a textured one the roughest texel counts, if the factor is 1, which alone is a factor that the geometric lobe
+    /// has beyond its reach.
+    pub fn with_lobe(mut self, lobe: ImportLobe, roughest_texel: f32) -> Self {
+        (self.emission_strength, self.emission_color) = self.strength_and_color();
+        self.bring_into_range();
+        let is_seen = self.specular_weight.max(self.metalness).max(self.transmission_weight) > 0.0;
+        let roughest = match self.roughness {
+            1.0 => roughest_texel,
+            roughness => roughness,
+        };
+        let of_base = if is_seen { lobe.at_roughest(roughest) } else { lobe };
+        of_base.apply(&mut self);
+        if self.coat_weight > 0.0 {
+            self.set_coat_ggx_roughness(self.coat_roughness, lobe);
+        } else {
+            // That of a new coat.
+            let new = Self::default();
+            (self.coat_lobe, self.coat_roughness) = (new.coat_lobe, new.coat_roughness);
+            (self.coat_on_base, self.coat_darkening) = (new.coat_on_base, new.coat_darkening);
+        }
+        self
+    }
+
+    /// Emitted radiance.
+    pub fn emission(&self) -> [f32; 3] {
+        self.emission_color.map(|x| (x * self.emission_strength).min(f32::MAX))
+    }
+
+    /// The brightest channel of the emission and the colour that makes the emission of it; white where there is none.
+    pub fn strength_and_color(&self) -> (f32, [f32; 3]) {
+        let emission = self.emission();
+        let brightest = emission.into_iter().fold(0.0_f32, f32::max);
+        let color = emission.map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });
+        (brightest, color)
     }
 }
 

@@ -7,179 +7,123 @@ use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
 use super::user_textures::UserTextures;
-use crate::named::named;
+use crate::named::{named, with_defaults};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::target::{TARGETS, TextureTarget};
 use crate::optics::thin_film::has_film;
 
+/// The metal of new materials, in [`METALS`].
+const ALUMINIUM: usize = 3;
 /// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
 pub const SPECULAR_COLOR_MAX: f32 = 1000.0;
 /// The largest thickness of a thin film in µm: beyond it colours of neighbouring orders mix to grey.
 pub const FILM_THICKNESS_MAX: f32 = 10.0;
 
-/// A material as it is edited. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Map<String, Json>", into = "Map<String, Json>")]
-pub struct MaterialSettings {
-    /// Name in lists and files.
-    pub name: String,
-    /// Factor of the base colour, in [0, 1].
-    pub base_weight: f32,
-    /// Linear RGB in [0, 1].
-    pub base_color: [f32; 3],
-    /// Roughness of the diffuse base, in [0, 1].
-    pub diffuse_roughness: f32,
-    /// In [0, 1].
-    pub metalness: f32,
-    /// In [0, 1].
-    pub specular_weight: f32,
-    /// The weight scales a dielectric's reflectance head-on through its index, as in OpenPBR; else at every angle.
-    pub specular_in_index: bool,
-    /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
-    pub specular_on_metal: bool,
-    pub lobe: Lobe,
-    /// GGX gets back the light that single scattering between its facets loses.
-    pub multiple_scattering: bool,
-    /// In [0, 1].
-    pub roughness: f32,
-    /// In [−1, 1].
-    pub anisotropy: f32,
-    /// Turn of the tangent, degrees.
-    pub rotation_deg: f32,
-    /// The geometric lobe's curve.
-    pub curve: Curve,
-    /// The curve where `curve` is custom.
-    pub custom_curve: CustomCurve,
-    /// What happens below the surface.
-    pub horizon: Horizon,
-    pub fresnel: Fresnel,
-    /// The dielectric's index of refraction, in [1, 4].
-    pub ior: f32,
-    /// Tint of the reflection, linear RGB in [0, [`SPECULAR_COLOR_MAX`]]. What would reflect more than all reflects all.
-    pub specular_color: [f32; 3],
-    /// What a metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
-    pub edge_tint: [f32; 3],
-    /// Where `eta` and `k` come from.
-    pub conductor: Conductor,
-    /// Real part of the conductor's index of refraction at about 650, 550 and 450 nm, in [0, 20].
-    pub eta: [f32; 3],
-    /// Imaginary part, in [0, 20].
-    pub k: [f32; 3],
-    /// Share of the surface that has a coat, in [0, 1].
-    pub coat_weight: f32,
-    /// In [0, 1].
-    pub coat_roughness: f32,
-    /// The coat's index of refraction, in [1, 4].
-    pub coat_ior: f32,
-    /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
-    pub coat_color: [f32; 3],
-    /// The lobe of the coat.
-    pub coat_lobe: CoatLobe,
-    /// Stretch of the coat's lobe in [−1, 1].
-    pub coat_anisotropy: f32,
-    /// The coat changes what lies below it by its index, its roughness and the way of light through it.
-    pub coat_on_base: bool,
-    /// How much of the darkening by the coat shows, in [0, 1].
-    pub coat_darkening: f32,
-    /// Scales the slopes of the coat's normal texture, in [−10, 10].
-    pub coat_normal_strength: f32,
-    /// Share of the surface that has fuzz, in [0, 1].
-    pub fuzz_weight: f32,
-    /// Tint of the fuzz, linear RGB in [0, 1].
-    pub fuzz_color: [f32; 3],
-    /// In [0, 1].
-    pub fuzz_roughness: f32,
-    /// Share of the surface that has a thin film, in [0, 1].
-    pub film_weight: f32,
-    /// Thickness of the thin film in µm, in [0, [`FILM_THICKNESS_MAX`]].
-    pub film_thickness: f32,
-    /// The thin film's index of refraction, in [1, 3].
-    pub film_ior: f32,
-    /// Share of the base that refracts, in [0, 1].
-    pub transmission_weight: f32,
-    /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
-    pub transmission_color: [f32; 3],
-    /// In bounding radii of the model; 0 where nothing is absorbed inside.
-    pub transmission_depth: f32,
-    /// Added to `roughness` for the refraction, in [−1, 1].
-    pub transmission_roughness: f32,
-    /// Linear RGB in [0, 1].
-    pub emission_color: [f32; 3],
-    /// Emitted radiance is `emission_color` times this.
-    pub emission_strength: f32,
-    /// Share of light that the surface stops, in [0, 1].
-    pub opacity: f32,
-    /// Scales the slopes of the normal texture, in [−10, 10].
-    pub normal_strength: f32,
-    /// Which textures are looked up.
-    pub textures: TextureUse,
-    /// Textures that the user assigned, instead of the slot's.
-    pub user_textures: UserTextures,
-    /// What the file's "material" had that this version does not know.
-    pub extra: Map<String, Json>,
-    /// What the file had beside it.
-    pub file_extra: Map<String, Json>,
-}
-
-/// A grey metal with the geometric lobe.
-impl Default for MaterialSettings {
-    fn default() -> Self {
-        let mut material = Self {
-            name: "Plain".to_owned(),
-            base_weight: 1.0,
-            base_color: [0.8; 3],
-            diffuse_roughness: 0.0,
-            metalness: 1.0,
-            specular_weight: 1.0,
-            specular_in_index: false,
-            specular_on_metal: true,
-            lobe: Lobe::Geometric,
-            multiple_scattering: true,
-            roughness: 0.3,
-            anisotropy: 0.0,
-            rotation_deg: 0.0,
-            curve: Curve::Smooth,
-            custom_curve: CustomCurve::default(),
-            horizon: Horizon::Mirror,
-            fresnel: Fresnel::Schlick,
-            ior: 1.5,
-            specular_color: [1.0; 3],
-            edge_tint: [1.0; 3],
-            conductor: Conductor::Custom,
-            eta: [1.0; 3],
-            k: [1.0; 3],
-            coat_weight: 0.0,
-            coat_roughness: 0.1,
-            coat_ior: 1.5,
-            coat_color: [1.0; 3],
-            coat_lobe: CoatLobe::Geometric,
-            coat_anisotropy: 0.0,
-            coat_on_base: true,
-            coat_darkening: 1.0,
-            coat_normal_strength: 1.0,
-            fuzz_weight: 0.0,
-            fuzz_color: [1.0; 3],
-            fuzz_roughness: 0.5,
-            film_weight: 0.0,
-            film_thickness: 0.5,
-            film_ior: 1.4,
-            transmission_weight: 0.0,
-            transmission_color: [1.0; 3],
-            transmission_depth: 0.0,
-            transmission_roughness: 0.0,
-            emission_color: [1.0; 3],
-            emission_strength: 0.0,
-            opacity: 1.0,
-            normal_strength: 1.0,
-            textures: TextureUse::default(),
-            user_textures: UserTextures::default(),
-            extra: Map::new(),
-            file_extra: Map::new(),
-        };
-        material.set_conductor(Conductor::named("aluminium"));
-        material
+with_defaults! {
+    /// A material as it is edited; at first a grey metal with the geometric lobe. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(try_from = "Map<String, Json>", into = "Map<String, Json>")]
+    pub struct MaterialSettings {
+        /// Name in lists and files.
+        pub name: String = "Plain".to_owned(),
+        /// Factor of the base colour, in [0, 1].
+        pub base_weight: f32 = 1.0,
+        /// Linear RGB in [0, 1].
+        pub base_color: [f32; 3] = [0.8; 3],
+        /// Roughness of the diffuse base, in [0, 1].
+        pub diffuse_roughness: f32,
+        /// In [0, 1].
+        pub metalness: f32 = 1.0,
+        /// In [0, 1].
+        pub specular_weight: f32 = 1.0,
+        /// The weight scales a dielectric's reflectance head-on through its index, as in OpenPBR; else at every angle.
+        pub specular_in_index: bool,
+        /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
+        pub specular_on_metal: bool = true,
+        pub lobe: Lobe = Lobe::Geometric,
+        /// GGX gets back the light that single scattering between its facets loses.
+        pub multiple_scattering: bool = true,
+        /// In [0, 1].
+        pub roughness: f32 = 0.3,
+        /// In [−1, 1].
+        pub anisotropy: f32,
+        /// Turn of the tangent, degrees.
+        pub rotation_deg: f32,
+        /// The geometric lobe's curve.
+        pub curve: Curve = Curve::Smooth,
+        /// The curve where `curve` is custom.
+        pub custom_curve: CustomCurve,
+        /// What happens below the surface.
+        pub horizon: Horizon = Horizon::Mirror,
+        pub fresnel: Fresnel = Fresnel::Schlick,
+        /// The dielectric's index of refraction, in [1, 4].
+        pub ior: f32 = 1.5,
+        /// Tint of the reflection, linear RGB in [0, [`SPECULAR_COLOR_MAX`]]. What would reflect more than all reflects all.
+        pub specular_color: [f32; 3] = [1.0; 3],
+        /// What a metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+        pub edge_tint: [f32; 3] = [1.0; 3],
+        /// Where `eta` and `k` come from.
+        pub conductor: Conductor = Conductor::Metal(ALUMINIUM),
+        /// Real part of the conductor's index of refraction at about 650, 550 and 450 nm, in [0, 20].
+        pub eta: [f32; 3] = METALS[ALUMINIUM].eta.map(|x| x as f32),
+        /// Imaginary part, in [0, 20].
+        pub k: [f32; 3] = METALS[ALUMINIUM].k.map(|x| x as f32),
+        /// Share of the surface that has a coat, in [0, 1].
+        pub coat_weight: f32,
+        /// In [0, 1].
+        pub coat_roughness: f32 = 0.1,
+        /// The coat's index of refraction, in [1, 4].
+        pub coat_ior: f32 = 1.5,
+        /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
+        pub coat_color: [f32; 3] = [1.0; 3],
+        /// The lobe of the coat.
+        pub coat_lobe: CoatLobe = CoatLobe::Geometric,
+        /// Stretch of the coat's lobe in [−1, 1].
+        pub coat_anisotropy: f32,
+        /// The coat changes what lies below it by its index, its roughness and the way of light through it.
+        pub coat_on_base: bool = true,
+        /// How much of the darkening by the coat shows, in [0, 1].
+        pub coat_darkening: f32 = 1.0,
+        /// Scales the slopes of the coat's normal texture, in [−10, 10].
+        pub coat_normal_strength: f32 = 1.0,
+        /// Share of the surface that has fuzz, in [0, 1].
+        pub fuzz_weight: f32,
+        /// Tint of the fuzz, linear RGB in [0, 1].
+        pub fuzz_color: [f32; 3] = [1.0; 3],
+        /// In [0, 1].
+        pub fuzz_roughness: f32 = 0.5,
+        /// Share of the surface that has a thin film, in [0, 1].
+        pub film_weight: f32,
+        /// Thickness of the thin film in µm, in [0, [`FILM_THICKNESS_MAX`]].
+        pub film_thickness: f32 = 0.5,
+        /// The thin film's index of refraction, in [1, 3].
+        pub film_ior: f32 = 1.4,
+        /// Share of the base that refracts, in [0, 1].
+        pub transmission_weight: f32,
+        /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
+        pub transmission_color: [f32; 3] = [1.0; 3],
+        /// In bounding radii of the model; 0 where nothing is absorbed inside.
+        pub transmission_depth: f32,
+        /// Added to `roughness` for the refraction, in [−1, 1].
+        pub transmission_roughness: f32,
+        /// Linear RGB in [0, 1].
+        pub emission_color: [f32; 3] = [1.0; 3],
+        /// Emitted radiance is `emission_color` times this.
+        pub emission_strength: f32,
+        /// Share of light that the surface stops, in [0, 1].
+        pub opacity: f32 = 1.0,
+        /// Scales the slopes of the normal texture, in [−10, 10].
+        pub normal_strength: f32 = 1.0,
+        /// Which textures are looked up.
+        pub textures: TextureUse,
+        /// Textures that the user assigned, instead of the slot's.
+        pub user_textures: UserTextures,
+        /// What the file's "material" had that this version does not know.
+        pub extra: Map<String, Json>,
+        /// What the file had beside it.
+        pub file_extra: Map<String, Json>,
     }
 }
 

@@ -41,7 +41,7 @@ pub use history::History;
 pub use import::ImportLobe;
 pub use light_groups::LightMix;
 pub use material::{CoatLobe, Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
-pub use material_textures::{map_key, target_of_key, texture_assignments};
+pub use material_textures::texture_assignments;
 pub use parameter::{
     Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
     assign, parameter, setting,
@@ -57,57 +57,40 @@ pub use user_textures::UserTextures;
 pub use crate::job::{LightPaths, Strategy};
 pub use crate::scene::camera::PixelFilter;
 
+use crate::named::with_defaults;
 use crate::scene::{ModelOptions, ModelSource};
 
-/// Everything that an image depends on, except for the contents of the files it names.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Document {
-    pub model: ModelSource,
-    /// What is shown of a file that holds more than one image.
-    pub import: ModelOptions,
-    /// The numbers of the objects of the model that are not shown, each once.
-    pub hidden_objects: Vec<usize>,
-    /// Names of objects of the model instead of the file's, by number; no image depends on them.
-    pub object_names: BTreeMap<usize, String>,
-    /// Whether the model stands on a ground.
-    pub ground: bool,
-    /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
-    pub materials: Vec<MaterialSettings>,
-    /// Where the light comes from.
-    pub lighting: Lighting,
-    /// Where it is seen from.
-    pub camera: CameraSettings,
-    /// Metres of a scene unit: what lights' power is reckoned with; no image depends on it.
-    pub unit_m: f64,
-    /// Cameras to come back to; no image depends on them.
-    pub bookmarks: Vec<Bookmark>,
-    /// How radiance becomes an image.
-    pub view: ViewSettings,
-    /// How, and for how long, it is rendered.
-    pub render: RenderSettings,
-    /// What the file had that this version does not know: written back when saving.
-    #[serde(skip)]
-    pub extra: serde_json::Map<String, serde_json::Value>,
-}
-
-impl Default for Document {
-    fn default() -> Self {
-        Self {
-            model: ModelSource::default(),
-            import: ModelOptions::default(),
-            hidden_objects: Vec::new(),
-            object_names: BTreeMap::new(),
-            ground: false,
-            materials: vec![MaterialSettings::default()],
-            lighting: Lighting::default(),
-            camera: CameraSettings::default(),
-            unit_m: 1.0,
-            bookmarks: Vec::new(),
-            view: ViewSettings::default(),
-            render: RenderSettings::default(),
-            extra: serde_json::Map::new(),
-        }
+with_defaults! {
+    /// Everything that an image depends on, except for the contents of the files it names.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct Document {
+        pub model: ModelSource,
+        /// What is shown of a file that holds more than one image.
+        pub import: ModelOptions,
+        /// The numbers of the objects of the model that are not shown, each once.
+        pub hidden_objects: Vec<usize>,
+        /// Names of objects of the model instead of the file's, by number; no image depends on them.
+        pub object_names: BTreeMap<usize, String>,
+        /// Whether the model stands on a ground.
+        pub ground: bool,
+        /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
+        pub materials: Vec<MaterialSettings> = vec![MaterialSettings::default()],
+        /// Where the light comes from.
+        pub lighting: Lighting,
+        /// Where it is seen from.
+        pub camera: CameraSettings,
+        /// Metres of a scene unit: what lights' power is reckoned with; no image depends on it.
+        pub unit_m: f64 = 1.0,
+        /// Cameras to come back to; no image depends on them.
+        pub bookmarks: Vec<Bookmark>,
+        /// How radiance becomes an image.
+        pub view: ViewSettings,
+        /// How, and for how long, it is rendered.
+        pub render: RenderSettings,
+        /// What the file had that this version does not know: written back when saving.
+        #[serde(skip)]
+        pub extra: serde_json::Map<String, serde_json::Value>,
     }
 }
 

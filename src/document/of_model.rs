@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::import::ROUGHNESS_MAX;
 use super::{
-    AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, GroupName, ImportLobe, MaterialSettings, range,
+    AreaLight, AreaLightShape, Bookmark, CameraSettings, CoatLobe, Document, GroupName, ImportLobe, MaterialSettings,
+    range,
 };
+use crate::optics::lobe::Lobe;
 use crate::scene::camera::{Projection, right_and_up};
 use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
@@ -32,12 +33,13 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
     }
     for slot in &model.slots {
         let mut note = |what: &str| report.note(Fate::Approximated, what, &slot.name);
-        if lobe.of_slot(slot) != lobe {
+        let material = MaterialSettings::from_slot(slot, lobe);
+        if material.lobe == Lobe::Ggx {
             note("a roughness above 0.7, for which the lobe is GGX");
-        } else if slot.transmission > 0.0 && slot.roughness > 0.0 {
+        } else if material.transmission_weight > 0.0 && material.roughness > 0.0 {
             note("a rough refraction, as wide as that of GGX but without its tail");
         }
-        if slot.coat > 0.0 && slot.coat_roughness > ROUGHNESS_MAX {
+        if material.coat_weight > 0.0 && material.coat_lobe == CoatLobe::Ggx {
             note("a coat's roughness above 0.7, for which its lobe is GGX");
         }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::named::named;
+use crate::named::{named, with_defaults};
 
 named! {
     /// Where a reference image is shown.
@@ -17,23 +17,15 @@ named! {
     }
 }
 
-/// A reference image, which is shown in the viewport and is no part of what is rendered or saved as an image.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Reference {
-    pub file: PathBuf,
-    /// Where it is shown.
-    pub place: ReferencePlace,
-    /// Share of it in what is seen, in [0, 1].
-    pub opacity: f32,
-}
-
-impl Default for Reference {
-    fn default() -> Self {
-        Self {
-            file: PathBuf::new(),
-            place: ReferencePlace::default(),
-            opacity: 1.0,
-        }
+with_defaults! {
+    /// A reference image, which is shown in the viewport and is no part of what is rendered or saved as an image.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct Reference {
+        pub file: PathBuf,
+        /// Where it is shown.
+        pub place: ReferencePlace,
+        /// Share of it in what is seen, in [0, 1].
+        pub opacity: f32 = 1.0,
     }
 }

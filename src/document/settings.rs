@@ -8,40 +8,42 @@ use super::switches::{EffectSwitches, Switch};
 use super::{AreaLight, GroundSettings, LightMix, Reference};
 use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
-use crate::named::named;
+use crate::named::{named, with_defaults};
 use crate::optics::random::Sequence;
 use crate::optics::tone::{Grade, ToneCurve};
 use crate::scene::camera::{PixelFilter, Projection};
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 
-/// Where the light comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Lighting {
-    pub environment: EnvironmentSource,
-    /// What the numbers of an image for screens stand for, where the map is one.
-    pub environment_encoding: EnvironmentEncoding,
-    /// Turn of the map about +Y, anticlockwise seen from above, degrees.
-    pub rotation_deg: f32,
-    /// Factor on its radiance, at least 0.
-    pub strength: f32,
-    /// What the camera sees beside the model.
-    pub background: Background,
-    /// How far the environment is blurred where the camera sees it: the angle around each direction over which it is
-    /// averaged, degrees. Light and reflections stay sharp.
-    pub background_blur_deg: f32,
-    /// Albedo of the ground, linear RGB in [0, 1].
-    pub ground_color: [f32; 3],
-    /// What else the ground is.
-    pub ground: GroundSettings,
-    /// Lights beside it, at most 64.
-    pub area_lights: Vec<AreaLight>,
-    /// Whether the light of each group is summed apart.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub light_groups: bool,
-    /// What the groups' light is multiplied by after rendering; a group that is not named keeps its light.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub light_mix: Vec<LightMix>,
+with_defaults! {
+    /// Where the light comes from.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct Lighting {
+        pub environment: EnvironmentSource,
+        /// What the numbers of an image for screens stand for, where the map is one.
+        pub environment_encoding: EnvironmentEncoding,
+        /// Turn of the map about +Y, anticlockwise seen from above, degrees.
+        pub rotation_deg: f32,
+        /// Factor on its radiance, at least 0.
+        pub strength: f32 = 1.0,
+        /// What the camera sees beside the model.
+        pub background: Background,
+        /// How far the environment is blurred where the camera sees it: the angle around each direction over which it is
+        /// averaged, degrees. Light and reflections stay sharp.
+        pub background_blur_deg: f32,
+        /// Albedo of the ground, linear RGB in [0, 1].
+        pub ground_color: [f32; 3] = [0.3; 3],
+        /// What else the ground is.
+        pub ground: GroundSettings,
+        /// Lights beside it, at most 64.
+        pub area_lights: Vec<AreaLight>,
+        /// Whether the light of each group is summed apart.
+        #[serde(skip_serializing_if = "std::ops::Not::not")]
+        pub light_groups: bool,
+        /// What the groups' light is multiplied by after rendering; a group that is not named keeps its light.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub light_mix: Vec<LightMix>,
+    }
 }
 
 impl Lighting {
@@ -52,24 +54,6 @@ impl Lighting {
             lights.filter(move |light| !light.is_muted && light.is_hidden == is_hidden)
         };
         of(false).chain(of(true))
-    }
-}
-
-impl Default for Lighting {
-    fn default() -> Self {
-        Self {
-            environment: EnvironmentSource::default(),
-            environment_encoding: EnvironmentEncoding::default(),
-            rotation_deg: 0.0,
-            strength: 1.0,
-            background: Background::default(),
-            background_blur_deg: 0.0,
-            ground_color: [0.3; 3],
-            ground: GroundSettings::default(),
-            area_lights: Vec::new(),
-            light_groups: false,
-            light_mix: Vec::new(),
-        }
     }
 }
 
@@ -85,47 +69,32 @@ pub enum Background {
     Color([f32; 3]),
 }
 
-/// Where the scene is seen from. Yaw 0, pitch 0 looks along −Z from a place on the +Z side of the target; the yaw goes
-/// towards +X, the pitch towards +Y, which is up.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct CameraSettings {
-    /// What is looked at; `None`: the centre of the model.
-    pub target: Option<[f64; 3]>,
-    /// Azimuth of the camera around the target, degrees.
-    pub yaw_deg: f64,
-    /// Height of the camera above the target's horizon, degrees in [−90, 90].
-    pub pitch_deg: f64,
-    /// Distance from the target, scene units; `None`: so far that the model fills the image.
-    pub distance: Option<f64>,
-    /// The camera's place; replaces yaw, pitch and distance.
-    pub position: Option<[f64; 3]>,
-    /// Vertical field of view, degrees; of an orthographic camera what it would see of its target.
-    pub fov_deg: f64,
-    #[serde(skip_serializing_if = "is_perspective")]
-    pub projection: Projection,
-    /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
-    pub roll_deg: f64,
-    /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
-    pub aperture: f64,
-    /// Distance along the viewing direction of what is sharp, scene units; `None`: that of the target.
-    pub focus_distance: Option<f64>,
-}
-
-impl Default for CameraSettings {
-    fn default() -> Self {
-        Self {
-            target: None,
-            yaw_deg: 25.0,
-            pitch_deg: 20.0,
-            distance: None,
-            position: None,
-            fov_deg: 30.0,
-            projection: Projection::default(),
-            roll_deg: 0.0,
-            aperture: 0.0,
-            focus_distance: None,
-        }
+with_defaults! {
+    /// Where the scene is seen from. Yaw 0, pitch 0 looks along −Z from a place on the +Z side of the target; the yaw goes
+    /// towards +X, the pitch towards +Y, which is up.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct CameraSettings {
+        /// What is looked at; `None`: the centre of the model.
+        pub target: Option<[f64; 3]>,
+        /// Azimuth of the camera around the target, degrees.
+        pub yaw_deg: f64 = 25.0,
+        /// Height of the camera above the target's horizon, degrees in [−90, 90].
+        pub pitch_deg: f64 = 20.0,
+        /// Distance from the target, scene units; `None`: so far that the model fills the image.
+        pub distance: Option<f64>,
+        /// The camera's place; replaces yaw, pitch and distance.
+        pub position: Option<[f64; 3]>,
+        /// Vertical field of view, degrees; of an orthographic camera what it would see of its target.
+        pub fov_deg: f64 = 30.0,
+        #[serde(skip_serializing_if = "is_perspective")]
+        pub projection: Projection,
+        /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
+        pub roll_deg: f64,
+        /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
+        pub aperture: f64,
+        /// Distance along the viewing direction of what is sharp, scene units; `None`: that of the target.
+        pub focus_distance: Option<f64>,
     }
 }
 
@@ -143,61 +112,44 @@ pub struct Bookmark {
     pub camera: CameraSettings,
 }
 
-/// How radiance becomes an image.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ViewSettings {
-    pub tone_map: ToneCurve,
-    /// Stops by which radiance is multiplied before it: 2^exposure.
-    pub exposure_ev: f32,
-    /// The exposure is added to one that brings the image's mean brightness to middle grey.
-    pub auto_exposure: bool,
-    /// The temperature of the light that appears white, in K.
-    pub white_k: f32,
-    /// The power around middle grey by which radiance is steepened before the tone curve.
-    pub contrast: f32,
-    /// The distance from grey by which colours are multiplied before it.
-    pub saturation: f32,
-    /// How much darker the corners are: they keep 1/(1 + vignette)² of their light.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub vignette: f32,
-    /// The share of the light that is spread around where it falls, as in a lens.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub glare: f32,
-    /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lut: Option<PathBuf>,
-    /// An image to work from, which the viewport shows.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub reference: Option<Reference>,
-    /// Whether the image is denoised, and how.
-    pub denoise: Denoise,
-    /// When that is done in the window.
-    pub denoise_when: DenoiseWhen,
+with_defaults! {
+    /// How radiance becomes an image.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct ViewSettings {
+        pub tone_map: ToneCurve,
+        /// Stops by which radiance is multiplied before it: 2^exposure.
+        pub exposure_ev: f32,
+        /// The exposure is added to one that brings the image's mean brightness to middle grey.
+        pub auto_exposure: bool,
+        /// The temperature of the light that appears white, in K.
+        pub white_k: f32 = Grade::NEUTRAL_K,
+        /// The power around middle grey by which radiance is steepened before the tone curve.
+        pub contrast: f32 = 1.0,
+        /// The distance from grey by which colours are multiplied before it.
+        pub saturation: f32 = 1.0,
+        /// How much darker the corners are: they keep 1/(1 + vignette)² of their light.
+        #[serde(skip_serializing_if = "is_zero")]
+        pub vignette: f32,
+        /// The share of the light that is spread around where it falls, as in a lens.
+        #[serde(skip_serializing_if = "is_zero")]
+        pub glare: f32,
+        /// A table of colours in a `.cube` file that the image goes through last, as codes of sRGB.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub lut: Option<PathBuf>,
+        /// An image to work from, which the viewport shows.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub reference: Option<Reference>,
+        /// Whether the image is denoised, and how.
+        pub denoise: Denoise,
+        /// When that is done in the window.
+        pub denoise_when: DenoiseWhen,
+    }
 }
 
 /// Whether an effect is off: documents without it stay as they were.
 fn is_zero(value: &f32) -> bool {
     *value == 0.0
-}
-
-impl Default for ViewSettings {
-    fn default() -> Self {
-        Self {
-            tone_map: ToneCurve::default(),
-            exposure_ev: 0.0,
-            auto_exposure: false,
-            white_k: Grade::NEUTRAL_K,
-            contrast: 1.0,
-            saturation: 1.0,
-            vignette: 0.0,
-            glare: 0.0,
-            lut: None,
-            reference: None,
-            denoise: Denoise::default(),
-            denoise_when: DenoiseWhen::default(),
-        }
-    }
 }
 
 named! {
@@ -222,69 +174,47 @@ named! {
     }
 }
 
-/// How, and for how long, the image is rendered.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct RenderSettings {
-    /// Columns of pixels.
-    pub width: u32,
-    /// Rows of pixels.
-    pub height: u32,
-    /// Samples per pixel after which rendering stops.
-    pub samples: u32,
-    /// The number of the first of them: a part of an image's samples is rendered where it is not 0.
-    pub first_sample: u32,
-    /// Seconds after which it stops earlier.
-    pub time_s: Option<f64>,
-    /// Relative error of the image (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
-    pub noise: Option<f64>,
-    /// Samples that each pixel has before the error is believed, so that small lights are not missed; at least 2.
-    pub min_samples: u32,
-    /// Whether samples go where the error is; `None`: only where a noise is to be reached. `samples` is then the most
-    /// that a pixel gets.
-    pub adaptive: Option<bool>,
-    /// Longest path, 1 to 64 bounces.
-    pub bounces: u32,
-    /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the image,
-    /// and reported. `None`: nothing is taken.
-    pub firefly_clamp: Option<f32>,
-    /// Which random numbers are drawn.
-    pub sequence: Sequence,
-    /// How light is found.
-    pub strategy: Strategy,
-    /// Which light the image shows.
-    pub light_paths: LightPaths,
-    /// Which of the possible images' noise: any number.
-    pub seed: u32,
-    /// How samples are spread over a pixel and its neighbours.
-    pub filter: PixelFilter,
-    /// The part of the image that is rendered: left, top, right, bottom as shares of width and height; `None`: all.
-    pub region: Option<[f64; 4]>,
-    /// What the user decides about effects, against the plan.
-    pub effects: EffectSwitches,
-}
-
-impl Default for RenderSettings {
-    fn default() -> Self {
-        Self {
-            width: 512,
-            height: 512,
-            samples: 256,
-            first_sample: 0,
-            time_s: None,
-            noise: None,
-            min_samples: 16,
-            adaptive: None,
-            bounces: 64,
-            firefly_clamp: None,
-            sequence: Sequence::default(),
-            strategy: Strategy::default(),
-            light_paths: LightPaths::default(),
-            seed: 0,
-            filter: PixelFilter::default(),
-            region: None,
-            effects: EffectSwitches::default(),
-        }
+with_defaults! {
+    /// How, and for how long, the image is rendered.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct RenderSettings {
+        /// Columns of pixels.
+        pub width: u32 = 512,
+        /// Rows of pixels.
+        pub height: u32 = 512,
+        /// Samples per pixel after which rendering stops.
+        pub samples: u32 = 256,
+        /// The number of the first of them: a part of an image's samples is rendered where it is not 0.
+        pub first_sample: u32,
+        /// Seconds after which it stops earlier.
+        pub time_s: Option<f64>,
+        /// Relative error of the image (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
+        pub noise: Option<f64>,
+        /// Samples that each pixel has before the error is believed, so that small lights are not missed; at least 2.
+        pub min_samples: u32 = 16,
+        /// Whether samples go where the error is; `None`: only where a noise is to be reached. `samples` is then the most
+        /// that a pixel gets.
+        pub adaptive: Option<bool>,
+        /// Longest path, 1 to 64 bounces.
+        pub bounces: u32 = 64,
+        /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the image,
+        /// and reported. `None`: nothing is taken.
+        pub firefly_clamp: Option<f32>,
+        /// Which random numbers are drawn.
+        pub sequence: Sequence,
+        /// How light is found.
+        pub strategy: Strategy,
+        /// Which light the image shows.
+        pub light_paths: LightPaths,
+        /// Which of the possible images' noise: any number.
+        pub seed: u32,
+        /// How samples are spread over a pixel and its neighbours.
+        pub filter: PixelFilter,
+        /// The part of the image that is rendered: left, top, right, bottom as shares of width and height; `None`: all.
+        pub region: Option<[f64; 4]>,
+        /// What the user decides about effects, against the plan.
+        pub effects: EffectSwitches,
     }
 }
 

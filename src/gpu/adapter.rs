@@ -17,6 +17,13 @@ pub enum AdapterKind {
     Software,
 }
 
+impl AdapterKind {
+    /// The kind of an adapter.
+    pub fn of(is_software: bool) -> Self {
+        if is_software { Self::Software } else { Self::Hardware }
+    }
+}
+
 /// Limits that every pass needs, each within WebGPU's guaranteed ones: the path tracer's six storage buffers, three uniforms
 /// and eleven textures, textures of 4096 texels per row, workgroups of 64.
 fn limits_needed() -> wgpu::Limits {
@@ -69,9 +76,9 @@ pub struct GpuAdapter {
 impl GpuAdapter {
     /// The best adapter of a kind.
     pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
-        let adapters = Self::of_kind(kind).into_iter();
-        adapters
-            .min_by_key(|adapter| rank(&adapter.info))
+        Self::of_kind(kind)
+            .into_iter()
+            .next()
             .ok_or(GpuError::NoAdapter(match kind {
                 AdapterKind::Any => "",
                 AdapterKind::Hardware => "hardware ",
@@ -81,9 +88,7 @@ impl GpuAdapter {
 
     /// All adapters, real GPUs first.
     pub fn all() -> Vec<Self> {
-        let mut adapters = Self::of_kind(AdapterKind::Any);
-        adapters.sort_by_key(|adapter| rank(&adapter.info));
-        adapters
+        Self::of_kind(AdapterKind::Any)
     }
 
     fn of_kind(kind: AdapterKind) -> Vec<Self> {
@@ -94,12 +99,10 @@ impl GpuAdapter {
                 info: adapter.get_info(),
                 adapter,
             });
-            let fits = |adapter: &Self| match kind {
-                AdapterKind::Any => true,
-                AdapterKind::Hardware => !adapter.is_software(),
-                AdapterKind::Software => adapter.is_software(),
-            };
-            found.filter(fits).collect::<Vec<_>>()
+            let fits = |adapter: &Self| [AdapterKind::Any, AdapterKind::of(adapter.is_software())].contains(&kind);
+            let mut found: Vec<_> = found.filter(fits).collect();
+            found.sort_by_key(|adapter| rank(&adapter.info));
+            found
         };
         // OpenGL only as a last resort: searching for it takes time and prints errors if it is missing.
         let adapters = wanted(wgpu::Backends::PRIMARY);

@@ -125,16 +125,8 @@ pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) 
     let texels = (count * size_of::<T>() / texel_bytes::<T>()).max(1);
     let rows = texels.div_ceil(TEXEL_ROW);
     let is_opengl = gpu.info.backend == wgpu::Backend::Gl;
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(what),
-        size: extent(texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), layers(rows, is_opengl)),
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
+    let size = [texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), layers(rows, is_opengl)];
+    let texture = gpu.texture(what, size.map(|side| side as u32), format);
     texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
@@ -163,37 +155,11 @@ pub fn write_texture<T: Pod>(
         while !rest.is_empty() {
             let in_row = TEXEL_ROW - texel % TEXEL_ROW;
             let (line, after) = rest.split_at(rest.len().min(in_row * bytes_each));
-            write_in_row(gpu, texture.texture(), texel, line, bytes_each);
+            let row = texel / TEXEL_ROW;
+            let place = [texel % TEXEL_ROW, row % LAYER_ROWS, row / LAYER_ROWS].map(|place| place as u32);
+            let width = (line.len() / bytes_each) as u32;
+            gpu.write_texture(texture.texture(), place, [width, 1], line);
             (texel, rest) = (texel + line.len() / bytes_each, after);
         }
     })
-}
-
-fn extent(width: usize, height: usize, layers: usize) -> wgpu::Extent3d {
-    wgpu::Extent3d {
-        width: width as u32,
-        height: height as u32,
-        depth_or_array_layers: layers as u32,
-    }
-}
-
-/// Writes texels of one row of an array's texture, the first of them counted through all rows.
-fn write_in_row(gpu: &GpuDevice, texture: &wgpu::Texture, texel: usize, line: &[u8], texel_bytes: usize) {
-    let row = texel / TEXEL_ROW;
-    let origin = wgpu::Origin3d {
-        x: (texel % TEXEL_ROW) as u32,
-        y: (row % LAYER_ROWS) as u32,
-        z: (row / LAYER_ROWS) as u32,
-    };
-    let place = wgpu::TexelCopyTextureInfo {
-        origin,
-        ..texture.as_image_copy()
-    };
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(line.len() as u32),
-        rows_per_image: None,
-    };
-    gpu.queue
-        .write_texture(place, line, layout, extent(line.len() / texel_bytes, 1, 1));
 }

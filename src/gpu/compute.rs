@@ -5,105 +5,91 @@ use super::shader;
 use super::timer::Timer;
 use super::traversal::Traversal;
 
-pub(super) const UNIFORMS: wgpu::BufferBindingType = wgpu::BufferBindingType::Uniform;
-pub(super) const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
-pub(super) const WRITE: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: false };
+/// The path tracer's pass, and its entry point.
+pub const PATH_TRACE: &str = "path_trace";
 
-/// A part of a pipeline, or the driver's objection to its shader.
-pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
-    gpu.checked(GpuError::Shader, make)
+pub const UNIFORMS: wgpu::BindingType = buffer(wgpu::BufferBindingType::Uniform);
+pub const READ: wgpu::BindingType = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+pub const WRITE: wgpu::BindingType = buffer(wgpu::BufferBindingType::Storage { read_only: false });
+
+const fn buffer(ty: wgpu::BufferBindingType) -> wgpu::BindingType {
+    wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
 }
 
-/// The module of `shaders/pass/NAME.wgsl` for rays that go this way, every access checked.
+/// The module of `shaders/pass/NAME.wgsl` for rays that go this way.
 ///
 /// # Errors
 /// [`GpuError::Shader`] with the module and line.
-pub(super) fn module(gpu: &GpuDevice, name: &str, traversal: Traversal) -> Result<wgpu::ShaderModule, GpuError> {
+pub fn module(gpu: &GpuDevice, name: &str, traversal: Traversal) -> Result<wgpu::ShaderModule, GpuError> {
     let linked = shader::link_for(&format!("pass/{name}"), traversal).map_err(GpuError::Shader)?;
-    validated(gpu, |device| {
-        device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(name),
-            source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
-        })
+    let descriptor = wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
+    };
+    gpu.checked(GpuError::Shader, |device| match name {
+        // SAFETY: our own code computes every index from sizes that it uploads itself: hierarchy and triangles from the same
+        // geometry, slots below the number of materials, pixels inside the image. The loops end: paths are bounded by their
+        // bounces and the traversal by its stack. Ray queries start with finite numbers, run until they are done, and are
+        // then read.
+        PATH_TRACE => unsafe {
+            device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+        },
+        _ => device.create_shader_module(descriptor),
     })
 }
 
-/// A buffer's place in a group.
-pub(super) fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    }
-}
-
-/// A texture's place in a group.
-pub(super) fn texture_entry(
-    binding: u32,
+pub const fn texture(
     sample_type: wgpu::TextureSampleType,
     view_dimension: wgpu::TextureViewDimension,
-) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Texture {
-            sample_type,
-            view_dimension,
-            multisampled: false,
-        },
-        count: None,
+) -> wgpu::BindingType {
+    wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension,
+        multisampled: false,
     }
 }
 
-/// A group of buffers.
-pub(super) fn group_layout(
+/// A group of bindings of these kinds.
+pub fn layout(
     gpu: &GpuDevice,
     name: &str,
-    buffers: &[(u32, wgpu::BufferBindingType)],
+    bindings: impl IntoIterator<Item = (u32, wgpu::BindingType)>,
 ) -> wgpu::BindGroupLayout {
-    let entries: Vec<_> = buffers
-        .iter()
-        .map(|(binding, ty)| buffer_entry(*binding, *ty))
-        .collect();
-    layout(gpu, name, &entries)
-}
-
-/// A group of these entries.
-pub(super) fn layout(gpu: &GpuDevice, name: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
+    let entry = |(binding, ty)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    let entries: Vec<_> = bindings.into_iter().map(entry).collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(name),
-        entries,
+        entries: &entries,
     })
 }
 
-pub(super) fn pipeline_layout(
-    gpu: &GpuDevice,
-    name: &str,
-    groups: &[Option<&wgpu::BindGroupLayout>],
-) -> wgpu::PipelineLayout {
+pub fn pipeline_layout(gpu: &GpuDevice, name: &str, groups: [&wgpu::BindGroupLayout; 2]) -> wgpu::PipelineLayout {
     gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(name),
-        bind_group_layouts: groups,
+        bind_group_layouts: &groups.map(Some),
         immediate_size: 0,
     })
 }
 
-/// A compute pipeline of an entry point with constants.
-pub(super) fn pipeline(
+/// A compute pipeline of an entry point with constants, or the driver's objection to its shader.
+pub fn pipeline(
     gpu: &GpuDevice,
-    module: &wgpu::ShaderModule,
-    layout: &wgpu::PipelineLayout,
+    (module, layout): (&wgpu::ShaderModule, &wgpu::PipelineLayout),
     entry_point: &str,
     constants: &[(&str, f64)],
     cache: Option<&wgpu::PipelineCache>,
 ) -> Result<wgpu::ComputePipeline, GpuError> {
     gpu.reach(Moment::Compiling);
-    validated(gpu, |device| {
+    gpu.checked(GpuError::Shader, |device| {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry_point),
             layout: Some(layout),
@@ -119,31 +105,14 @@ pub(super) fn pipeline(
     })
 }
 
-/// Buffers and textures bound to their places.
-pub(super) fn bind_group(
-    gpu: &GpuDevice,
-    layout: &wgpu::BindGroupLayout,
-    buffers: &[(u32, &wgpu::Buffer)],
-    textures: &[(u32, &wgpu::TextureView)],
-) -> wgpu::BindGroup {
-    let buffers = buffers
-        .iter()
-        .map(|(binding, buffer)| (*binding, buffer.as_entire_binding()));
-    let textures = textures
-        .iter()
-        .map(|(binding, view)| (*binding, wgpu::BindingResource::TextureView(view)));
-    bind(gpu, layout, buffers.chain(textures))
-}
-
 /// Resources bound to their places.
-pub(super) fn bind<'a>(
+pub fn bind<'a>(
     gpu: &GpuDevice,
     layout: &wgpu::BindGroupLayout,
-    resources: impl Iterator<Item = (u32, wgpu::BindingResource<'a>)>,
+    resources: impl IntoIterator<Item = (u32, wgpu::BindingResource<'a>)>,
 ) -> wgpu::BindGroup {
-    let entries: Vec<_> = resources
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
+    let entry = |(binding, resource)| wgpu::BindGroupEntry { binding, resource };
+    let entries: Vec<_> = resources.into_iter().map(entry).collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout,
@@ -152,11 +121,11 @@ pub(super) fn bind<'a>(
 }
 
 /// Submits one dispatch, timed if there is a timer.
-pub(super) fn dispatch(
+pub fn dispatch(
     gpu: &GpuDevice,
     pipeline: &wgpu::ComputePipeline,
-    groups: &[&wgpu::BindGroup],
-    workgroups: [u32; 2],
+    groups: [&wgpu::BindGroup; 2],
+    workgroups: u32,
     timer: Option<&Timer>,
 ) {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -167,9 +136,9 @@ pub(super) fn dispatch(
         });
         pass.set_pipeline(pipeline);
         for (index, group) in (0..).zip(groups) {
-            pass.set_bind_group(index, *group, &[]);
+            pass.set_bind_group(index, group, &[]);
         }
-        pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
+        pass.dispatch_workgroups(workgroups, 1, 1);
     }
     if let Some(timer) = timer {
         timer.resolve(&mut encoder);

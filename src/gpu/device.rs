@@ -22,16 +22,8 @@ pub enum GpuError {
     #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the CPU with --engine cpu")]
     Unfit { adapter: String, reason: String },
     /// A resource exceeds the adapter's limit.
-    #[error(
-        "{what} takes {needed_mib} MiB, and the adapter {adapter} takes {allowed_mib} MiB at once. Choose something \
-         smaller, or render on the CPU with --engine cpu"
-    )]
-    TooLarge {
-        what: &'static str,
-        needed_mib: u64,
-        adapter: String,
-        allowed_mib: u64,
-    },
+    #[error("{0} at once. Choose something smaller, or render on the CPU with --engine cpu")]
+    TooLarge(String),
     /// A command that the device refused; the device remains usable.
     #[error("the GPU refused a command: {0}. Choose something smaller, or render on the CPU with --engine cpu")]
     Refused(String),
@@ -92,11 +84,7 @@ struct Failures {
 
 impl GpuDevice {
     /// Wraps an opened device.
-    pub(super) fn new(
-        (device, queue): (wgpu::Device, wgpu::Queue),
-        info: wgpu::AdapterInfo,
-        traversal: Traversal,
-    ) -> Self {
+    pub fn new((device, queue): (wgpu::Device, wgpu::Queue), info: wgpu::AdapterInfo, traversal: Traversal) -> Self {
         let failures = Arc::<Mutex<Failures>>::default();
         let of_commands = failures.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -133,7 +121,7 @@ impl GpuDevice {
     }
 
     /// Notes that a moment has come.
-    pub(super) fn reach(&self, moment: Moment) {
+    pub fn reach(&self, moment: Moment) {
         if self.losing_moment.load(Relaxed) == moment as u8 {
             self.device.destroy();
         }
@@ -150,7 +138,7 @@ impl GpuDevice {
     }
 
     /// The result of `make`, or [`GpuError::Lost`], or the device's objection as a `refusal`.
-    pub(super) fn checked<T>(
+    pub fn checked<T>(
         &self,
         refusal: impl FnOnce(String) -> GpuError,
         make: impl FnOnce(&wgpu::Device) -> T,
@@ -198,11 +186,11 @@ impl GpuDevice {
 
     /// A storage buffer of zeros.
     pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
-        self.buffer_of(what, size, wgpu::BufferUsages::empty())
+        self.storage(what, size, wgpu::BufferUsages::empty())
     }
 
     /// The same with another usage.
-    pub(super) fn buffer_of(
+    pub fn storage(
         &self,
         what: &'static str,
         size: u64,
@@ -210,23 +198,53 @@ impl GpuDevice {
     ) -> Result<wgpu::Buffer, GpuError> {
         let allowed = self.binding_bytes();
         if size > allowed {
-            return Err(GpuError::TooLarge {
-                what,
-                needed_mib: size >> 20,
-                adapter: self.info.name.clone(),
-                allowed_mib: allowed >> 20,
-            });
+            let (needed_mib, allowed_mib) = (size >> 20, allowed >> 20);
+            let takes = format!("the adapter {} takes {allowed_mib} MiB", self.info.name);
+            return Err(GpuError::TooLarge(format!(
+                "{what} takes {needed_mib} MiB, and {takes}"
+            )));
         }
-        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(what),
-            // Bindings must not be empty.
-            size: size.max(64),
-            usage: wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::COPY_DST
-                | wgpu::BufferUsages::COPY_SRC
-                | other_usage,
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        // Bindings must not be empty.
+        Ok(self.buffer(what, size.max(64), usage | other_usage))
+    }
+
+    pub fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
             mapped_at_creation: false,
-        }))
+        })
+    }
+
+    /// A texture to be read by shaders, of this width, height and number of layers.
+    pub fn texture(&self, label: &str, size: [u32; 3], format: wgpu::TextureFormat) -> wgpu::Texture {
+        self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: extent(size),
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        })
+    }
+
+    /// Writes a rectangle of a texture's layer, from column, row and layer `place` on.
+    pub fn write_texture(&self, texture: &wgpu::Texture, [x, y, z]: [u32; 3], [width, height]: [u32; 2], bytes: &[u8]) {
+        let place = wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x, y, z },
+            ..texture.as_image_copy()
+        };
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some((bytes.len() / height as usize) as u32),
+            rows_per_image: None,
+        };
+        self.queue
+            .write_texture(place, bytes, layout, extent([width, height, 1]));
     }
 
     /// A buffer of uniforms.
@@ -235,13 +253,8 @@ impl GpuDevice {
     }
 
     /// A buffer of exactly these bytes. Unlike wgpu's own helper, it does not panic on a lost device.
-    pub(super) fn filled(&self, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: bytes.len() as u64,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+    pub fn filled(&self, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+        let buffer = self.buffer(label, bytes.len() as u64, usage | wgpu::BufferUsages::COPY_DST);
         self.queue.write_buffer(&buffer, 0, bytes);
         buffer
     }
@@ -254,12 +267,8 @@ impl GpuDevice {
     /// The same for a range of the values.
     pub fn read_part<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
         let [first, size] = [part.start, part.len()].map(|count| (count * size_of::<A>()) as u64);
-        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("read back"),
-            size,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let staging = self.buffer("read back", size, usage);
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, first, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
@@ -274,12 +283,20 @@ impl GpuDevice {
     }
 }
 
+fn extent([width, height, depth_or_array_layers]: [u32; 3]) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers,
+    }
+}
+
 /// Whether an adapter is software, which runs on the CPU.
-pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
+pub fn is_software(info: &wgpu::AdapterInfo) -> bool {
     info.device_type == wgpu::DeviceType::Cpu
 }
 
 /// A driver with its version.
-pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
+pub fn driver(info: &wgpu::AdapterInfo) -> String {
     format!("{} {}", info.driver, info.driver_info).trim().to_owned()
 }

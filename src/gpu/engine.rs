@@ -5,29 +5,35 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::budget::{Budget, DISPATCH, DISPATCH_SOFTWARE};
-use super::compute;
+use super::compute::{self, PATH_TRACE};
 use super::device::{GpuDevice, GpuError};
+use super::kernel_cache::KernelCache;
 use super::layout::{PixelColors, PixelStatistics, Tile};
-use super::pipeline::Pipelines;
+use super::pipeline::ScenePass;
 use super::resources::Resources;
 use super::scene_group::SceneForm;
-use super::sums::{Band, DISPATCH_TILES};
+use super::sums::{self, Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
 use crate::job::film::{Film, HalfSums, LightSums, luminance};
 use crate::job::guides::GuideSums;
+use crate::job::plan::Specialisation;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
+use crate::parallel;
 
 /// Samples per pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 pub const FLUSH_SAMPLES: u32 = 1024;
 /// Pixels per read by the host, to bound its memory.
 const READ_PIXELS: usize = 1 << 19;
 
+/// The path tracer, with a pipeline for the constants of each plan and the storage of each scene.
+pub type PathTracer = ScenePass<(Specialisation, SceneForm)>;
+
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
-    pipelines: Pipelines,
+    pass: PathTracer,
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
@@ -47,12 +53,13 @@ pub struct GpuEngine {
 impl GpuEngine {
     /// An engine on an open device.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let pipelines = Pipelines::new(&gpu)?;
+        let mut pass = PathTracer::new(PATH_TRACE, sums::layout(&gpu), KernelCache::open(&gpu));
+        pass.link(&gpu, gpu.traversal)?;
         let longest = if gpu.is_software() { DISPATCH_SOFTWARE } else { DISPATCH };
         Ok(Self {
             timer: Timer::new(&gpu),
             gpu,
-            pipelines,
+            pass,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
@@ -75,10 +82,10 @@ impl GpuEngine {
         let first_sample = job.settings.first_sample;
         let old = self.resources.as_ref();
         let form = SceneForm::of(&self.gpu, &job);
-        self.pipelines.link(&self.gpu, form.geometry.traversal())?;
-        let resources = Resources::new(&self.gpu, &self.pipelines, job.clone(), old)?;
+        self.pass.link(&self.gpu, form.geometry.traversal())?;
+        let resources = Resources::new(&self.gpu, &self.pass, job.clone(), old)?;
         self.budget = match old {
-            Some(old) if old.job().plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
+            Some(old) if old.job.plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
             _ => self.budget.of_another_kernel(),
         };
         resources.sums.clear(&self.gpu);
@@ -86,7 +93,7 @@ impl GpuEngine {
         // The old film goes first: two would take twice the memory.
         self.film = Film::default();
         self.film = Film::of(&job);
-        self.schedule = Schedule::starting_at(width, height, first_sample);
+        self.schedule = Schedule::new(width, height, first_sample);
         self.in_film = Some(self.schedule.clone());
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
@@ -94,8 +101,8 @@ impl GpuEngine {
 
     /// Whether the kernel is ready that a job needs.
     pub fn has_kernel(&self, job: &Job) -> bool {
-        let form = SceneForm::of(&self.gpu, job);
-        self.pipelines.has(&(job.plan.specialisation(), form))
+        self.pass
+            .has(&(job.plan.specialisation(), SceneForm::of(&self.gpu, job)))
     }
 
     /// Compiles the kernel of a job's plan, with an empty dispatch, because some drivers compile at the first one. Takes
@@ -162,7 +169,7 @@ impl GpuEngine {
         let until_flush = FLUSH_SAMPLES - self.unflushed;
         match &self.resources {
             Some(resources) if self.gpu.is_software() => {
-                until_flush.min(Budget::most_pass_samples(resources.job().settings.bounces))
+                until_flush.min(Budget::most_pass_samples(resources.job.settings.bounces))
             }
             _ => until_flush,
         }
@@ -194,21 +201,19 @@ impl GpuEngine {
         let Some(resources) = &self.resources else {
             return Ok(());
         };
-        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan, resources.form())?;
+        let (plan, form) = (&resources.job.plan, resources.form);
+        let kernel = (plan.specialisation(), form);
+        let pipeline = self.pass.get(&self.gpu, kernel, PATH_TRACE, form, plan.constants())?;
         self.is_flushed = false;
         for (number, band) in (0..).zip(resources.sums.bands()) {
-            let of_band: Vec<Tile> = tiles
-                .iter()
-                .filter(|tile| resources.sums.band_of(tile) == number)
-                .copied()
-                .collect();
+            let mut of_band = tiles.to_vec();
+            of_band.retain(|tile| resources.sums.band_of(tile) == number);
             if of_band.is_empty() {
                 continue;
             }
             resources.sums.list(&self.gpu, &of_band);
             let groups = [&resources.scene_group, &band.group];
-            let workgroups = [of_band.len() as u32, 1];
-            compute::dispatch(&self.gpu, pipeline, &groups, workgroups, self.timer.as_ref());
+            compute::dispatch(&self.gpu, &pipeline, groups, of_band.len() as u32, self.timer.as_ref());
             self.gpu.wait()?;
             if let Some(timer) = &self.timer {
                 self.gpu_seconds += timer.seconds()?;
@@ -273,20 +278,15 @@ fn merge_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>)
     }
     if film.extras().guides {
         let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
-        for (sums, seen) in film.guides[first..]
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(guides.as_flattened())
-        {
-            sums.add(seen);
-        }
+        let sums = film.guides[first..].as_flattened_mut().iter_mut();
+        sums.zip(guides.as_flattened()).for_each(|(sums, seen)| sums.add(seen));
     }
     Ok(())
 }
 
 /// A group's light in the even and the odd samples of a pixel.
 fn light_sums(colors: &PixelColors) -> LightSums {
-    let odd: [f64; 3] = std::array::from_fn(|channel| f64::from(colors.odd[channel]));
+    let odd = std::array::from_fn(|channel| f64::from(colors.odd[channel]));
     [
         std::array::from_fn(|channel| f64::from(colors.all[channel]) - odd[channel]),
         odd,
@@ -295,7 +295,10 @@ fn light_sums(colors: &PixelColors) -> LightSums {
 
 /// Merges the GPU's sums of consecutive pixels into the film, from pixel `first` on.
 pub fn merge_sums(film: &mut Film, first: usize, colors: &[PixelColors], statistics: &[PixelStatistics]) {
-    film.add_halves(first, colors.len(), |place| halves(&colors[place], &statistics[place]));
+    parallel::for_rows(&mut film.pixels[first..][..colors.len()], 1, |place, kept| {
+        let [even, odd] = halves(&colors[place], &statistics[place]);
+        kept[0] = [kept[0][0].with(&even), kept[0][1].with(&odd)];
+    });
     let grid = film.grid();
     for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(statistics)) {
         film.add_coverage(pixel, f64::from(colors.all[3]));
@@ -310,17 +313,13 @@ pub fn merge_sums(film: &mut Film, first: usize, colors: &[PixelColors], statist
 
 /// The halves of a pixel's samples, from the GPU's sums over all and over the odd ones.
 fn halves(colors: &PixelColors, statistics: &PixelStatistics) -> [HalfSums; 2] {
-    let [red, green, blue, _] = colors.all.map(f64::from);
-    let [luminance_squared, odd_luminance_squared] = statistics.luminance_squared.map(f64::from);
-    let kept = f64::from(statistics.kept_dropped[0]);
-    let [odd_red, odd_green, odd_blue, odd_kept] = colors.odd.map(f64::from);
-    let odd = half([odd_red, odd_green, odd_blue], odd_luminance_squared, odd_kept);
-    let even = half(
-        [red - odd_red, green - odd_green, blue - odd_blue],
-        luminance_squared - odd_luminance_squared,
-        kept - odd_kept,
-    );
-    [even, odd]
+    let [even, odd] = light_sums(colors);
+    let [squared, odd_squared] = statistics.luminance_squared.map(f64::from);
+    let [kept, odd_kept] = [statistics.kept_dropped[0], colors.odd[3]].map(f64::from);
+    [
+        half(even, squared - odd_squared, kept - odd_kept),
+        half(odd, odd_squared, odd_kept),
+    ]
 }
 
 /// Converts a half's raw moments to central ones. Rounding may make the deviations negative; that cancels in the mean.

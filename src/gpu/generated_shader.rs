@@ -1,21 +1,50 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
 use super::array::TEXEL_ROW_BITS;
-use super::layout::{BACKGROUNDS, TILE_COLUMNS};
-use super::material_array::FEW_MATERIALS;
+use super::layout::{BACKGROUNDS, Globals, PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
+use super::scatter::Scatter;
+use super::scene_group::FEW_MATERIALS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
 use crate::job::guides::GUIDE_SAMPLES;
 use crate::job::light_sums::{ENVIRONMENT_GROUP, LIGHT_GROUPS_MAX};
+use crate::job::probe::{
+    DrawAnswer, DrawQuestion, FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, RandomQuestion, RayAnswer,
+    RayQuestion,
+};
+use crate::job::tiles::TILE_SIDE;
 use crate::named::Named;
-use crate::optics::curve::Curve;
+use crate::optics::albedo::{ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, TOTAL_NODES};
+use crate::optics::chord::{
+    GAUSS_6, GAUSS_12, GAUSS_20, PEAK_RADIUS, RANGE_MAX, SHORT_RANGE, SHORT_RULE_ROUGHNESS, TINY,
+};
+use crate::optics::coat_medium::{COLOR_MIN, WAY_COSINE_MIN};
+use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
-use crate::optics::material::{FIELDS, Field};
+use crate::optics::layer::Layer;
+use crate::optics::layer::base::BASE_EDGE;
+use crate::optics::layer::coat::INNER_MAX;
+use crate::optics::layer::fuzz::FUZZ_ROUGHNESS_MIN;
+use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeTraits, MIRROR_WIDTH, Width};
+use crate::optics::material::{
+    COAT_ABSORBS, COAT_IS_GGX, COATS_BASE, COMPENSATES, FIELDS, Field, HAS_BOX, HAS_PROFILE, LIGHT_GROUP_SHIFT,
+    MATCHED_NODES, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, WEIGHS_INDEX,
+};
 use crate::optics::random::Sequence;
+use crate::optics::rough_diffuse::{HEAD_ON, MEAN, ROUGH_COSINE_MIN};
 use crate::optics::target::TextureTarget;
-use crate::scene::camera::PixelFilter;
+use crate::optics::thin_film::{FILM_TINY, LARGEST_FILM_F0, LEAST_FILM_COSINE};
+use crate::scene::camera::{GAUSSIAN_SIGMA, LENS_DIMENSION, PIXEL_DIMENSION, PixelFilter};
 use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
+use crate::scene::inversion::DRAW_BITS;
+use crate::scene::light::COSINE_MIN;
+use crate::scene::light_profile::PROFILE_AXES_LENGTH;
+use crate::scene::medium::NO_MEDIUM;
+use crate::scene::surface::{MIRROR_HEIGHT_MIN, POSITION_ERROR, VIEW_COSINE_MIN};
+use crate::scene::texture::{
+    CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_CLAMP, WRAP_MIRRORED,
+    WRAP_REPEAT, WRAP_SHIFT,
+};
 
 /// A generated module: its name for `#import`, and its generator.
 pub type Generated = (&'static str, fn() -> String);
@@ -27,7 +56,10 @@ pub const GENERATED: &[Generated] = &[
     ("optics/choices", optics_choices),
     ("scene/material", material_structure),
     ("scene/choices", scene_choices),
+    ("scene/constants", constants),
+    ("scene/structures", structures),
     ("pass/light_groups", light_groups),
+    ("pass/probe_entries", probe_entries),
     ("scene/plan_constants", plan_constants),
 ];
 
@@ -67,12 +99,77 @@ fn material_structure() -> String {
         format!("    {}: {of_type},\n", field.name)
     };
     let fields: String = FIELDS.iter().map(field).collect();
-    format!("// Generated from src/optics/material.rs.\nstruct Material {{\n{fields}}}\n")
+    let texture = |target: TextureTarget| format!("material.{}_texture", target.name().replace('-', "_"));
+    let texture = dispatch(
+        "material_texture(material: Material, kind: u32) -> u32",
+        "kind",
+        &cases(texture),
+        &format!("{NO_TEXTURE}u"),
+    );
+    let kinds = choices::<TextureTarget>("TEXTURE");
+    format!("// Generated from src/optics/material.rs.\nstruct Material {{\n{fields}}}\n{kinds}{texture}")
+}
+
+/// Constants by their names in Rust.
+macro_rules! by_name {
+    ($type:ty: $($name:ident)*) => {
+        [$((stringify!($name), $name as $type)),*]
+    };
+}
+
+/// The constants that Rust and the shaders share.
+fn constants() -> String {
+    let whole = by_name! { u32:
+        ALBEDO_NODES TOTAL_NODES ROUGHNESS_NODES ROUGH_ALBEDO_LENGTH CUSTOM_INTERVALS MATCHED_NODES NO_TEXTURE VERTEX_BASE VERTEX_EMISSION VERTEX_OPACITY SPARES_METAL COMPENSATES HAS_BOX WEIGHS_INDEX HAS_PROFILE COATS_BASE COAT_ABSORBS COAT_IS_GGX LIGHT_GROUP_SHIFT WRAP_REPEAT WRAP_MIRRORED WRAP_CLAMP IS_SRGB IS_NEAREST IS_SECOND_SET IS_FINE IS_BOX TURNS_NORMALS CHANNEL_SHIFT WRAP_SHIFT PIXEL_DIMENSION LENS_DIMENSION DRAW_BITS NO_MEDIUM PROFILE_AXES_LENGTH TILE_SIDE
+    };
+    let real = by_name! { f64:
+        ALPHA_MIN MIRROR_WIDTH BASE_EDGE INNER_MAX FUZZ_ROUGHNESS_MIN HEAD_ON MEAN ROUGH_COSINE_MIN LARGEST_FILM_F0 LEAST_FILM_COSINE FILM_TINY COLOR_MIN WAY_COSINE_MIN SHORT_RULE_ROUGHNESS SHORT_RANGE PEAK_RADIUS TINY GAUSSIAN_SIGMA COSINE_MIN POSITION_ERROR MIRROR_HEIGHT_MIN VIEW_COSINE_MIN
+    };
+    let mut text = choices::<Layer>("LAYER");
+    text.extend(whole.map(|(name, value)| format!("const {name}: u32 = {value}u;\n")));
+    text.extend(real.map(|(name, value)| format!("const {name}: f32 = {value:?}f;\n")));
+    let vector = |[a, b]: [f64; 2]| format!("vec2f({a:?}, {b:?})");
+    let nodes = [GAUSS_6.as_slice(), &GAUSS_12, &GAUSS_20].concat();
+    let count = nodes.len();
+    let nodes = nodes.into_iter().map(vector).collect::<Vec<_>>().join(", ");
+    text += &format!("const GAUSS: array<vec2f, {count}> = array<vec2f, {count}>({nodes});\n");
+    text + &format!("const RANGE_MAX: vec2f = {};\n", vector(RANGE_MAX))
+}
+
+/// The structures of `gpu::layout` and the uniforms of the scatter pass.
+fn structures() -> String {
+    let structure = |name: &str, members: &[(&str, &str)]| {
+        let member = |(name, of_type): &(&str, &str)| {
+            let of_type = match *of_type {
+                "[u32; 2]" => "vec2u",
+                "[f32; 2]" => "vec2f",
+                "[f32; 3]" | "Vec3<f32>" => "vec3f",
+                "[f32; 4]" => "vec4f",
+                "Camera<f32>" => "Camera",
+                same => same,
+            };
+            format!("    {name}: {of_type},\n")
+        };
+        format!(
+            "struct {name} {{\n{}}}\n",
+            members.iter().map(member).collect::<String>()
+        )
+    };
+    [
+        "// Generated from src/gpu/layout.rs and src/gpu/scatter.rs.\n#import \"scene/camera\"\n".to_owned(),
+        structure("Globals", Globals::MEMBERS),
+        structure("Tile", Tile::MEMBERS),
+        structure("PixelColors", PixelColors::MEMBERS),
+        structure("PixelStatistics", PixelStatistics::MEMBERS),
+        structure("Scatter", Scatter::MEMBERS),
+    ]
+    .concat()
 }
 
 /// The choices of camera, background and light sampling, and how arrays lie in textures.
 fn scene_choices() -> String {
-    let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
+    let background = |(number, name)| format!("const BACKGROUND_{name}: u32 = {number}u;\n");
+    let backgrounds: String = BACKGROUNDS.iter().enumerate().map(background).collect();
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
          const ENVIRONMENT_GROUP: u32 = {ENVIRONMENT_GROUP}u;\n\
@@ -82,7 +179,7 @@ fn scene_choices() -> String {
          const CATCHER_REFLECTANCE: f32 = {CATCHER_REFLECTANCE:?};\n",
         choices::<Strategy>("STRATEGY"),
         choices::<PixelFilter>("FILTER"),
-        backgrounds.concat(),
+        backgrounds,
     )
 }
 
@@ -92,8 +189,8 @@ fn light_groups() -> String {
     let each = |line: fn(usize) -> String| (0..LIGHT_GROUPS_MAX).map(line).collect::<String>();
     format!(
         "// Generated from src/job/light_sums.rs.\n#import \"scene/plan\"\n{}\
-         fn add_to_group(group: u32, light: vec3f) {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
-         fn clear_groups() {{\n    if PLAN_LIGHT_GROUPS == 1u {{\n{}    }}\n}}\n\
+         fn add_to_group(group: u32, light: vec3f) {{\n    if PLAN_LIGHT_GROUPS {{\n{}    }}\n}}\n\
+         fn clear_groups() {{\n    if PLAN_LIGHT_GROUPS {{\n{}    }}\n}}\n\
          fn group_light(group: u32) -> vec3f {{\n    switch group {{\n{}        default: {{ return vec3f(0.0); }}\n    }}\n}}\n",
         each(|i| format!("var<private> group_light_{i}: vec3f;\n")),
         each(|i| format!("        group_light_{i} += select(vec3f(0.0), light, group == {i}u);\n")),
@@ -102,13 +199,56 @@ fn light_groups() -> String {
     )
 }
 
+/// An entry point for each kind of question, whose answers are by functions of `pass/probe`.
+fn probe_entries() -> String {
+    let entry = |(kind, question, answer): (&str, usize, usize)| {
+        let [question, answer] = [question, answer].map(|size| size / 4);
+        format!(
+            "@compute @workgroup_size(64)\nfn probe_{kind}(@builtin(global_invocation_id) id: vec3u) {{\n\
+             \x20   if id.x < arrayLength(&questions) / {question}u {{\n\
+             \x20       answer_{kind}(id.x * {question}u, id.x * {answer}u);\n    }}\n}}\n"
+        )
+    };
+    let kinds = [
+        ("lobe", size_of::<LobeQuestion>(), size_of::<LobeAnswer>()),
+        ("fresnel", size_of::<FresnelQuestion>(), size_of::<f32>()),
+        ("random", size_of::<RandomQuestion>(), size_of::<[u32; 2]>()),
+        ("material", size_of::<MaterialQuestion>(), size_of::<[f32; 3]>()),
+        ("density", size_of::<MaterialQuestion>(), size_of::<f32>()),
+        ("draw", size_of::<DrawQuestion>(), size_of::<DrawAnswer>()),
+        ("ray", size_of::<RayQuestion>(), size_of::<RayAnswer>()),
+    ];
+    "// Generated from src/job/probe.rs.\n#import \"pass/probe\"\n".to_owned() + &kinds.map(entry).concat()
+}
+
 /// The plan's override constants, each with the default of the über-shader.
 fn plan_constants() -> String {
     let mut text = format!("// Generated from src/job/effect.rs.\nconst ANY: u32 = {ANY}u;\n");
     for constant in EffectId::ALL.iter().filter_map(|effect| effect.constant()) {
-        text += &format!("override {}: u32 = {}u;\n", constant.name, constant.general);
+        text += &match constant.general {
+            ANY => format!("override {}: u32 = ANY;\n", constant.name),
+            general => format!("override {}: bool = {};\n", constant.name, general == 1),
+        };
     }
-    text
+    let layer = |layer: &Layer| format!(" + (u32(PLAN_{}) << {}u)", layer.name().to_uppercase(), *layer as u32);
+    let layers: String = Layer::ALL.iter().map(layer).collect();
+    text += &format!("// As bits.\nfn planned_layers() -> u32 {{\n    return 0u{layers};\n}}\n");
+    let textures = [
+        ("COLOR", [TextureTarget::BaseColor].as_slice()),
+        ("ROUGHNESS", &[TextureTarget::Roughness, TextureTarget::Metalness]),
+        ("EMISSION", &[TextureTarget::Emission]),
+        ("COAT", TextureTarget::OF_COAT),
+        ("FILM", TextureTarget::OF_FILM),
+        ("FUZZ", TextureTarget::OF_FUZZ),
+    ];
+    let textures = textures.map(|(effect, targets)| {
+        let bits = targets.iter().fold(0, |bits, target| bits | 1_u32 << *target as u32);
+        format!(" + u32(PLAN_{effect}_TEXTURES) * {bits}u")
+    });
+    let textures = textures.concat();
+    text + &format!(
+        "// As bits: those whose values a material is multiplied by.\nfn planned_textures() -> u32 {{\n    return 0u{textures};\n}}\n"
+    )
 }
 
 /// A function that chooses among numbered cases; the number is called `switch`.
@@ -153,14 +293,26 @@ fn lobe_registry() -> String {
     let mut of_lobe = |signature: &str, value: &dyn Fn(LobeTraits) -> String, otherwise: &str| {
         text += &dispatch(signature, "lobe", &cases(|lobe: Lobe| value(lobe.traits())), otherwise);
     };
-    let hemispherical = |traits: LobeTraits| traits.is_hemispherical.to_string();
-    of_lobe("is_hemispherical(lobe: u32) -> bool", &hemispherical, "true");
-    let anisotropic = |traits: LobeTraits| traits.is_anisotropic.to_string();
-    of_lobe("is_anisotropic(lobe: u32) -> bool", &anisotropic, "false");
-    let weighs_one = |traits: LobeTraits| traits.weighs_one.to_string();
-    of_lobe("weighs_one(lobe: u32) -> bool", &weighs_one, "false");
-    let facets = |traits: LobeTraits| format!("{}u", traits.facets as u32);
-    of_lobe("facets(lobe: u32) -> u32", &facets, "0u");
+    of_lobe(
+        "is_hemispherical(lobe: u32) -> bool",
+        &|traits| traits.is_hemispherical.to_string(),
+        "true",
+    );
+    of_lobe(
+        "is_anisotropic(lobe: u32) -> bool",
+        &|traits| traits.is_anisotropic.to_string(),
+        "false",
+    );
+    of_lobe(
+        "weighs_one(lobe: u32) -> bool",
+        &|traits| traits.weighs_one.to_string(),
+        "false",
+    );
+    of_lobe(
+        "facets(lobe: u32) -> u32",
+        &|traits| format!("{}u", traits.facets as u32),
+        "0u",
+    );
     let width = |traits: LobeTraits| match traits.width {
         Width::Fixed => "1.0".to_owned(),
         Width::Roughness => "roughness".to_owned(),
@@ -195,22 +347,30 @@ fn curve_registry() -> String {
     let mut of_curve = |signature: &str, value: &dyn Fn(Curve) -> String, otherwise: &str| {
         text += &dispatch(signature, "curve", &cases(value), otherwise);
     };
-    let distance = |curve: Curve| format!("{}_distance(table, xi)", curve.module());
     of_curve(
         "curve_distance(curve: u32, table: u32, xi: f32) -> f32",
-        &distance,
+        &|curve| format!("{}_distance(table, xi)", curve.module()),
         "xi",
     );
-    let distance_max = |curve: Curve| format!("{}_distance_max(table)", curve.module());
+    let distance_max = |curve: Curve| match curve.traits().reach {
+        Some(reach) => format!("{reach:?}"),
+        None => format!("{}_distance_max(table)", curve.module()),
+    };
     of_curve(
         "curve_distance_max(curve: u32, table: u32) -> f32",
         &distance_max,
         "1.0",
     );
-    let h = |curve: Curve| format!("{}_h(table, distance)", curve.module());
-    of_curve("curve_h(curve: u32, table: u32, distance: f32) -> f32", &h, "0.0");
-    let integral = |curve: Curve| format!("{}u", curve.traits().integral.in_shaders().0);
-    of_curve("curve_integral(curve: u32) -> u32", &integral, "0u");
+    of_curve(
+        "curve_h(curve: u32, table: u32, distance: f32) -> f32",
+        &|curve| format!("{}_h(table, distance)", curve.module()),
+        "0.0",
+    );
+    of_curve(
+        "curve_integral(curve: u32) -> u32",
+        &|curve| format!("{}u", curve.traits().integral.in_shaders().0),
+        "0u",
+    );
     let polynomial = |curve: Curve| {
         let [a, b, c] = curve.traits().integral.polynomial();
         format!("vec3f({a:?}, {b:?}, {c:?})")

@@ -62,12 +62,15 @@ impl Form {
 /// once per bounce, are always in textures.
 #[derive(Clone, Debug)]
 pub struct GeometryArrays {
-    buffers: [wgpu::Buffer; 2],
-    textures: [wgpu::TextureView; 2],
-    vertices: wgpu::TextureView,
-    slots: wgpu::TextureView,
-    form: Form,
-    structures: Option<Structures>,
+    /// Nodes and triangles.
+    pub buffers: [wgpu::Buffer; 2],
+    /// The same.
+    pub textures: [wgpu::TextureView; 2],
+    pub vertices: wgpu::TextureView,
+    pub slots: wgpu::TextureView,
+    pub form: Form,
+    /// The adapter's, if used.
+    pub structures: Option<Structures>,
     /// Triangles around the model that there is room for.
     room: usize,
 }
@@ -114,13 +117,13 @@ impl GeometryArrays {
             };
             arrays.buffers = [
                 gpu.empty_storage(names[0], bytes[0])?,
-                gpu.buffer_of(names[1], bytes[1], built_over)?,
+                gpu.storage(names[1], bytes[1], built_over)?,
             ];
         }
         arrays.write(gpu, model, Counts::default())?;
         arrays.write_around(gpu, geometry)?;
         if arrays.form == Form::Structures {
-            arrays.structures = Some(Structures::new(gpu, geometry, &arrays.buffers[1]));
+            arrays.structures = Some(Structures::new(gpu, geometry, &arrays.buffers[1], None));
         }
         Ok(arrays)
     }
@@ -130,7 +133,7 @@ impl GeometryArrays {
         self.write_around(gpu, geometry)?;
         let structures = self.structures.as_ref();
         Ok(Self {
-            structures: structures.map(|old| old.with_around(gpu, geometry, &self.buffers[1])),
+            structures: structures.map(|old| Structures::new(gpu, geometry, &self.buffers[1], Some(old))),
             ..self.clone()
         })
     }
@@ -163,27 +166,6 @@ impl GeometryArrays {
             array::write_buffer(gpu, &self.buffers[0], before.nodes, &nodes)?;
             array::write_buffer(gpu, &self.buffers[1], before.triangles, &triangles)
         }
-    }
-
-    /// Buffers of nodes and triangles.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
-        self.buffers.each_ref()
-    }
-
-    /// Nodes, triangles, vertices, and the triangles' material slots.
-    pub fn textures(&self) -> [&wgpu::TextureView; 4] {
-        let [nodes, triangles] = &self.textures;
-        [nodes, triangles, &self.vertices, &self.slots]
-    }
-
-    /// The adapter's acceleration structure, if used.
-    pub fn structure(&self) -> Option<&wgpu::Tlas> {
-        self.structures.as_ref().map(Structures::whole)
-    }
-
-    /// Storage of the geometry.
-    pub fn form(&self) -> Form {
-        self.form
     }
 }
 

@@ -8,16 +8,16 @@ use super::traversal::Traversal;
 
 /// The driver's cache of a device, and the file that it is kept in.
 #[derive(Debug)]
-pub(super) struct KernelCache {
-    cache: wgpu::PipelineCache,
+pub struct KernelCache {
+    pub cache: wgpu::PipelineCache,
     path: PathBuf,
 }
 
 impl KernelCache {
     /// Opens the cache in the user's cache folder. `None` if the driver or the system has none. Software Vulkan compiles
     /// later and has its own cache.
-    pub(super) fn open(gpu: &GpuDevice) -> Option<Self> {
-        if gpu.is_software() {
+    pub fn open(gpu: &GpuDevice) -> Option<Self> {
+        if gpu.is_software() || !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
             return None;
         }
         let folders = directories::ProjectDirs::from("", "", "glossmith")?;
@@ -27,14 +27,7 @@ impl KernelCache {
             Traversal::Own => "kernels",
             Traversal::RayQueries => "ray-query.kernels",
         };
-        Self::at(gpu, folders.cache_dir().join(format!("{key}.{ending}")))
-    }
-
-    /// Reads the cache from a file; `None` if the driver has no cache.
-    fn at(gpu: &GpuDevice, path: PathBuf) -> Option<Self> {
-        if !gpu.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
-            return None;
-        }
+        let path = folders.cache_dir().join(format!("{key}.{ending}"));
         let data = std::fs::read(&path).ok();
         let descriptor = wgpu::PipelineCacheDescriptor {
             label: Some("kernels"),
@@ -46,13 +39,8 @@ impl KernelCache {
         Some(Self { cache, path })
     }
 
-    /// For the making of a pipeline.
-    pub(super) fn cache(&self) -> &wgpu::PipelineCache {
-        &self.cache
-    }
-
     /// Saves the compiled kernels. If that fails, the next start compiles again.
-    pub(super) fn save(&self) {
+    pub fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
         if let Err(error) = replace(&self.path, &data) {
             log::debug!("{}: compiled kernels could not be kept: {error}", self.path.display());

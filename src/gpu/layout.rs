@@ -1,123 +1,110 @@
 //! The structures that the GPU reads, byte for byte as in `shaders/scene/layout.wgsl` and `shaders/pass/path_trace.wgsl`; a
 //! test compares the two.
 
-use bytemuck::{Pod, Zeroable};
-
-use crate::job::{BackgroundKind, Settings};
+use crate::job::{BackgroundKind, Settings, plain};
 use crate::scene::camera::Camera;
 use crate::scene::medium::NO_MEDIUM;
 use crate::scene::{Geometry, Part};
 
-const BACKGROUND_ENVIRONMENT: u32 = 0;
-const BACKGROUND_TRANSPARENT: u32 = 1;
-const BACKGROUND_COLOR: u32 = 2;
-const BACKGROUND_BLURRED: u32 = 3;
-
 /// Tiles in a row of the texture that lists them.
 pub const TILE_COLUMNS: u32 = 256;
 
-/// The kinds of background by their names in WGSL, with the numbers that the shaders know them by.
-pub(super) const BACKGROUNDS: [(&str, u32); 4] = [
-    ("ENVIRONMENT", BACKGROUND_ENVIRONMENT),
-    ("TRANSPARENT", BACKGROUND_TRANSPARENT),
-    ("COLOR", BACKGROUND_COLOR),
-    ("BLURRED", BACKGROUND_BLURRED),
-];
+/// The kinds of background by their names in WGSL; the shaders know them by their places here.
+pub const BACKGROUNDS: [&str; 4] = ["ENVIRONMENT", "TRANSPARENT", "COLOR", "BLURRED"];
 
-/// The uniforms of a job.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub struct Globals {
-    /// See [`Camera`].
-    pub camera: Camera<f32>,
-    /// Width and height in pixels.
-    pub image_size: [u32; 2],
-    /// Reflections a path may have.
-    pub bounces: u32,
-    pub sequence: u32,
-    /// Linear background colour; for a blurred environment (sine of the blur angle, 0, 0).
-    pub background: [f32; 3],
-    /// 0 environment, 1 transparent, 2 colour, 3 environment blurred.
-    pub background_kind: u32,
-    /// Cosine and sine of the rotation.
-    pub environment_rotation: [f32; 2],
-    /// Columns and rows of the environment's cells.
-    pub environment_cells_size: [u32; 2],
-    /// Factor of the environment's radiance.
-    pub environment_strength: f32,
-    pub strategy: u32,
-    /// Changes all random numbers.
-    pub seed: u32,
-    /// Number of nodes; 0 for an empty scene.
-    pub node_count: u32,
-    /// Columns and rows of the table of emitting triangles.
-    pub light_cells_size: [u32; 2],
-    /// Probability that the environment is sampled, not an emitting triangle.
-    pub environment_probability: f32,
-    /// Density per area of the emitting triangles over the luminance of their emission.
-    pub density_per_luminance: f32,
-    /// The largest radiance of an indirect contribution.
-    pub firefly_clamp: f32,
-    /// Slot of the shadow catcher; no material's without one.
-    pub catcher_slot: u32,
-    /// Slot of the catcher's reflection; no material's without a catcher.
-    pub catcher_reflection_slot: u32,
-    /// Start of the catcher's table.
-    pub catcher_table: u32,
-    /// Light that was reflected less often does not count.
-    pub least_reflections: u32,
-    /// First node of the surroundings' hierarchy; 0 without one.
-    pub around_root: u32,
-    /// First triangle of the surroundings.
-    pub around_triangle: u32,
-    /// Slot of the medium around the camera, or [`NO_MEDIUM`].
-    pub camera_medium: u32,
-    /// See [`Settings::first_hidden_slot`].
-    pub first_hidden_slot: u32,
-    /// See [`Settings::light_groups`].
-    pub light_groups: u32,
-    /// 1: coarse triangles are rounded according to their normals.
-    pub rounds_surfaces: u32,
-    /// Early roulette is played below this throughput alone.
-    pub roulette_floor: f32,
+plain! {
+    /// The uniforms of a job.
+    struct Globals {
+        /// See [`Camera`].
+        camera: Camera<f32>,
+        /// Width and height in pixels.
+        image_size: [u32; 2],
+        /// Reflections a path may have.
+        bounces: u32,
+        sequence: u32,
+        /// Linear background colour; for a blurred environment (sine of the blur angle, 0, 0).
+        background: [f32; 3],
+        /// 0 environment, 1 transparent, 2 colour, 3 environment blurred.
+        background_kind: u32,
+        /// Cosine and sine of the rotation.
+        environment_rotation: [f32; 2],
+        /// Columns and rows of the environment's cells.
+        environment_cells_size: [u32; 2],
+        /// Factor of the environment's radiance.
+        environment_strength: f32,
+        strategy: u32,
+        /// Changes all random numbers.
+        seed: u32,
+        /// Number of nodes; 0 for an empty scene.
+        node_count: u32,
+        /// Columns and rows of the table of emitting triangles.
+        light_cells_size: [u32; 2],
+        /// Probability that the environment is sampled, not an emitting triangle.
+        environment_probability: f32,
+        /// Density per area of the emitting triangles over the luminance of their emission.
+        density_per_luminance: f32,
+        /// The largest radiance of an indirect contribution.
+        firefly_clamp: f32,
+        /// Slot of the shadow catcher; no material's without one.
+        catcher_slot: u32,
+        /// Slot of the catcher's reflection; no material's without a catcher.
+        catcher_reflection_slot: u32,
+        /// Start of the catcher's table.
+        catcher_table: u32,
+        /// Light that was reflected less often does not count.
+        least_reflections: u32,
+        /// First node of the surroundings' hierarchy; 0 without one.
+        around_root: u32,
+        /// First triangle of the surroundings.
+        around_triangle: u32,
+        /// Slot of the medium around the camera, or [`NO_MEDIUM`].
+        camera_medium: u32,
+        /// See [`Settings::first_hidden_slot`].
+        first_hidden_slot: u32,
+        /// See [`Settings::light_groups`].
+        light_groups: u32,
+        /// 1: coarse triangles are rounded according to their normals.
+        rounds_surfaces: u32,
+        /// Early roulette is played below this throughput alone.
+        roulette_floor: f32,
+    }
 }
 
-/// A tile of a dispatch.
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
-#[repr(C)]
-pub struct Tile {
-    /// Top left pixel.
-    pub origin: [u32; 2],
-    /// Index of the first sample.
-    pub first_sample: u32,
-    /// Samples per pixel.
-    pub sample_count: u32,
+plain! {
+    /// A tile of a dispatch.
+    #[derive(Default)]
+    struct Tile {
+        /// Top left pixel.
+        origin: [u32; 2],
+        /// Index of the first sample.
+        first_sample: u32,
+        /// Samples per pixel.
+        sample_count: u32,
+    }
 }
 
-/// Sums of a pixel's colours since the host last took them.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub struct PixelColors {
-    /// Linear red, green, blue and the coverage.
-    pub all: [f32; 4],
-    /// Red, green and blue of the odd samples, and how many of these are in the sums.
-    pub odd: [f32; 4],
-}
+plain! {
+    /// Sums of a pixel's colours since the host last took them.
+    struct PixelColors {
+        /// Linear red, green, blue and the coverage.
+        all: [f32; 4],
+        /// Red, green and blue of the odd samples, and how many of these are in the sums.
+        odd: [f32; 4],
+    }
 
-/// Other sums over the samples of a pixel since the host last took them.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub struct PixelStatistics {
-    /// Sum of the squared luminance, and of that of the odd samples.
-    pub luminance_squared: [f32; 2],
-    /// Samples in the sums, and samples that were not sound.
-    pub kept_dropped: [f32; 2],
-    /// Rays traced, and luminance that limiting fireflies took.
-    pub rays_clamped: [f32; 2],
-    /// Luminance of the throughput of paths that ended at their last bounce.
-    pub cut: f32,
-    /// To a multiple of 8 bytes.
-    pub unused: f32,
+    /// Other sums over the samples of a pixel since the host last took them.
+    struct PixelStatistics {
+        /// Sum of the squared luminance, and of that of the odd samples.
+        luminance_squared: [f32; 2],
+        /// Samples in the sums, and samples that were not sound.
+        kept_dropped: [f32; 2],
+        /// Rays traced, and luminance that limiting fireflies took.
+        rays_clamped: [f32; 2],
+        /// Luminance of the throughput of paths that ended at their last bounce.
+        cut: f32,
+        /// To a multiple of 8 bytes.
+        unused: f32,
+    }
 }
 
 /// [`Globals::node_count`], [`Globals::around_root`] and [`Globals::around_triangle`].
@@ -132,10 +119,10 @@ impl Globals {
     /// The uniforms of a job.
     pub fn new(settings: &Settings, geometry: &Geometry, environment_cells_size: [u32; 2]) -> Self {
         let (background_kind, background) = match settings.background {
-            BackgroundKind::Environment => (BACKGROUND_ENVIRONMENT, [0.0; 3]),
-            BackgroundKind::Transparent => (BACKGROUND_TRANSPARENT, [0.0; 3]),
-            BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
-            BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
+            BackgroundKind::Environment => (0, [0.0; 3]),
+            BackgroundKind::Transparent => (1, [0.0; 3]),
+            BackgroundKind::Color(color) => (2, color),
+            BackgroundKind::Blurred(sine) => (3, [sine as f32, 0.0, 0.0]),
         };
         let [node_count, around_root, around_triangle] = hierarchies(geometry);
         let [catcher_slot, catcher_reflection_slot, catcher_table] =
@@ -174,12 +161,12 @@ impl Globals {
     }
 }
 
-/// A triangle to intersect: corner positions, each with the corner's vertex index.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub struct Triangle {
-    /// x, y, z as bits, then the index.
-    pub corners: [[u32; 4]; 3],
+plain! {
+    /// A triangle to intersect: corner positions, each with the corner's vertex index.
+    struct Triangle {
+        /// x, y, z as bits, then the index.
+        corners: [[u32; 4]; 3],
+    }
 }
 
 /// The triangle at a place in the order of [`Compressed::triangles`](crate::scene::Compressed).

@@ -1,97 +1,94 @@
-//! Pipelines specialised for plans.
+//! A pass that reads a scene: group 0 is the scene, group 1 the pass's own. Its pipelines are specialised.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
 use super::compute;
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::Form;
 use super::kernel_cache::KernelCache;
-use super::scene_group::SceneForm;
-use super::scene_pass::ScenePass;
+use super::scene_group::{self, SceneForm};
 use super::traversal::Traversal;
-use super::{shader, sums};
-use crate::job::plan::{Plan, Specialisation};
 
-/// Key of a pipeline: the plan's constants and the scene's storage.
-pub type Kernel = (Specialisation, SceneForm);
-
-/// The path tracer: its shader for each traversal, its binding layouts, and its pipelines.
+/// The shader of a pass for each traversal that was linked, its binding layouts, and its pipelines by what they are made for.
 #[derive(Debug)]
-pub struct Pipelines {
-    passes: HashMap<Traversal, ScenePass>,
+pub struct ScenePass<K> {
+    name: &'static str,
+    linked: HashMap<Traversal, Linked>,
     /// Layout of group 1.
-    pub sums_layout: wgpu::BindGroupLayout,
-    made: HashMap<Kernel, wgpu::ComputePipeline>,
+    pub own_layout: wgpu::BindGroupLayout,
+    made: HashMap<K, wgpu::ComputePipeline>,
     cache: Option<KernelCache>,
 }
 
-/// The pass, and its entry point.
-const PASS: &str = "path_trace";
+#[derive(Debug)]
+struct Linked {
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    /// Layout of group 0.
+    scene_layout: wgpu::BindGroupLayout,
+}
 
-impl Pipelines {
-    /// Links and compiles the path tracer.
-    ///
-    /// # Errors
-    /// [`GpuError::Shader`] with the module and line.
-    pub fn new(gpu: &GpuDevice) -> Result<Self, GpuError> {
-        let mut pipelines = Self {
-            passes: HashMap::new(),
-            sums_layout: sums::layout(gpu),
+impl<K: Eq + Hash> ScenePass<K> {
+    /// The pass of `shaders/pass/NAME.wgsl`.
+    pub fn new(name: &'static str, own_layout: wgpu::BindGroupLayout, cache: Option<KernelCache>) -> Self {
+        Self {
+            name,
+            linked: HashMap::new(),
+            own_layout,
             made: HashMap::new(),
-            cache: KernelCache::open(gpu),
-        };
-        pipelines.link(gpu, gpu.traversal)?;
-        Ok(pipelines)
+            cache,
+        }
     }
 
-    /// Links and compiles the path tracer for rays that go this way, unless that was done.
+    /// Links and compiles the pass for rays that go this way, unless that was done.
     ///
     /// # Errors
     /// [`GpuError::Shader`] with the module and line.
     pub fn link(&mut self, gpu: &GpuDevice, traversal: Traversal) -> Result<(), GpuError> {
-        if self.passes.contains_key(&traversal) {
+        if self.linked.contains_key(&traversal) {
             return Ok(());
         }
-        let linked = shader::link_for(&format!("pass/{PASS}"), traversal).map_err(GpuError::Shader)?;
-        let descriptor = wgpu::ShaderModuleDescriptor {
-            label: Some(PASS),
-            source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
+        let module = compute::module(gpu, self.name, traversal)?;
+        let scene_layout = scene_group::layout(gpu, traversal);
+        let linked = Linked {
+            module,
+            layout: compute::pipeline_layout(gpu, self.name, [&scene_layout, &self.own_layout]),
+            scene_layout,
         };
-        // SAFETY: our own code computes every index from sizes that it uploads itself: hierarchy and triangles from the same
-        // geometry, slots below the number of materials, pixels inside the image. The loops end: paths are bounded by their
-        // bounces and the traversal by its stack. Ray queries start with finite numbers, run until they are done, and are
-        // then read.
-        let module = compute::validated(gpu, |device| unsafe {
-            device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
-        })?;
-        let pass = ScenePass::new(gpu, PASS, (module, traversal), &self.sums_layout);
-        self.passes.insert(traversal, pass);
+        self.linked.insert(traversal, linked);
         Ok(())
     }
 
-    /// The layout of group 0 for a geometry of this form, for which the path tracer must have been linked.
-    pub fn scene_layout(&self, form: Form) -> &wgpu::BindGroupLayout {
-        &self.passes[&form.traversal()].scene_layout
+    /// The layout of group 0 for a scene of this form, for which the pass must have been linked.
+    pub fn scene_layout(&self, form: SceneForm) -> &wgpu::BindGroupLayout {
+        &self.linked[&form.geometry.traversal()].scene_layout
     }
 
-    /// Whether a pipeline of this kind has been compiled.
-    pub fn has(&self, kernel: &Kernel) -> bool {
-        self.made.contains_key(kernel)
+    /// Whether the pipeline for this has been compiled.
+    pub fn has(&self, key: &K) -> bool {
+        self.made.contains_key(key)
     }
 
-    /// The pipeline of a plan, compiled on first use.
-    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: SceneForm) -> Result<&wgpu::ComputePipeline, GpuError> {
-        let kernel = (plan.specialisation(), form);
-        if !self.made.contains_key(&kernel) {
-            let mut constants = plan.constants();
-            constants.extend(form.constants());
-            let cache = self.cache.as_ref().map(KernelCache::cache);
-            let pipeline = self.passes[&form.geometry.traversal()].pipeline(gpu, PASS, &constants, cache)?;
-            self.made.insert(kernel.clone(), pipeline);
-            if let Some(cache) = &self.cache {
-                cache.save();
-            }
+    /// The pipeline of an entry point for a scene of this form, compiled on first use.
+    pub fn get(
+        &mut self,
+        gpu: &GpuDevice,
+        key: K,
+        entry_point: &str,
+        form: SceneForm,
+        mut constants: Vec<(&'static str, f64)>,
+    ) -> Result<wgpu::ComputePipeline, GpuError> {
+        if let Some(made) = self.made.get(&key) {
+            return Ok(made.clone());
         }
-        Ok(&self.made[&kernel])
+        constants.extend(form.constants());
+        let Linked { module, layout, .. } = &self.linked[&form.geometry.traversal()];
+        let cache = self.cache.as_ref().map(|kept| &kept.cache);
+        let pipeline = compute::pipeline(gpu, (module, layout), entry_point, &constants, cache)?;
+        self.made.insert(key, pipeline.clone());
+        if let Some(cache) = &self.cache {
+            cache.save();
+        }
+        Ok(pipeline)
     }
 }

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError, Moment};
+use super::engine::PathTracer;
 use super::geometry_arrays::GeometryArrays;
 use super::layout::Globals;
-use super::material_array::MaterialArray;
-use super::pipeline::Pipelines;
 use super::scene_group::{self, SceneForm, SceneGroup};
 use super::sums::Sums;
 use crate::job::Job;
@@ -15,8 +14,11 @@ use crate::scene::Geometry;
 /// Buffers and textures of a job. Parts that a new job shares with the old one are kept.
 #[derive(Debug)]
 pub struct Resources {
-    job: Arc<Job>,
+    /// What these are of.
+    pub job: Arc<Job>,
     scene: SceneGroup,
+    /// Storage of the scene.
+    pub form: SceneForm,
     /// Bind group of the scene.
     pub scene_group: wgpu::BindGroup,
     /// Sums since the last flush.
@@ -30,9 +32,9 @@ impl Resources {
     ///
     /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] if the adapter cannot hold a part of it; `old`
     /// is unchanged then.
-    pub fn new(gpu: &GpuDevice, pipelines: &Pipelines, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &GpuDevice, pass: &PathTracer, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
         gpu.reach(Moment::Uploading);
-        let made = gpu.checked(GpuError::Refused, |_| Self::made(gpu, pipelines, job, old));
+        let made = gpu.checked(GpuError::Refused, |_| Self::made(gpu, pass, job, old));
         made.flatten().inspect_err(|_| {
             // It may have been overwritten by the new job's. The next work reports a device lost by now.
             if let Some(old) = old {
@@ -41,30 +43,25 @@ impl Resources {
         })
     }
 
-    fn made(gpu: &GpuDevice, pipelines: &Pipelines, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
+    fn made(gpu: &GpuDevice, pass: &PathTracer, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
         let sums = match old.filter(|old| old.sums.fit(&job)) {
             Some(old) => old.sums.clone(),
-            None => Sums::new(gpu, &pipelines.sums_layout, &job)?,
+            None => Sums::new(gpu, &pass.own_layout, &job)?,
         };
         let scene = scene(gpu, &job, old)?;
+        let form = SceneForm {
+            geometry: scene.geometry.form,
+            ..SceneForm::of(gpu, &job)
+        };
         let cells = [job.distribution().width, job.distribution().height];
         let globals = gpu.uniforms(&Globals::new(&job.settings, &job.geometry, cells));
         Ok(Self {
-            scene_group: scene.bind(gpu, pipelines.scene_layout(scene.geometry.form()), &globals),
+            scene_group: scene.bind(gpu, pass.scene_layout(form), &globals),
+            form,
             job,
             scene,
             sums,
         })
-    }
-
-    /// The job that these are of.
-    pub fn job(&self) -> &Job {
-        &self.job
-    }
-
-    /// Storage of the scene.
-    pub fn form(&self) -> SceneForm {
-        self.scene.form()
     }
 }
 
@@ -74,7 +71,7 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
     Ok(SceneGroup {
         materials: match kept(|a, b| Arc::ptr_eq(&a.materials, &b.materials)) {
             Some(old) => old.materials.clone(),
-            None => MaterialArray::new(gpu, &job.materials)?,
+            None => scene_group::materials(gpu, &job.materials)?,
         },
         tables: match kept(|a, b| Arc::ptr_eq(&a.tables, &b.tables)) {
             Some(old) => old.tables.clone(),

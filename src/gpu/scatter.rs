@@ -1,41 +1,40 @@
 //! Samples of a lobe, drawn by the shader function that the path tracer runs (`shaders/pass/scatter.wgsl`).
 
-use bytemuck::{Pod, Zeroable};
-
 use super::compute::{self, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::scene_group;
+use super::scene_group::{self, TABLES_BINDING, TEXELS};
 use super::traversal::Traversal;
+use crate::job::plain;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 
 /// Samples a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: u32 = 1 << 20;
 
-/// The uniforms, as in the shader.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-#[repr(C)]
-pub struct Scatter {
-    /// Unit direction to the viewer.
-    pub wo: Vec3<f32>,
-    /// Roughness in [0, 1].
-    pub roughness: f32,
-    /// Stretch in [−1, 1].
-    pub anisotropy: f32,
-    /// Relative index of refraction; 0 for reflection.
-    pub eta: f32,
-    /// The lobe as a number.
-    pub lobe: u32,
-    /// The curve as a number.
-    pub curve: u32,
-    /// The horizon policy as a number.
-    pub horizon: u32,
-    /// Changes all random numbers.
-    pub seed: u32,
-    /// Index of the first sample.
-    pub first: u32,
-    /// Samples of the dispatch.
-    pub count: u32,
+plain! {
+    /// The uniforms, as in the shader.
+    struct Scatter {
+        /// Unit direction to the viewer.
+        wo: Vec3<f32>,
+        /// Roughness in [0, 1].
+        roughness: f32,
+        /// Stretch in [−1, 1].
+        anisotropy: f32,
+        /// Relative index of refraction; 0 for reflection.
+        eta: f32,
+        /// The lobe as a number.
+        lobe: u32,
+        /// The curve as a number.
+        curve: u32,
+        /// The horizon policy as a number.
+        horizon: u32,
+        /// Changes all random numbers.
+        seed: u32,
+        /// Index of the first sample.
+        first: u32,
+        /// Samples of the dispatch.
+        count: u32,
+    }
 }
 
 /// The shader that draws, compiled.
@@ -53,11 +52,11 @@ impl Scatterer {
         let name = "scatter";
         let module = compute::module(&gpu, name, Traversal::Own)?;
         let groups = [
-            scene_group::tables_layout(&gpu),
-            compute::group_layout(&gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
+            compute::layout(&gpu, "tables", [(TABLES_BINDING, TEXELS)]),
+            compute::layout(&gpu, name, [(0, UNIFORMS), (1, WRITE)]),
         ];
-        let layout = compute::pipeline_layout(&gpu, name, &groups.each_ref().map(Some));
-        let pipeline = compute::pipeline(&gpu, &module, &layout, "draw", &[], None)?;
+        let layout = compute::pipeline_layout(&gpu, name, groups.each_ref());
+        let pipeline = compute::pipeline(&gpu, (&module, &layout), "draw", &[], None)?;
         Ok(Self { gpu, pipeline, groups })
     }
 
@@ -69,13 +68,14 @@ impl Scatterer {
         let mut samples = Vec::with_capacity(request.count as usize);
         for first in (0..request.count).step_by(BATCH as usize) {
             let count = (request.count - first).min(BATCH);
-            let workgroups = [count.div_ceil(64), 1];
             let uniforms = gpu.uniforms(&uniforms(request, first, count));
+            let texels = wgpu::BindingResource::TextureView(&tables);
+            let buffers = [&uniforms, &out].map(wgpu::Buffer::as_entire_binding);
             let groups = [
-                scene_group::bind_tables(gpu, &self.groups[0], &tables),
-                compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, &out)], &[]),
+                compute::bind(gpu, &self.groups[0], [(TABLES_BINDING, texels)]),
+                compute::bind(gpu, &self.groups[1], (0..).zip(buffers)),
             ];
-            compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, None);
+            compute::dispatch(gpu, &self.pipeline, groups.each_ref(), count.div_ceil(64), None);
             samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
         }
         Ok(ScatterCloud::from_raw(samples))

@@ -1,12 +1,14 @@
 //! Group 0 of the passes: all that shaders read of a scene (`shaders/scene/layout.wgsl`).
 
+use bytemuck::Zeroable as _;
+
 use super::array::{self, Values};
-use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
+use super::compute::{self, READ, UNIFORMS, texture};
 use super::device::{GpuDevice, GpuError};
 use super::geometry_arrays::{Form, GeometryArrays};
-use super::material_array::MaterialArray;
 use super::traversal::Traversal;
 use crate::job::Job;
+use crate::optics::material::Material;
 use crate::optics::table::NODE_LENGTH;
 use crate::scene::Geometry;
 use crate::scene::environment::{Distribution, Environment};
@@ -15,31 +17,33 @@ use crate::scene::light::Lights;
 use crate::scene::texture::Textures;
 
 /// The binding of the materials' tables.
-const TABLES_BINDING: u32 = 5;
+pub const TABLES_BINDING: u32 = 5;
 
 /// The binding of the materials among the uniforms.
 const FEW_MATERIALS_BINDING: u32 = 14;
 /// Binding of the adapter's acceleration structure, the last of the group, if used.
 const STRUCTURES_BINDING: u32 = 15;
 
-const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+/// Materials that lie among the uniforms at most: WebGPU grants every adapter 64 KiB of them.
+pub const FEW_MATERIALS: usize = (64 << 10) / size_of::<Material<f32>>();
+
+const MAP: wgpu::BindingType = texture(
+    wgpu::TextureSampleType::Float { filterable: false },
+    wgpu::TextureViewDimension::D2,
+);
+pub const TEXELS: wgpu::BindingType = texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2Array);
 
 /// The layout of the group, for rays that go this way.
 pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
-    use wgpu::TextureViewDimension::{D2, D2Array};
-    let entry = |binding: u32| match binding {
-        0 | FEW_MATERIALS_BINDING => buffer_entry(binding, UNIFORMS),
-        1..=3 => buffer_entry(binding, READ),
-        4 => texture_entry(binding, MAP, D2),
-        _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
+    let kind = |binding: u32| match binding {
+        0 | FEW_MATERIALS_BINDING => UNIFORMS,
+        1..=3 => READ,
+        4 => MAP,
+        STRUCTURES_BINDING => wgpu::BindingType::AccelerationStructure { vertex_return: false },
+        _ => TEXELS,
     };
-    let structures = wgpu::BindGroupLayoutEntry {
-        ty: wgpu::BindingType::AccelerationStructure { vertex_return: false },
-        ..buffer_entry(STRUCTURES_BINDING, READ)
-    };
-    let structures = (traversal == Traversal::RayQueries).then_some(structures);
-    let entries: Vec<_> = (0..STRUCTURES_BINDING).map(entry).chain(structures).collect();
-    compute::layout(gpu, "scene", &entries)
+    let count = STRUCTURES_BINDING + u32::from(traversal == Traversal::RayQueries);
+    compute::layout(gpu, "scene", (0..count).map(|binding| (binding, kind(binding))))
 }
 
 /// Storage of a scene; kernels are specialised for it.
@@ -56,7 +60,7 @@ impl SceneForm {
     pub fn of(gpu: &GpuDevice, job: &Job) -> Self {
         Self {
             geometry: Form::of(gpu, &job.geometry),
-            has_many_materials: MaterialArray::are_many(&job.materials),
+            has_many_materials: are_many(&job.materials),
         }
     }
 
@@ -74,8 +78,8 @@ impl SceneForm {
 pub struct SceneGroup {
     /// Arrays of the geometry.
     pub geometry: GeometryArrays,
-    /// Array of the materials, by slot.
-    pub materials: MaterialArray,
+    /// See [`materials`].
+    pub materials: [wgpu::Buffer; 2],
     /// See [`tables`].
     pub tables: wgpu::TextureView,
     /// See [`environment`].
@@ -92,7 +96,7 @@ impl SceneGroup {
         let nothing = || array::texture(gpu, "nothing", &Values::<u32>::of(&[]));
         Ok(Self {
             geometry: GeometryArrays::empty(gpu)?,
-            materials: MaterialArray::new(gpu, &[])?,
+            materials: materials(gpu, &[])?,
             tables: tables(gpu, &[])?,
             environment: [environment_map(gpu, [1, 1], &[[0.0; 4]]), nothing()?],
             light_cells: nothing()?,
@@ -102,38 +106,52 @@ impl SceneGroup {
 
     /// The group with its uniforms, a [`layout::Globals`]; the layout is that for the geometry's form.
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
-        let [nodes, triangles] = self.geometry.buffers();
-        let [few_materials, many_materials] = self.materials.buffers();
+        let [nodes, triangles] = &self.geometry.buffers;
+        let [few_materials, many_materials] = &self.materials;
         let buffers = [globals, nodes, triangles, many_materials];
         let [map, cells] = &self.environment;
         let [records, words] = &self.textures;
-        let [node_texels, triangle_texels, vertex_texels, slots] = self.geometry.textures();
+        let [node_texels, triangle_texels] = &self.geometry.textures;
         let textures = [
             map,
             &self.tables,
             cells,
             &self.light_cells,
-            slots,
+            &self.geometry.slots,
             records,
             words,
             node_texels,
             triangle_texels,
-            vertex_texels,
+            &self.geometry.vertices,
         ];
         let buffers = buffers.map(wgpu::Buffer::as_entire_binding).into_iter();
         let textures = textures.map(wgpu::BindingResource::TextureView).into_iter();
-        let structures = self.geometry.structure().map(wgpu::Tlas::as_binding);
+        let structures = self.geometry.structures.as_ref().map(|built| built.whole.as_binding());
         let last = [few_materials.as_entire_binding()].into_iter().chain(structures);
         compute::bind(gpu, layout, (0..).zip(buffers.chain(textures).chain(last)))
     }
+}
 
-    /// Storage of the scene.
-    pub fn form(&self) -> SceneForm {
-        SceneForm {
-            geometry: self.geometry.form(),
-            has_many_materials: self.materials.has_many(),
-        }
-    }
+/// The materials by slot: in a uniform buffer, which drivers read without bounds checks per lane and word; or in the storage
+/// buffer if there are too many.
+pub fn materials(gpu: &GpuDevice, materials: &[Material<f32>]) -> Result<[wgpu::Buffer; 2], GpuError> {
+    // Each buffer has at least the size that the shader declares, whether it is read or not.
+    let mut few = vec![Material::zeroed(); FEW_MATERIALS];
+    let many = if are_many(materials) {
+        materials
+    } else {
+        few[..materials.len()].copy_from_slice(materials);
+        &[Material::zeroed()]
+    };
+    Ok([
+        gpu.filled("materials", wgpu::BufferUsages::UNIFORM, bytemuck::cast_slice(&few)),
+        array::buffer(gpu, "the materials", &Values::of(many))?,
+    ])
+}
+
+/// Whether materials are too many for the uniforms.
+pub fn are_many(materials: &[Material<f32>]) -> bool {
+    materials.len() > FEW_MATERIALS
 }
 
 /// The materials' custom curves and albedo tables.
@@ -141,21 +159,6 @@ pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::TextureView, GpuE
     let (nodes, rest) = tables.as_chunks::<NODE_LENGTH>();
     assert!(rest.is_empty(), "tables are made of whole nodes");
     array::texture(gpu, "the materials' tables", &Values::of(nodes))
-}
-
-/// Layout of a group with the tables alone, for passes that read nothing else of a scene.
-pub fn tables_layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
-    let entry = texture_entry(
-        TABLES_BINDING,
-        wgpu::TextureSampleType::Uint,
-        wgpu::TextureViewDimension::D2Array,
-    );
-    compute::layout(gpu, "tables", &[entry])
-}
-
-/// The group for [`Self::tables_layout`].
-pub fn bind_tables(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, tables: &wgpu::TextureView) -> wgpu::BindGroup {
-    compute::bind_group(gpu, layout, &[], &[(TABLES_BINDING, tables)])
 }
 
 /// The map of an environment and its sampling cells.
@@ -215,28 +218,8 @@ fn entry(count: usize, index: usize, share: impl Fn(usize) -> Share, density: f3
 }
 
 fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {
-    let size = wgpu::Extent3d {
-        width,
-        height,
-        depth_or_array_layers: 1,
-    };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("environment"),
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(16 * width),
-        rows_per_image: None,
-    };
-    gpu.queue
-        .write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, size);
+    let texture = gpu.texture("environment", [width, height, 1], wgpu::TextureFormat::Rgba32Float);
+    gpu.write_texture(&texture, [0; 3], [width, height], bytemuck::cast_slice(texels));
     texture.create_view(&Default::default())
 }
 

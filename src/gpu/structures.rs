@@ -2,7 +2,7 @@
 
 use super::device::GpuDevice;
 use super::layout::Triangle;
-use crate::scene::{Geometry, Part};
+use crate::scene::Geometry;
 
 /// The bottom-level structures of the model and its surroundings, and the top-level structure over both. Instance 0 is the
 /// model, 1 its surroundings (`shaders/scene/ray_query.wgsl`).
@@ -10,58 +10,67 @@ use crate::scene::{Geometry, Part};
 pub struct Structures {
     /// `None` without a model.
     model: Option<wgpu::Blas>,
-    whole: wgpu::Tlas,
-}
-
-/// A hierarchy to be built over a part, whose triangles begin at a place.
-struct Plan<'a> {
-    blas: wgpu::Blas,
-    size: wgpu::BlasTriangleGeometrySizeDescriptor,
-    first: usize,
-    triangles: &'a wgpu::Buffer,
+    /// The top-level structure, which shaders read.
+    pub whole: wgpu::Tlas,
 }
 
 impl Structures {
-    /// Hierarchies over the triangles of a geometry, which lie in a buffer part by part.
-    pub fn new(gpu: &GpuDevice, geometry: &Geometry, triangles: &wgpu::Buffer) -> Self {
-        let model = Plan::new(gpu, geometry.whole_model(), 0, triangles);
-        let blas = model.as_ref().map(|plan| plan.blas.clone());
-        Self::build(gpu, (blas, model), geometry, triangles)
-    }
-
-    /// The same model with other surroundings; the model's structure is kept.
-    pub fn with_around(&self, gpu: &GpuDevice, geometry: &Geometry, triangles: &wgpu::Buffer) -> Self {
-        Self::build(gpu, (self.model.clone(), None), geometry, triangles)
-    }
-
-    /// Builds over a model that is there or planned.
-    fn build(
-        gpu: &GpuDevice,
-        (model, planned): (Option<wgpu::Blas>, Option<Plan<'_>>),
-        geometry: &Geometry,
-        triangles: &wgpu::Buffer,
-    ) -> Self {
-        let [_, (around, first)] = geometry.whole_parts();
-        let around = Plan::new(gpu, around, first, triangles);
+    /// Hierarchies over the triangles of a geometry, which lie in a buffer part by part. `old` are those of the same model
+    /// with other surroundings: the model's is kept.
+    pub fn new(gpu: &GpuDevice, geometry: &Geometry, triangles: &wgpu::Buffer, old: Option<&Self>) -> Self {
+        let parts = geometry.whole_parts();
+        let sizes = parts.map(|(part, _)| wgpu::BlasTriangleGeometrySizeDescriptor {
+            vertex_format: wgpu::VertexFormat::Float32x3,
+            vertex_count: 3 * part.triangles.len() as u32,
+            index_format: None,
+            index_count: None,
+            // The integrator looks after holes.
+            flags: wgpu::AccelerationStructureGeometryFlags::OPAQUE,
+        });
+        let build = |part: usize| {
+            let descriptor = wgpu::CreateBlasDescriptor {
+                label: Some("triangles"),
+                flags: wgpu::AccelerationStructureFlags::PREFER_FAST_TRACE,
+                update_mode: wgpu::AccelerationStructureUpdateMode::Build,
+            };
+            let descriptors = vec![sizes[part].clone()];
+            let sizes = wgpu::BlasGeometrySizeDescriptors::Triangles { descriptors };
+            (!parts[part].0.is_empty()).then(|| gpu.device.create_blas(&descriptor, sizes))
+        };
+        let model = old.map_or_else(|| build(0), |old| old.model.clone());
+        let around = build(1);
         let mut whole = gpu.device.create_tlas(&wgpu::CreateTlasDescriptor {
             label: Some("model and surroundings"),
             max_instances: 2,
             flags: wgpu::AccelerationStructureFlags::PREFER_FAST_TRACE,
             update_mode: wgpu::AccelerationStructureUpdateMode::Build,
         });
-        whole[0] = model.as_ref().map(|blas| instance(blas, 0));
-        whole[1] = around.as_ref().map(|plan| instance(&plan.blas, 1));
-        let plans = planned.iter().chain(&around);
-        let entries: Vec<_> = plans.map(Plan::entry).collect();
+        let mut entries = Vec::new();
+        for (part, blas) in [&model, &around].into_iter().enumerate() {
+            let Some(blas) = blas else { continue };
+            let in_place = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+            whole[part] = Some(wgpu::TlasInstance::new(blas, in_place, part as u32, 0xff));
+            if part == 0 && old.is_some() {
+                continue;
+            }
+            // A triangle is three corners of four words each, of which the first three are its place.
+            let geometry = wgpu::BlasTriangleGeometry {
+                size: &sizes[part],
+                vertex_buffer: triangles,
+                first_vertex: 3 * parts[part].1 as u32,
+                vertex_stride: (size_of::<Triangle>() / 3) as u64,
+                index_buffer: None,
+                first_index: None,
+                transform_buffer: None,
+                transform_buffer_offset: None,
+            };
+            let geometry = wgpu::BlasGeometries::TriangleGeometries(vec![geometry]);
+            entries.push(wgpu::BlasBuildEntry { blas, geometry });
+        }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.build_acceleration_structures(&entries, [&whole]);
         gpu.queue.submit([encoder.finish()]);
         Self { model, whole }
-    }
-
-    /// The top-level structure, which shaders read.
-    pub fn whole(&self) -> &wgpu::Tlas {
-        &self.whole
     }
 
     /// Whether an adapter can build over parts that are so large.
@@ -72,55 +81,4 @@ impl Structures {
             .iter()
             .all(|(part, _)| 3 * part.triangles.len() <= most)
     }
-}
-
-impl<'a> Plan<'a> {
-    /// `None` without triangles.
-    fn new(gpu: &GpuDevice, part: &Part, first: usize, triangles: &'a wgpu::Buffer) -> Option<Self> {
-        let size = wgpu::BlasTriangleGeometrySizeDescriptor {
-            vertex_format: wgpu::VertexFormat::Float32x3,
-            vertex_count: 3 * part.triangles.len() as u32,
-            index_format: None,
-            index_count: None,
-            // The integrator looks after holes.
-            flags: wgpu::AccelerationStructureGeometryFlags::OPAQUE,
-        };
-        let descriptor = wgpu::CreateBlasDescriptor {
-            label: Some("triangles"),
-            flags: wgpu::AccelerationStructureFlags::PREFER_FAST_TRACE,
-            update_mode: wgpu::AccelerationStructureUpdateMode::Build,
-        };
-        let sizes = wgpu::BlasGeometrySizeDescriptors::Triangles {
-            descriptors: vec![size.clone()],
-        };
-        (!part.is_empty()).then(|| Self {
-            blas: gpu.device.create_blas(&descriptor, sizes),
-            size,
-            first,
-            triangles,
-        })
-    }
-
-    /// The order to build it. A triangle is three corners of four words each, of which the first three are its place.
-    fn entry(&self) -> wgpu::BlasBuildEntry<'_> {
-        wgpu::BlasBuildEntry {
-            blas: &self.blas,
-            geometry: wgpu::BlasGeometries::TriangleGeometries(vec![wgpu::BlasTriangleGeometry {
-                size: &self.size,
-                vertex_buffer: self.triangles,
-                first_vertex: 3 * self.first as u32,
-                vertex_stride: (size_of::<Triangle>() / 3) as u64,
-                index_buffer: None,
-                first_index: None,
-                transform_buffer: None,
-                transform_buffer_offset: None,
-            }]),
-        }
-    }
-}
-
-/// An instance of a part by its instance number.
-fn instance(blas: &wgpu::Blas, number: u32) -> wgpu::TlasInstance {
-    let in_place = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    wgpu::TlasInstance::new(blas, in_place, number, 0xff)
 }

@@ -1,6 +1,6 @@
 //! Group 1 of the path tracer: its tiles, and the image's sums, in bands of rows if they exceed a buffer binding.
 
-use super::compute::{self, UNIFORMS, WRITE, buffer_entry, texture_entry};
+use super::compute::{self, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelColors, PixelStatistics, TILE_COLUMNS, Tile};
 use crate::job::Job;
@@ -13,14 +13,9 @@ pub const DISPATCH_TILES: usize = 65_535;
 
 /// The layout of the group.
 pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
-    let entries = [
-        buffer_entry(0, UNIFORMS),
-        texture_entry(1, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2),
-        buffer_entry(2, WRITE),
-        buffer_entry(3, WRITE),
-        buffer_entry(4, WRITE),
-    ];
-    compute::layout(gpu, "sums", &entries)
+    let list = compute::texture(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
+    let kinds = [UNIFORMS, list, WRITE, WRITE, WRITE];
+    compute::layout(gpu, "sums", (0..).zip(kinds))
 }
 
 /// The sums over samples that the host has not read yet, and the list of tiles to render.
@@ -64,20 +59,8 @@ impl Sums {
         let tile_row_bytes = u64::from(TILE_SIDE * width) * widest as u64;
         let tile_rows = (gpu.binding_bytes() / tile_row_bytes).clamp(1, u64::from(height.div_ceil(TILE_SIDE)));
         let band_rows = tile_rows as u32 * TILE_SIDE;
-        let tiles = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("the list of tiles"),
-            size: wgpu::Extent3d {
-                width: TILE_COLUMNS,
-                height: (DISPATCH_TILES as u32).div_ceil(TILE_COLUMNS),
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Uint,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let list_size = [TILE_COLUMNS, (DISPATCH_TILES as u32).div_ceil(TILE_COLUMNS), 1];
+        let tiles = gpu.texture("the list of tiles", list_size, wgpu::TextureFormat::Rgba32Uint);
         let list = tiles.create_view(&Default::default());
         let bands = (0..height).step_by(band_rows as usize).map(|first_row| {
             let rows = band_rows.min(height - first_row);
@@ -114,20 +97,8 @@ impl Sums {
         let rows = tiles.len().div_ceil(TILE_COLUMNS as usize);
         let mut whole = tiles.to_vec();
         whole.resize(rows * TILE_COLUMNS as usize, Tile::default());
-        gpu.queue.write_texture(
-            self.tiles.as_image_copy(),
-            bytemuck::cast_slice(&whole),
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(TILE_COLUMNS * size_of::<Tile>() as u32),
-                rows_per_image: None,
-            },
-            wgpu::Extent3d {
-                width: TILE_COLUMNS,
-                height: rows as u32,
-                depth_or_array_layers: 1,
-            },
-        );
+        let size = [TILE_COLUMNS, rows as u32];
+        gpu.write_texture(&self.tiles, [0; 3], size, bytemuck::cast_slice(&whole));
     }
 
     /// Sets the sums to zero.
@@ -160,9 +131,10 @@ impl Band {
         let [colors, statistics, guides] = pixel_bytes(extras).map(buffer);
         let buffers = [colors?, statistics?, guides?];
         let uniforms = gpu.uniforms(&[first_row, pixels as u32, 0, 0]);
-        let [colors, statistics, guides] = &buffers;
-        let bound = [(0, &uniforms), (2, colors), (3, statistics), (4, guides)];
-        let group = compute::bind_group(gpu, layout, &bound, &[(1, tiles)]);
+        let list = wgpu::BindingResource::TextureView(tiles);
+        let buffer_bindings = buffers.each_ref().map(wgpu::Buffer::as_entire_binding);
+        let bound = [uniforms.as_entire_binding(), list].into_iter().chain(buffer_bindings);
+        let group = compute::bind(gpu, layout, (0..).zip(bound));
         Ok(Self {
             first_row,
             pixels: pixels as usize,

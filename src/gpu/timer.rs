@@ -18,14 +18,7 @@ impl Timer {
     /// A timer; `None` if the adapter has no timestamps.
     pub fn new(gpu: &GpuDevice) -> Option<Self> {
         let has_timestamps = gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
-        let buffer = |usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timestamps"),
-                size: SIZE,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer = |usage| gpu.buffer("timestamps", SIZE, usage);
         has_timestamps.then(|| Self {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: Some("timestamps"),

@@ -14,7 +14,7 @@ named! {
 
 impl Traversal {
     /// The module of `shaders/` that has it.
-    pub(super) fn module(self) -> &'static str {
+    pub fn module(self) -> &'static str {
         match self {
             Self::Own => "scene/bvh",
             Self::RayQueries => "scene/ray_query",

@@ -11,6 +11,8 @@ pub struct FileParameter {
     pub example: &'static str,
     /// Supported range; values outside are clamped and reported.
     pub range: Option<[f32; 2]>,
+    /// What the file writes for 1 of the parameter: 1000 for nm of what is in µm.
+    pub per: f32,
     /// Weight parameter that it depends on; empty for none.
     pub layer: &'static str,
     pub goes: Goes,
@@ -29,18 +31,50 @@ pub enum Goes {
     Nowhere(&'static str),
 }
 
+/// Rows by the beginning of their places: `"place" = "default" / PER "example" => GOES "where": "note" in 0.0..1.0 of "layer";`,
+/// where what is usual is left out.
+#[macro_export]
+macro_rules! file_parameters {
+    ($($prefix:literal { $(
+        $key:literal $(= $default:literal)? $(/ $per:tt)? $example:expr => $goes:ident $to:tt
+            $(: $note:literal)? $(in $least:literal..$most:literal)? $(of $layer:literal)?;
+    )* })*) => {
+        &[$($(
+            $crate::FileParameter::$goes(concat!($prefix, $key), concat!($($default)?), $example, $to)
+                $(.with_note($note))? $(.within($least, $most))? $(.of($layer))? $(.per($per))?,
+        )*)*]
+    };
+}
+
 impl FileParameter {
-    /// A parameter of any range that counts by itself and is shown as it is.
-    pub const fn new(place: &'static str, default: &'static str, example: &'static str, goes: Goes) -> Self {
+    const fn new(place: &'static str, default: &'static str, example: &'static str, goes: Goes) -> Self {
         Self {
             place,
             default,
             example,
             range: None,
+            per: 1.0,
             layer: "",
             goes,
             note: "",
         }
+    }
+
+    pub const fn to(place: &'static str, default: &'static str, example: &'static str, to: &'static str) -> Self {
+        Self::new(place, default, example, Goes::To(to))
+    }
+
+    /// The same for what lies between 0 and 1.
+    pub const fn share(place: &'static str, default: &'static str, example: &'static str, to: &'static str) -> Self {
+        Self::to(place, default, example, to).within(0.0, 1.0)
+    }
+
+    pub const fn kept(place: &'static str, default: &'static str, example: &'static str, key: &'static str) -> Self {
+        Self::new(place, default, example, Goes::Kept(key))
+    }
+
+    pub const fn nowhere(place: &'static str, default: &'static str, example: &'static str, why: &'static str) -> Self {
+        Self::new(place, default, example, Goes::Nowhere(why))
     }
 
     /// The parameter with a supported range.
@@ -55,6 +89,36 @@ impl FileParameter {
     pub const fn of(mut self, layer: &'static str) -> Self {
         self.layer = layer;
         self
+    }
+
+    /// The parameter in another unit.
+    #[must_use]
+    pub const fn per(mut self, per: f32) -> Self {
+        self.per = per;
+        self
+    }
+
+    /// The key of the first parameter that it goes to, and of the second.
+    pub fn keys(&self) -> [&'static str; 2] {
+        let Goes::To(to) = self.goes else { return [""; 2] };
+        let (first, rest) = to.split_once(", ").unwrap_or((to, ""));
+        [first, rest]
+    }
+
+    /// What the file's parameter is worth that is left out: a number three times, or the first three of a list.
+    pub fn default_value(&self) -> Option<[f32; 3]> {
+        let number = |text: &str| match text.trim() {
+            "false" => Some(0.0),
+            text => text.parse().ok(),
+        };
+        let list = self.default.trim_matches(['[', ']']).split(',');
+        let numbers: Vec<f32> = list.map(number).collect::<Option<_>>()?;
+        numbers.first_chunk().copied().or(Some([*numbers.first()?; 3]))
+    }
+
+    /// Whether it is a list of numbers.
+    pub fn is_list(&self) -> bool {
+        self.default.contains(',')
     }
 
     /// The parameter with a note on its approximation.

@@ -10,9 +10,8 @@ use std::sync::{Arc, Mutex};
 
 use zip::ZipArchive;
 
-use crate::budget::Budget;
+use crate::limits::{self, Budget, Reach, is_elsewhere};
 use crate::panics::lock;
-use crate::resource::{self, BYTES_MAX, Reach, is_elsewhere};
 use crate::scene::Loading;
 
 /// Size in bytes from which an archive's contents may be at most [`PACKED_MOST`] times their packed size.
@@ -52,8 +51,7 @@ impl Import {
 
     /// Contents of a file, counted against the budget.
     pub fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        self.budget.take(resource::open(path)?.metadata()?.len())?;
-        resource::read_watched(path, BYTES_MAX, &self.loading)
+        limits::read_counted(path, &self.budget, &self.loading)
     }
 }
 
@@ -95,7 +93,7 @@ struct Archive {
 
 impl Archive {
     fn open(path: &Path) -> io::Result<Self> {
-        let zip = ZipArchive::new(BufReader::new(resource::open(path)?))?;
+        let zip = ZipArchive::new(BufReader::new(limits::open(path)?))?;
         let names: Vec<String> = zip.file_names().flatten().map(|name| name.into_owned()).collect();
         let mut found: [HashMap<String, usize>; 3] = Default::default();
         for (place, name) in names.iter().enumerate() {

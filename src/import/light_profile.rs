@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::limits;
 use super::remembered::Remembered;
-use super::resource;
 use crate::scene::light_profile::{ANGLES_MAX, LightProfile};
 
 /// Profiles that are remembered.
@@ -27,7 +27,7 @@ pub struct LightProfileError {
 /// The profile in a file.
 pub fn load(path: &Path) -> Result<LightProfile, LightProfileError> {
     let read = || {
-        let bytes = resource::read(path, BYTES_MAX)
+        let bytes = limits::read(path, BYTES_MAX)
             .map_err(|error| format!("cannot be read: {error}; check the path and its permissions"))?;
         parse(&String::from_utf8_lossy(&bytes))
             .map_err(|reason| format!("not a light profile: {reason}; choose an .ies file of type C photometry"))

@@ -3,26 +3,24 @@
 
 use glossmith_engine::{optics, panics, parallel, scene};
 
-mod budget;
 pub mod endings;
 pub mod environment;
 mod file_parameter;
 mod files;
-pub mod free_memory;
 mod gltf;
 pub mod light_profile;
+pub mod limits;
 mod model;
 mod model_error;
 mod obj;
 pub mod picture;
 mod ply;
 pub mod remembered;
-pub mod resource;
 mod stl;
 
-pub use budget::{Budget, OverBudget};
 pub use file_parameter::{FileParameter, Goes};
 pub use gltf::{GLTF_PARAMETERS, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
+pub use limits::{Budget, OverBudget};
 pub use model::{holds_model, is_model, load, load_watched, load_with};
 pub use model_error::ModelError;
 pub use obj::MTL_PARAMETERS;

@@ -5,29 +5,11 @@ use std::path::{Path, PathBuf};
 use super::{gltf, obj, ply, stl};
 use crate::endings::{MODELS, ending, has_ending};
 use crate::files::{Files, Import};
+use crate::limits::Reach;
 use crate::model_error::ModelError;
-use crate::resource::Reach;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::TextureTarget;
 use crate::scene::{Framing, LIGHTS_MAX, LightKind, Loading, Model, ModelLight, ModelOptions, ModelSource, Texture};
-
-/// Fate of a kind of light.
-type LightFate = (Fate, &'static str, fn(&LightKind) -> bool);
-
-/// Fates of the kinds of light.
-const LIGHTS: [LightFate; 3] = [
-    (Fate::Approximated, "points of light, as small spheres", |kind| {
-        matches!(kind, LightKind::Point)
-    }),
-    (
-        Fate::Approximated,
-        "spots, as small discs, which are dimmer askew by the cosine",
-        |kind| matches!(kind, LightKind::Spot(_)),
-    ),
-    (Fate::Used, "suns, 0.53° across", |kind| {
-        matches!(kind, LightKind::Directional)
-    }),
-];
 
 /// Loads a model. Blocks while reading and decoding; never panics on a damaged file.
 pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
@@ -86,12 +68,9 @@ fn note_outside(model: &mut Model, path: &Path, given: &[PathBuf]) {
 fn load_one(path: &Path, options: &ModelOptions, import: &Import) -> Result<Model, ModelError> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     import.loading.step(format!("reading {name}"))?;
-    let read = |source| match import.loading.check() {
+    let read = |error| match import.loading.check() {
         Err(cancelled) => cancelled.into(),
-        Ok(()) => ModelError::Read {
-            path: path.to_owned(),
-            source,
-        },
+        Ok(()) => unreadable(path, error),
     };
     let in_folder = |folder: &Path| Files::in_folder(folder, &options.beside, import);
     if path.is_dir() {
@@ -104,6 +83,11 @@ fn load_one(path: &Path, options: &ModelOptions, import: &Import) -> Result<Mode
     }
     let bytes = import.read(path).map_err(read)?;
     load_file(path, in_folder(path.parent().unwrap_or(Path::new(""))), bytes, options)
+}
+
+fn unreadable(path: &Path, error: std::io::Error) -> ModelError {
+    let what = format_args!("cannot read this model: {error}; check the path and its permissions");
+    ModelError::refused(path, what)
 }
 
 /// Whether a file's ending is that of a model.
@@ -119,10 +103,7 @@ pub fn holds_model(folder: &Path) -> bool {
 
 /// Loads the model among files: of the first format that there is, the file that is nearest to the top.
 fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Model, ModelError> {
-    let read = |source| ModelError::Read {
-        path: path.to_owned(),
-        source,
-    };
+    let read = |error| unreadable(path, error);
     let names = files.names().map_err(read)?;
     let of_format = |wanted: &&str| {
         let mut found: Vec<&String> = names
@@ -133,7 +114,8 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
         found.into_iter().next().cloned()
     };
     let name = MODELS.iter().filter(|ending| **ending != "zip").find_map(of_format);
-    let name = name.ok_or_else(|| ModelError::NoModelInside { path: path.to_owned() })?;
+    let all = || MODELS.join(", ");
+    let name = name.ok_or_else(|| ModelError::refused(path, format_args!("no model in it; models are {}", all())))?;
     let bytes = files.read(&name).map_err(read)?;
     let others = names
         .iter()
@@ -155,7 +137,7 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         _ => gltf::load(path, files, bytes, options)?,
     };
     if model.triangle_count() == 0 {
-        return Err(ModelError::NoTriangles { path: path.to_owned() });
+        return Err(ModelError::no_triangles(path));
     }
     Ok(model)
 }
@@ -165,7 +147,10 @@ fn finish(model: &mut Model) {
     let framing = Framing::of(model);
     let radius = framing.world_units_per_unit as f32;
     for slot in &mut model.slots {
-        slot.attenuation_distance /= radius;
+        let depth = slot.number("transmission.depth");
+        if depth > 0.0 {
+            slot.set("transmission.depth", depth / radius);
+        }
         let texture = slot
             .texture(TextureTarget::Roughness)
             .and_then(|place| model.textures.get(place.texture));
@@ -181,27 +166,27 @@ fn finish(model: &mut Model) {
     report.count(Fate::Used, "cameras, as bookmarks", "", cameras);
     report.count(Fate::Used, "triangles", "", framing.usable);
     if texture_bytes > 0 {
-        let what = format!(
-            "textures, {:.1} MiB in memory",
-            texture_bytes as f64 / f64::from(1 << 20)
-        );
-        report.note(Fate::Used, what, "");
+        let mib = texture_bytes as f64 / f64::from(1 << 20);
+        report.note(Fate::Used, format!("textures, {mib:.1} MiB in memory"), "");
     }
     report.count(Fate::Ignored, "triangles without area", "", no_area);
-    report.count(
-        Fate::Ignored,
-        "triangles with a corner that is not finite",
-        "",
-        framing.dropped_not_finite,
-    );
+    let what = "triangles with a corner that is not finite";
+    report.count(Fate::Ignored, what, "", framing.dropped_not_finite);
 }
 
 /// Reports the fates of a file's lights; a scene has a maximum number of lights.
 fn note_lights(report: &mut ImportReport, lights: &[ModelLight]) {
     let shown = &lights[..lights.len().min(LIGHTS_MAX)];
-    for (fate, what, is_it) in LIGHTS {
-        let count = shown.iter().filter(|light| is_it(&light.kind)).count();
-        report.count(fate, what, "", count);
+    for light in shown {
+        let (fate, what) = match light.kind {
+            LightKind::Point => (Fate::Approximated, "points of light, as small spheres"),
+            LightKind::Spot(_) => (
+                Fate::Approximated,
+                "spots, as small discs, which are dimmer askew by the cosine",
+            ),
+            LightKind::Directional => (Fate::Used, "suns, 0.53° across"),
+        };
+        report.note(fate, what, "");
     }
     report.count(Fate::Ignored, "lights of too many", "", lights.len() - shown.len());
 }

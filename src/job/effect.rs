@@ -128,17 +128,12 @@ impl fmt::Display for EffectId {
     }
 }
 
-/// A name that no effect has.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no effect is called {0}")]
-pub struct UnknownEffect(pub String);
-
 impl FromStr for EffectId {
-    type Err = UnknownEffect;
+    type Err = String;
 
-    fn from_str(name: &str) -> Result<Self, UnknownEffect> {
+    fn from_str(name: &str) -> Result<Self, String> {
         let named = Self::ALL.iter().copied().find(|effect| effect.name() == name);
-        named.ok_or_else(|| UnknownEffect(name.to_owned()))
+        named.ok_or_else(|| format!("no effect is called {name}"))
     }
 }
 

@@ -1,14 +1,10 @@
-//! First-hit features per pixel: albedo, normal, depth. For compositing and denoising.
+//! What is known of each pixel beside its colour: what is seen there first, and its samples. For compositing and maps.
 
 use super::film::Film;
 
 /// Means over some samples of each pixel; row by row from the top.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Features {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
     /// Albedo, linear Rec. 709, premultiplied by the covered share of the pixel: 0 without a hit. In mirrors and behind
     /// clear glass, that of the surface seen there.
     pub albedo: Vec<[f32; 3]>,
@@ -17,6 +13,10 @@ pub struct Features {
     /// Distance from the camera along its axis, in the model's units, over the covered part of the pixel; infinite without a
     /// hit.
     pub depth: Vec<f32>,
+    /// Samples in each pixel's mean.
+    pub samples: Vec<f32>,
+    /// Variance of each pixel's mean luminance; infinite below two samples.
+    pub variance: Vec<f32>,
 }
 
 impl Features {
@@ -27,11 +27,7 @@ impl Features {
 
     /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2], world_units_per_unit: f64) -> Self {
-        let mut features = Self {
-            width: film.width,
-            height: film.height,
-            ..Self::default()
-        };
+        let mut features = Self::default();
         for pixel in 0..film.pixel_count() {
             let [mut sums, odd] = film.guides.get(pixel).copied().unwrap_or_default();
             sums.add(&odd);
@@ -42,6 +38,8 @@ impl Features {
                 hits if hits > 0.0 => (f64::from(sums.depth / hits) * world_units_per_unit) as f32,
                 _ => f32::INFINITY,
             });
+            features.samples.push(film.samples_of(pixel) as f32);
+            features.variance.push(film.variance_of_mean_at(pixel) as f32);
         }
         features
     }

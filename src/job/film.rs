@@ -6,7 +6,7 @@ use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 use crate::parallel;
 
-/// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 72
+/// Sums over the samples of each pixel. Colours are summed in f64, so that they do not stall after millions of samples. 80
 /// bytes per pixel and 32 per tile, plus the requested [`Extras`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
@@ -15,14 +15,14 @@ pub struct Film {
     /// Height in pixels.
     pub height: u32,
     /// Sums of each pixel, row by row from the top.
-    pub(super) pixels: Vec<KeptHalves>,
+    pub pixels: Vec<[HalfSums; 2]>,
     /// Sums of coverage; empty if every pixel is covered.
-    pub(super) coverage: Vec<f64>,
+    pub coverage: Vec<f64>,
     /// First-hit guides of the first [`GUIDE_SAMPLES`] samples of each pixel, of the even and the odd ones; empty if not
     /// requested.
     pub guides: Vec<[GuideSums; 2]>,
     /// Sums of each light group, those of a pixel in a row; empty if not requested.
-    pub(super) lights: Vec<LightSums>,
+    pub lights: Vec<LightSums>,
     /// Costs and removed energy per tile.
     pub costs: Vec<TileCosts>,
 }
@@ -54,7 +54,11 @@ pub struct TileCosts {
 }
 
 /// Sums over one of the two independent halves of a pixel's samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+///
+/// Squared deviations lose nothing by cancellation, unlike squares minus the mean's. f32 would be precise enough for the
+/// spread, but rounded after each pass, whose length depends on the clock: the same render twice would differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
 pub struct HalfSums {
     /// Linear red, green and blue.
     pub color: [f64; 3],
@@ -63,33 +67,18 @@ pub struct HalfSums {
     pub samples: f64,
 }
 
-/// Sums of one half of a pixel's samples. Squared deviations lose nothing by cancellation, unlike squares minus the mean's.
-/// f32 would be precise enough for the spread, but rounded after each pass, whose length depends on the clock: the same
-/// render twice would differ.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct KeptHalves {
-    color: [[f64; 3]; 2],
-    squared_deviations: [f64; 2],
-    samples: [u32; 2],
-}
-
-const _: () = assert!(size_of::<KeptHalves>() == 72);
-
 /// Luminance of linear Rec. 709.
-#[inline(always)]
 pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 impl HalfSums {
     /// Sum of the luminance.
-    #[inline(always)]
     pub fn luminance(&self) -> f64 {
         luminance(self.color)
     }
 
     /// Mean luminance; 0 without samples.
-    #[inline(always)]
     pub fn mean_luminance(&self) -> f64 {
         self.luminance() / self.samples.max(1.0)
     }
@@ -139,29 +128,6 @@ fn added(mut sum: [f64; 3], color: [f64; 3]) -> [f64; 3] {
     sum
 }
 
-impl KeptHalves {
-    pub(super) fn sums(&self) -> [HalfSums; 2] {
-        std::array::from_fn(|half| HalfSums {
-            color: self.color[half],
-            squared_deviations: self.squared_deviations[half],
-            samples: f64::from(self.samples[half]),
-        })
-    }
-
-    fn both(&self) -> HalfSums {
-        let [even, odd] = self.sums();
-        even.with(&odd)
-    }
-
-    pub(super) fn of(sums: &[HalfSums; 2]) -> Self {
-        Self {
-            color: sums.map(|half| half.color),
-            squared_deviations: sums.map(|half| half.squared_deviations),
-            samples: sums.map(|half| half.samples as u32),
-        }
-    }
-}
-
 impl Extras {
     /// The data that a job needs.
     pub fn of(job: &Job) -> Self {
@@ -178,7 +144,7 @@ impl Extras {
         let tile = size_of::<TileCosts>().div_ceil(64);
         let coverage = extra(self.coverage, size_of::<f64>());
         let lights = self.light_groups as usize * size_of::<LightSums>();
-        (size_of::<KeptHalves>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>()) + lights) as u64
+        (size_of::<[HalfSums; 2]>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>()) + lights) as u64
     }
 }
 
@@ -249,26 +215,18 @@ impl Film {
 
     /// The two halves of a pixel's samples: the even ones and the odd ones, see [`crate::optics::random::path_state`].
     pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
-        self.pixels[pixel].sums()
+        self.pixels[pixel]
     }
 
     /// Replaces a pixel's sums.
     pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
-        self.pixels[pixel] = KeptHalves::of(halves);
-    }
-
-    /// Adds the halves of `count` consecutive pixels, from pixel `first` on, in parallel; `halves` gives those of a pixel by
-    /// its place among them.
-    pub fn add_halves(&mut self, first: usize, count: usize, halves: impl Fn(usize) -> [HalfSums; 2] + Sync) {
-        parallel::for_rows(&mut self.pixels[first..first + count], 1, |place, kept| {
-            let ([even, odd], [more_even, more_odd]) = (kept[0].sums(), halves(place));
-            kept[0] = KeptHalves::of(&[even.with(&more_even), odd.with(&more_odd)]);
-        });
+        self.pixels[pixel] = *halves;
     }
 
     /// Sums over all samples of a pixel.
     pub fn sums(&self, pixel: usize) -> HalfSums {
-        self.pixels[pixel].both()
+        let [even, odd] = self.halves(pixel);
+        even.with(&odd)
     }
 
     /// Sums of linear red, green, blue and of the coverage.
@@ -293,13 +251,7 @@ impl Film {
 
     /// Number of samples in a pixel's sums.
     pub fn samples_of(&self, pixel: usize) -> f64 {
-        self.pixels[pixel].samples.map(f64::from).iter().sum()
-    }
-
-    /// The most samples that a pixel has.
-    pub fn samples_max(&self) -> u32 {
-        let samples = (0..self.pixels.len()).map(|pixel| self.samples_of(pixel) as u32);
-        samples.max().unwrap_or(0)
+        self.pixels[pixel].iter().map(|half| half.samples).sum()
     }
 
     /// Guide samples per half of a pixel, if rendering started with the first sample.
@@ -311,40 +263,39 @@ impl Film {
     /// A rectangle of it, from `origin`, which is that of a tile.
     pub fn part(&self, origin: [u32; 2], size: [u32; 2]) -> Film {
         let mut part = Film::keeping(size[0], size[1], self.extras());
-        let grid = self.grid();
-        for tile in 0..part.costs.len() {
-            let [x, y] = part.grid().origin(tile);
-            part.costs[tile] = self.costs[grid.at([origin[0] + x, origin[1] + y])];
-        }
-        for row in 0..size[1] as usize {
-            let to = row * size[0] as usize..(row + 1) * size[0] as usize;
-            let from = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
-            let from = from..from + size[0] as usize;
-            part.pixels[to.clone()].copy_from_slice(&self.pixels[from.clone()]);
-            copy_kept(&mut part.coverage, to.clone(), &self.coverage, from.clone());
-            copy_kept(&mut part.guides, to.clone(), &self.guides, from.clone());
-            part.copy_lights(to, self, from);
-        }
+        part.copy_part([0, 0], self, origin, size);
         part
     }
 
     /// Copies such a part back to its place.
     pub fn place(&mut self, origin: [u32; 2], part: &Film) {
-        let grid = self.grid();
-        for (tile, costs) in part.costs.iter().enumerate() {
-            let [x, y] = part.grid().origin(tile);
-            self.costs[grid.at([origin[0] + x, origin[1] + y])] = *costs;
+        self.copy_part(origin, part, [0, 0], [part.width, part.height]);
+    }
+
+    fn copy_part(&mut self, to: [u32; 2], film: &Film, from: [u32; 2], [width, height]: [u32; 2]) {
+        let tiles = TileGrid { width, height };
+        let (own, other) = (self.grid(), film.grid());
+        for place in (0..tiles.tiles()).map(|tile| tiles.origin(tile)) {
+            let at = |grid: TileGrid, [x, y]: [u32; 2]| grid.at([x + place[0], y + place[1]]);
+            self.costs[at(own, to)] = film.costs[at(other, from)];
         }
-        let width = part.width as usize;
-        for row in 0..part.height as usize {
-            let from = row * width..(row + 1) * width;
-            let to = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
-            let to = to..to + width;
-            self.pixels[to.clone()].copy_from_slice(&part.pixels[from.clone()]);
-            copy_kept(&mut self.coverage, to.clone(), &part.coverage, from.clone());
-            copy_kept(&mut self.guides, to.clone(), &part.guides, from.clone());
-            self.copy_lights(to, part, from);
+        for row in 0..height {
+            let pixel = |film: &Film, [x, y]: [u32; 2]| ((y + row) * film.width + x) as usize;
+            self.copy_pixels(pixel(self, to), film, pixel(film, from), width as usize);
         }
+    }
+
+    /// Copies the sums of `count` pixels in a row from a film that keeps the same.
+    fn copy_pixels(&mut self, to: usize, film: &Film, from: usize, count: usize) {
+        fn copy<T: Copy>(to: (&mut [T], usize), from: (&[T], usize), count: usize, pixels: usize) {
+            let each = from.0.len() / pixels;
+            to.0[each * to.1..][..each * count].copy_from_slice(&from.0[each * from.1..][..each * count]);
+        }
+        let pixels = film.pixel_count();
+        copy((&mut self.pixels, to), (&film.pixels, from), count, pixels);
+        copy((&mut self.coverage, to), (&film.coverage, from), count, pixels);
+        copy((&mut self.guides, to), (&film.guides, from), count, pixels);
+        copy((&mut self.lights, to), (&film.lights, from), count, pixels);
     }
 
     /// The chosen pixels as a film of one row, without tile costs.
@@ -352,12 +303,31 @@ impl Film {
         let chosen: Vec<usize> = (0..self.pixels.len()).filter(|&pixel| is_chosen(pixel)).collect();
         let mut film = Film::keeping(chosen.len() as u32, 1, self.extras());
         for (to, from) in chosen.into_iter().enumerate() {
-            film.pixels[to] = self.pixels[from];
-            copy_kept(&mut film.coverage, to..to + 1, &self.coverage, from..from + 1);
-            copy_kept(&mut film.guides, to..to + 1, &self.guides, from..from + 1);
-            film.copy_lights(to..to + 1, self, from..from + 1);
+            film.copy_pixels(to, self, from, 1);
         }
         film
+    }
+
+    /// The words of the sums of pixels, of coverage, of light groups and of guides, each pixel by pixel; the order of the
+    /// words is that of the structures.
+    pub fn words(&self) -> [&[u32]; 4] {
+        use bytemuck::cast_slice as words;
+        [
+            words(&self.pixels),
+            words(&self.coverage),
+            words(&self.lights),
+            words(&self.guides),
+        ]
+    }
+
+    pub fn words_mut(&mut self) -> [&mut [u32]; 4] {
+        use bytemuck::cast_slice_mut as words;
+        [
+            words(&mut self.pixels),
+            words(&mut self.coverage),
+            words(&mut self.lights),
+            words(&mut self.guides),
+        ]
     }
 
     /// Rays traced for all pixels together.
@@ -377,12 +347,12 @@ impl Film {
 
     /// Share of the image's energy, in [0, 1], that the firefly clamp removed.
     pub fn clamped_share(&self) -> f64 {
-        let clamped = self.clamped();
-        if clamped > 0.0 {
-            let kept: f64 = self.pixels.iter().map(|pixel| pixel.both().luminance()).sum();
-            clamped / (clamped + kept)
-        } else {
-            0.0
+        match self.clamped() {
+            0.0 => 0.0,
+            clamped => {
+                let kept: f64 = (0..self.pixels.len()).map(|pixel| self.sums(pixel).luminance()).sum();
+                clamped / (clamped + kept)
+            }
         }
     }
 
@@ -395,17 +365,19 @@ impl Film {
 
     /// Samples in the sums of all pixels together.
     pub fn samples(&self) -> u64 {
-        let of_halves = |pixel: &KeptHalves| pixel.samples.map(u64::from);
-        self.pixels.iter().flat_map(of_halves).sum()
+        self.pixels.as_flattened().iter().map(|half| half.samples as u64).sum()
     }
 
     /// The mean image: linear Rec. 709, premultiplied alpha; black without samples.
     pub fn image(&self) -> Image {
-        let mean = |pixel| self.mean(pixel).map(|x| x as f32);
+        self.image_of(|pixel| self.mean(pixel).map(|x| x as f32))
+    }
+
+    pub fn image_of(&self, of_pixel: impl Fn(usize) -> [f32; 4] + Sync) -> Image {
         Image {
             width: self.width,
             height: self.height,
-            pixels: parallel::map(self.pixels.len(), mean),
+            pixels: parallel::map(self.pixels.len(), of_pixel),
         }
     }
 
@@ -417,8 +389,7 @@ impl Film {
 
     /// Mean luminance of each pixel; NaN without samples.
     pub fn luminance(&self) -> Vec<f64> {
-        let of_pixel = |pixel| self.luminance_of(pixel);
-        parallel::map(self.pixels.len(), of_pixel)
+        parallel::map(self.pixels.len(), |pixel| self.luminance_of(pixel))
     }
 
     /// Difference of the total luminance from another render's of the same size, in standard deviations. The sum over many
@@ -432,28 +403,17 @@ impl Film {
     /// Variance of the mean luminance of each pixel as if its samples were independent; infinite below two samples.
     /// Unbiased for uniform random numbers, too large for the Sobol sequence: see `analysis::noise`.
     pub fn variance_of_mean(&self) -> Vec<f64> {
-        let of_pixel = |pixel| self.variance_of_mean_at(pixel);
-        parallel::map(self.pixels.len(), of_pixel)
+        parallel::map(self.pixels.len(), |pixel| self.variance_of_mean_at(pixel))
     }
 
     /// The same of one pixel.
     pub fn variance_of_mean_at(&self, pixel: usize) -> f64 {
         let sums = self.sums(pixel);
         if sums.samples < 2.0 {
-            return f64::INFINITY;
+            f64::INFINITY
+        } else {
+            sums.spread() / sums.samples
         }
-        sums.spread() / sums.samples
-    }
-}
-
-pub(super) fn copy_kept<T: Copy>(
-    to: &mut [T],
-    to_range: std::ops::Range<usize>,
-    from: &[T],
-    from_range: std::ops::Range<usize>,
-) {
-    if let (Some(to), Some(from)) = (to.get_mut(to_range), from.get(from_range)) {
-        to.copy_from_slice(from);
     }
 }
 

@@ -2,9 +2,8 @@
 //! image of the same samples.
 
 use std::borrow::Cow;
-use std::ops::Range;
 
-use super::film::{Film, HalfSums, Image, KeptHalves, LightSums, copy_kept, luminance};
+use super::film::{Film, HalfSums, Image, LightSums, luminance};
 use crate::parallel;
 
 /// Light groups at most.
@@ -40,13 +39,6 @@ impl Film {
         sums.zip(more.as_flattened()).for_each(|(sum, more)| *sum += more);
     }
 
-    /// Copies the groups' sums of some pixels of another film.
-    pub(super) fn copy_lights(&mut self, to: Range<usize>, from: &Film, pixels: Range<usize>) {
-        let groups = from.light_groups();
-        let of = |pixels: Range<usize>| pixels.start * groups..pixels.end * groups;
-        copy_kept(&mut self.lights, of(to), &from.lights, of(pixels));
-    }
-
     /// The mean light of a group: linear RGB with an alpha of 1.
     pub fn light_image(&self, group: usize) -> Image {
         let mean = |pixel: usize| {
@@ -55,24 +47,7 @@ impl Film {
             let mean = |channel: usize| ((even[channel] + odd[channel]) / samples) as f32;
             [mean(0), mean(1), mean(2), 1.0]
         };
-        Image {
-            width: self.width,
-            height: self.height,
-            pixels: parallel::map(self.pixel_count(), mean),
-        }
-    }
-
-    /// The film with other halves of each pixel's samples, made in parallel, and without light groups.
-    fn with_halves(&self, halves: impl Fn(usize, [HalfSums; 2]) -> [HalfSums; 2] + Sync) -> Film {
-        let of_pixel = |pixel: usize| KeptHalves::of(&halves(pixel, self.pixels[pixel].sums()));
-        Film {
-            pixels: parallel::map(self.pixels.len(), of_pixel),
-            coverage: self.coverage.clone(),
-            guides: self.guides.clone(),
-            lights: Vec::new(),
-            costs: self.costs.clone(),
-            ..*self
-        }
+        self.image_of(mean)
     }
 
     /// The film with a factor per channel on each group's light, without the groups; itself if no factor differs from 1. The spread of a
@@ -81,12 +56,21 @@ impl Film {
         if self.lights.is_empty() || factors.iter().flatten().all(|factor| *factor == 1.0) {
             return Cow::Borrowed(self);
         }
-        Cow::Owned(self.with_halves(|pixel, halves| {
+        let mixed = |pixel: usize| {
+            let halves = self.halves(pixel);
             std::array::from_fn(|number| {
                 let lights = self.lights(pixel).iter().map(|sums| sums[number]);
                 mixed_half(&halves[number], lights.zip(factors))
             })
-        }))
+        };
+        Cow::Owned(Film {
+            pixels: parallel::map(self.pixels.len(), mixed),
+            coverage: self.coverage.clone(),
+            guides: self.guides.clone(),
+            lights: Vec::new(),
+            costs: self.costs.clone(),
+            ..*self
+        })
     }
 }
 

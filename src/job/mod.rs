@@ -1,6 +1,26 @@
 //! Input and output of an engine: the job (a document compiled to numbers, with its feature plan), the film, tiles and their
 //! schedule, and other requests.
 
+/// Structures of plain words, which the GPU reads byte for byte.
+macro_rules! plain {
+    ($($(#[$doc:meta])* struct $name:ident { $($(#[$of_field:meta])* $field:ident: $type:ty,)* })*) => {
+        $(
+            $(#[$doc])*
+            #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+            #[repr(C)]
+            pub struct $name {
+                $($(#[$of_field])* pub $field: $type,)*
+            }
+
+            impl $name {
+                /// Names and types of the members: the shaders' structure is made of them.
+                pub const MEMBERS: &[(&str, &str)] = &[$((stringify!($field), stringify!($type))),*];
+            }
+        )*
+    };
+}
+pub(crate) use plain;
+
 pub mod effect;
 pub mod features;
 pub mod film;

@@ -34,7 +34,7 @@ impl ScatterRequest {
 
     /// The frame: the axes.
     pub fn frame<T: Real>() -> Frame<T> {
-        let (zero, one) = (T::zero(), T::one());
+        let (zero, one) = (T::ZERO, T::ONE);
         Frame {
             tangent: vec3(one, zero, zero),
             bitangent: vec3(zero, one, zero),

@@ -68,19 +68,16 @@ impl TileGrid {
         (y / TILE_SIDE) as usize * self.columns() + (x / TILE_SIDE) as usize
     }
 
-    /// Whether a tile overlaps a region: left, top, right, bottom as shares of width and height.
-    pub fn is_within(self, tile: usize, region: [f64; 4]) -> bool {
+    /// Whether a tile is rendered: all are, unless only those that overlap a region (left, top, right, bottom as shares of
+    /// width and height).
+    pub fn is_rendered(self, tile: usize, region: Option<[f64; 4]>) -> bool {
+        let Some(region) = region else { return true };
         let (origin, size) = (self.origin(tile), self.size(tile));
         [self.width, self.height].into_iter().enumerate().all(|(axis, whole)| {
             let low = f64::from(origin[axis]) / f64::from(whole);
             let high = f64::from(origin[axis] + size[axis]) / f64::from(whole);
             low < region[axis + 2] && high > region[axis]
         })
-    }
-
-    /// Whether a tile is rendered: all are, unless only a region is.
-    pub fn is_rendered(self, tile: usize, region: Option<[f64; 4]>) -> bool {
-        region.is_none_or(|region| self.is_within(tile, region))
     }
 
     /// The tiles around a tile, itself among them.
@@ -158,13 +155,8 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// A schedule without samples and goals.
-    pub fn new(width: u32, height: u32) -> Self {
-        Self::starting_at(width, height, 0)
-    }
-
-    /// The same starting at sample `first_sample`.
-    pub fn starting_at(width: u32, height: u32, first_sample: u32) -> Self {
+    /// A schedule without samples and goals, which starts at sample `first_sample`.
+    pub fn new(width: u32, height: u32, first_sample: u32) -> Self {
         let grid = TileGrid { width, height };
         Self {
             grid,

@@ -58,7 +58,7 @@ pub fn colors(merl: &Merl, view_angle_rad: f64, model: &LobeModel) -> Colors {
     let grid = SphereGrid::adapted(view_angle_rad, Side::Above, true, &[&lobe, &base, &measured]);
     // Each direction counts by the inverse of what is seen there: else the highlight's peak alone would count.
     let mut normal = [[0.0; 2]; 2];
-    let mut right = [Vec3::zero(); 2];
+    let mut right = [Vec3::ZERO; 2];
     for (wi, solid_angle) in &grid.points {
         let columns = [lobe(*wi), base(*wi)];
         let value = merl.reflectance(wo, *wi) * NORMAL.dot(*wi).max(0.0);

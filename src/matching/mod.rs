@@ -242,19 +242,8 @@ pub fn nearest_ggx(model: &LobeModel) -> Nearest {
     if model.is_symmetric() {
         return nearest_roughness(target, &candidate, 0.0, Measure::Evaluate);
     }
-    let distance = |roughness: f64| {
-        let candidate = candidate.with_roughness(roughness);
-        let profile: Profile = &|wi| candidate.evaluate(wo, wi)[0];
-        let grid = SphereGrid::adapted(0.0, Side::Above, false, &[target, profile]);
-        let [p, q] = [target, profile].map(|profile| grid.values(profile));
-        let [p_total, q_total] = [&p, &q].map(|values| grid.integral(values).max(f64::MIN_POSITIVE));
-        let apart: Vec<f64> = p
-            .iter()
-            .zip(&q)
-            .map(|(p, q)| (p / p_total - q / q_total).abs())
-            .collect();
-        0.5 * grid.integral(&apart)
-    };
+    let distance =
+        |roughness: f64| total_variation(target, &candidate.with_roughness(roughness), 0.0, Measure::Evaluate);
     roughness::minimum(
         [roughness_min(Lobe::Ggx), 1.0],
         STRETCHED_SCAN.0,
@@ -309,28 +298,19 @@ pub fn comparison(target: &Target, found: &LookMatch) -> Result<LinePlot, MatchE
         .filter(|[_, y]| *y > SHOWN_FLOOR * top)
         .map(|[x, _]| *x);
     let range = [seen.clone().fold(90.0, f64::min), seen.fold(-90.0, f64::max)];
-    let axis = |label: &str, range: [f64; 2], is_logarithmic| Axis {
-        label: label.to_owned(),
-        range,
-        is_logarithmic,
-    };
-    let highest = series
-        .iter()
-        .flat_map(|series| &series.points)
-        .map(|[_, y]| *y)
-        .fold(top, f64::max);
+    let points = series.iter().flat_map(|series| &series.points);
+    let highest = points.map(|[_, y]| *y).fold(top, f64::max);
     // Only what lies on the plot.
     for series in &mut series {
         series.points.retain(|[x, _]| (range[0]..=range[1]).contains(x));
     }
     Ok(LinePlot {
         title: "Matched look".to_owned(),
-        x: axis("Angle to the normal in degrees", range, false),
-        y: axis(
-            "Share of the highlight in 1/sr",
-            [SHOWN_FLOOR * top, 1.5 * highest],
-            true,
-        ),
+        x: Axis::linear("Angle to the normal in degrees", range),
+        y: Axis {
+            is_logarithmic: true,
+            ..Axis::linear("Share of the highlight in 1/sr", [SHOWN_FLOOR * top, 1.5 * highest])
+        },
         is_polar: false,
         x_column: "angle_deg",
         series,

@@ -12,11 +12,10 @@ use super::fresnel::{
 use super::lobe::{LobeShape, lobe_sample};
 use super::material::Material;
 use super::random::even_point;
-use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::table::{NODE_LENGTH, look_up_number, node_below};
 use super::thin_film::{film_change_of_dielectric, film_change_of_metal, mean_facet};
-use super::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 use crate::parallel;
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
@@ -30,40 +29,39 @@ pub const ROUGHNESS_NODES: usize = 17;
 /// Numbers of a rough albedo table: [`ROUGHNESS_NODES`] times the nodes of an albedo table, each four integrals.
 pub const ROUGH_ALBEDO_LENGTH: usize = NODE_LENGTH * ROUGHNESS_NODES * ALBEDO_NODES;
 
-/// Specular albedo at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
-/// [`albedo_place`] from within.
-#[inline(always)]
-pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
-    let [low, beyond] = node_below(place, ALBEDO_NODES);
-    let table = &tables[albedo_table as usize..];
-    albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), beyond)
-}
-
-/// The colour at a node of a table.
-#[inline(always)]
-fn albedo_node<T: Real>(table: &[f32], node: T) -> Vec3<T> {
-    vec3(
-        look_up_number::<0, T>(table, node),
-        look_up_number::<1, T>(table, node),
-        look_up_number::<2, T>(table, node),
-    )
-}
-
-/// Table position of a view, in [0, 1]. At the critical angle the albedo of a smooth interface has a vertical tangent: below
-/// it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
-#[inline(always)]
-pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
-    let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
-    let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
-    let is_total_somewhere = T::zero().less(critical);
-    if !is_total_somewhere.any() {
-        return cosine;
+inlined! {
+    /// Specular albedo at position `place` in [0, 1] of a table, linear between its nodes: the view's cosine from outside,
+    /// [`albedo_place`] from within.
+    pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
+        let [low, beyond] = node_below(place, ALBEDO_NODES);
+        let table = &tables[albedo_table as usize..];
+        albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), beyond)
     }
-    let square = refracted_square(cosine, eta);
-    let above = share + (T::one() - share) * (square.safe_sqrt() / eta);
-    let below = share * (cosine.max(T::zero()) / critical);
-    let place = T::select(square.less(T::zero()), below, above);
-    T::select(is_total_somewhere, place, cosine)
+
+    /// The colour at a node of a table.
+    fn albedo_node<T: Real>(table: &[f32], node: T) -> Vec3<T> {
+        vec3(
+            look_up_number::<0, T>(table, node),
+            look_up_number::<1, T>(table, node),
+            look_up_number::<2, T>(table, node),
+        )
+    }
+
+    /// Table position of a view, in [0, 1]. At the critical angle the albedo of a smooth interface has a vertical tangent: below
+    /// it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
+    pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
+        let critical = (-refracted_square(T::ZERO, eta)).safe_sqrt();
+        let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
+        let is_total_somewhere = critical.above_zero();
+        if !is_total_somewhere.any() {
+            return cosine;
+        }
+        let square = refracted_square(cosine, eta);
+        let above = share + (T::ONE - share) * (square.safe_sqrt() / eta);
+        let below = share * (cosine.max(T::ZERO) / critical);
+        let place = T::select(square.below_zero(), below, above);
+        T::select(is_total_somewhere, place, cosine)
+    }
 }
 
 /// The view's cosine at a node of a table: [`albedo_place`] backwards.
@@ -98,11 +96,11 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
 /// is given.
 #[inline(always)]
 pub fn view_at<T: Real>(cosine: T, turn: Option<T>) -> Vec3<T> {
-    let sine = (T::one() - cosine * cosine).safe_sqrt();
+    let sine = (T::ONE - cosine * cosine).safe_sqrt();
     let Some(turn) = turn else {
-        return vec3(sine, T::zero(), cosine);
+        return vec3(sine, T::ZERO, cosine);
     };
-    let azimuth_rad = T::from_f64(std::f64::consts::TAU) * turn;
+    let azimuth_rad = T::TAU * turn;
     vec3(sine * azimuth_rad.cos(), sine * azimuth_rad.sin(), cosine)
 }
 
@@ -153,7 +151,7 @@ pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32
 /// Basis of the Fresnel factor for any metalness and base colour: the exact dielectric, Schlick's two terms and the
 /// darkening towards the edge; or the untinted factor of each channel, then 0.
 fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
-    if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
+    if !terms.has_parts() {
         let untinted = FresnelTerms {
             tint: Vec3::splat(1.0),
             weight: 1.0,
@@ -162,7 +160,7 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
         let [r, g, b] = fresnel(&untinted, cosine).to_f64();
         return [r, g, b, 0.0];
     }
-    let grazing = fresnel_schlick(Vec3::zero(), cosine).x;
+    let grazing = fresnel_schlick(Vec3::ZERO, cosine).x;
     [
         fresnel_dielectric(cosine, terms.ior),
         1.0 - grazing,
@@ -200,7 +198,7 @@ fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [beyond,
 #[inline(always)]
 pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3<T> {
     let [first, constant, grazing, edge] = integrals;
-    if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
+    if !terms.has_parts() {
         return vec3(first, constant, grazing) * terms.tint * terms.weight;
     }
     let dielectric = if terms.model == Fresnel::Schlick {

@@ -2,38 +2,36 @@
 //! "Emission".
 
 use super::material::Material;
-use super::real::Real;
 use super::refraction::refracted_square;
-use super::vector::Vec3;
+use crate::optics::prelude::*;
 
 /// Least cosine of the way through a coat.
 pub const WAY_COSINE_MIN: f64 = 1e-3;
 /// Least colour of a coat, whose powers are finite.
 pub const COLOR_MIN: f64 = 1e-12;
 
-/// Length of the way through the coat with this cosine outside, over that at right angles.
-#[inline(always)]
-pub fn way_length<T: Real>(material: &Material<T>, cosine: T) -> T {
-    let behind = refracted_square(cosine, material.coat_ior).safe_sqrt() / material.coat_ior;
-    T::one() / behind.max(T::from_f64(WAY_COSINE_MIN))
-}
+inlined! {
+    /// Length of the way through the coat with this cosine outside, over that at right angles.
+    pub fn way_length<T: Real>(material: &Material<T>, cosine: T) -> T {
+        let behind = refracted_square(cosine, material.coat_ior).safe_sqrt() / material.coat_ior;
+        T::ONE / behind.max(T::from_f64(WAY_COSINE_MIN))
+    }
 
-/// The coat's colour, that of a way in and out at right angles, over a way of this length.
-#[inline(always)]
-pub fn color_over<T: Real>(material: &Material<T>, way: T) -> Vec3<T> {
-    let half = T::from_f64(0.5) * way;
-    let color = |channel: T| channel.max(T::from_f64(COLOR_MIN)).powf(half);
-    material.coat_color.map(color)
-}
+    /// The coat's colour, that of a way in and out at right angles, over a way of this length.
+    pub fn color_over<T: Real>(material: &Material<T>, way: T) -> Vec3<T> {
+        let half = T::HALF * way;
+        let color = |channel: T| channel.max(T::from_f64(COLOR_MIN)).powf(half);
+        material.coat_color.map(color)
+    }
 
-/// What such a coat leaves of the light that a surface emits at this cosine to its normal. `is_back`: lanes behind the
-/// surface.
-#[inline(always)]
-pub fn coat_over_emission<T: Real>(material: &Material<T>, cosine: T, is_back: T::Mask) -> Vec3<T> {
-    let white = Vec3::splat(T::one());
-    let tint = white.mix(
-        color_over(material, way_length(material, cosine.abs())),
-        material.coat_weight,
-    );
-    Vec3::select(is_back & material.transmits(), white, tint)
+    /// What such a coat leaves of the light that a surface emits at this cosine to its normal. `is_back`: lanes behind the
+    /// surface.
+    pub fn coat_over_emission<T: Real>(material: &Material<T>, cosine: T, is_back: T::Mask) -> Vec3<T> {
+        let white = Vec3::ONE;
+        let tint = white.mix(
+            color_over(material, way_length(material, cosine.abs())),
+            material.coat_weight,
+        );
+        Vec3::select(is_back & material.transmits(), white, tint)
+    }
 }

@@ -1,71 +1,67 @@
 //! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
 
 pub use super::fresnel_terms::{Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel_metal, fresnel_schlick};
-use super::real::Real;
 use super::refraction::refracted_square;
 use super::thin_film::{film_change_of_dielectric, film_change_of_metal, film_on_conductor, film_passed};
-use super::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
-/// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
-#[inline(always)]
-pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    match terms.model {
-        Fresnel::None => terms.tint * terms.weight,
-        Fresnel::Schlick | Fresnel::Dielectric => {
-            let [dielectric, metal] = fresnel_parts(terms, cosine);
-            dielectric.mix(metal, terms.metalness)
-        }
-        Fresnel::Conductor => {
-            let mut channels = vec3(
-                fresnel_conductor(cosine, terms.eta.x, terms.k.x),
-                fresnel_conductor(cosine, terms.eta.y, terms.k.y),
-                fresnel_conductor(cosine, terms.eta.z, terms.k.z),
-            );
-            if terms.has_film {
-                channels = film_on_conductor(terms, cosine, channels);
+inlined! {
+    /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
+    pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+        match terms.model {
+            Fresnel::None => terms.tint * terms.weight,
+            Fresnel::Schlick | Fresnel::Dielectric => {
+                let [dielectric, metal] = fresnel_parts(terms, cosine);
+                dielectric.mix(metal, terms.metalness)
             }
-            channels * terms.tint * terms.weight
+            Fresnel::Conductor => {
+                let mut channels = vec3(
+                    fresnel_conductor(cosine, terms.eta.x, terms.k.x),
+                    fresnel_conductor(cosine, terms.eta.y, terms.k.y),
+                    fresnel_conductor(cosine, terms.eta.z, terms.k.z),
+                );
+                if terms.has_film {
+                    channels = film_on_conductor(terms, cosine, channels);
+                }
+                channels * terms.tint * terms.weight
+            }
         }
     }
-}
 
-/// The shares that the dielectric and the metal of a surface reflect, by Schlick's model or the exact equations.
-#[inline(always)]
-pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2] {
-    let dielectric = if terms.model == Fresnel::Schlick {
-        fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
-    } else {
-        terms.tint * fresnel_dielectric(cosine, terms.ior)
-    };
-    let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
-    let parts = [dielectric * terms.weight, metal];
-    if !terms.has_film {
-        return parts;
+    /// The shares that the dielectric and the metal of a surface reflect, by Schlick's model or the exact equations.
+    pub fn fresnel_parts<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> [Vec3<T>; 2] {
+        let dielectric = if terms.model == Fresnel::Schlick {
+            fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
+        } else {
+            terms.tint * fresnel_dielectric(cosine, terms.ior)
+        };
+        let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
+        let parts = [dielectric * terms.weight, metal];
+        if !terms.has_film {
+            return parts;
+        }
+        [
+            in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
+            in_unit(parts[1] + film_change_of_metal(terms, cosine)),
+        ]
     }
-    [
-        in_unit(parts[0] + film_change_of_dielectric(terms, cosine)),
-        in_unit(parts[1] + film_change_of_metal(terms, cosine)),
-    ]
-}
 
-/// Each channel brought into [0, 1].
-#[inline(always)]
-fn in_unit<T: Real>(share: Vec3<T>) -> Vec3<T> {
-    share.map(|x| x.clamp(T::zero(), T::one()))
-}
+    /// Each channel brought into [0, 1].
+    fn in_unit<T: Real>(share: Vec3<T>) -> Vec3<T> {
+        share.map(|x| x.clamp(T::ZERO, T::ONE))
+    }
 
-/// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
-/// nearly opposite directions, where the Fresnel factor is steepest.
-#[inline(always)]
-pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
-    (T::from_f64(0.5) * (wo + wi).length()).min(T::one())
-}
+    /// Cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose precision for
+    /// nearly opposite directions, where the Fresnel factor is steepest.
+    pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
+        (T::HALF * (wo + wi).length()).min(T::ONE)
+    }
 
-/// Reflectance at normal incidence of a dielectric.
-#[inline(always)]
-pub fn fresnel_f0<T: Real>(ior: T) -> T {
-    let ratio = (ior - T::one()) / (ior + T::one());
-    ratio * ratio
+    /// Reflectance at normal incidence of a dielectric.
+    pub fn fresnel_f0<T: Real>(ior: T) -> T {
+        let ratio = (ior - T::ONE) / (ior + T::ONE);
+        ratio * ratio
+    }
 }
 
 /// Index of refraction of a dielectric that reflects `weight` times as much at normal incidence, and all at grazing angles.
@@ -78,95 +74,90 @@ pub fn weighted_ior(ior: f64, weight: f64) -> f64 {
 /// `ior` = index behind the boundary over index before it; 1 under total internal reflection.
 #[inline(always)]
 pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
-    let c = cosine.clamp(T::zero(), T::one());
+    let c = cosine.clamp(T::ZERO, T::ONE);
     // ior² cos²θt, not negative unless the reflection is total.
     let square = refracted_square(c, ior);
     let g = square.safe_sqrt();
     let perpendicular = (c - g) / (c + g).max(T::from_f64(1e-12));
     let parallel = (ior * ior * c - g) / (ior * ior * c + g).max(T::from_f64(1e-12));
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let value = half * (perpendicular * perpendicular + parallel * parallel);
-    T::select(square.less(T::zero()), T::one(), value)
+    T::select(square.below_zero(), T::ONE, value)
 }
 
 /// Fresnel's equations for unpolarised light on a conductor with complex index `eta` + i `k` against vacuum.
 /// Source: Lagarde, "Memo on Fresnel equations" (2013).
 #[inline(always)]
 pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
-    let c = cosine.clamp(T::zero(), T::one());
+    let c = cosine.clamp(T::ZERO, T::ONE);
     let cos2 = c * c;
-    let sin2 = (T::one() - c) * (T::one() + c);
+    let sin2 = (T::ONE - c) * (T::ONE + c);
     // (a + ib)² = t0 + iu, written without cancellation, at grazing for η near 1 and head-on for η near 0. Its magnitude
     // without squares, which would overflow.
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let real = T::select(cos2.less(half), refracted_square(c, eta), eta * eta - sin2);
     let t0 = real - k * k;
-    let u = T::from_f64(2.0) * eta * k;
+    let u = T::TWO * eta * k;
     let largest = t0.abs().max(u).max(T::from_f64(1e-30));
     let (x, y) = (t0 / largest, u / largest);
     let a2_plus_b2 = largest * (x * x + y * y).sqrt();
-    let leg = (T::from_f64(0.5) * (a2_plus_b2 + t0.abs())).sqrt();
-    let a = T::select(
-        t0.less(T::zero()),
-        T::from_f64(0.5) * u / leg.max(T::from_f64(1e-30)),
-        leg,
-    );
+    let leg = (T::HALF * (a2_plus_b2 + t0.abs())).sqrt();
+    let a = T::select(t0.below_zero(), T::HALF * u / leg.max(T::from_f64(1e-30)), leg);
     let t1 = a2_plus_b2 + cos2;
-    let t2 = T::from_f64(2.0) * a * c;
+    let t2 = T::TWO * a * c;
     // Avoids 0/0: no wave behind the surface, or normal incidence, where both polarisations are alike.
     let tiny = T::from_f64(1e-37);
     let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
     let sum = t3 + t4;
-    let ratio = T::select(sum.less(tiny), T::one(), (t3 - t4) / sum.max(tiny));
+    let ratio = T::select(sum.less(tiny), T::ONE, (t3 - t4) / sum.max(tiny));
     let parallel = perpendicular * ratio;
-    (half * (perpendicular + parallel)).clamp(T::zero(), T::one())
+    (half * (perpendicular + parallel)).clamp(T::ZERO, T::ONE)
 }
 
-/// Transmittance of a facet, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which refracts nothing. Written to keep
-/// precision if nearly everything is reflected. `cosine` is between the facet's normal and the view, `behind` between it and
-/// the refracted direction, both in [0, 1].
-#[inline(always)]
-pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
-    let white = Vec3::splat(T::one());
-    let mut left = match terms.model {
-        Fresnel::None | Fresnel::Conductor => {
-            let weight = T::one();
-            white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
+inlined! {
+    /// Transmittance of a facet, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which refracts nothing. Written to keep
+    /// precision if nearly everything is reflected. `cosine` is between the facet's normal and the view, `behind` between it and
+    /// the refracted direction, both in [0, 1].
+    pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
+        let white = Vec3::ONE;
+        let mut left = match terms.model {
+            Fresnel::None | Fresnel::Conductor => {
+                let weight = T::ONE;
+                white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
+            }
+            Fresnel::Schlick => {
+                let c = cosine.clamp(T::ZERO, T::ONE);
+                // 1 − (1 − c)⁵.
+                let five = T::from_f64(5.0);
+                let ten = T::from_f64(10.0);
+                let beside_grazing = c * (five - c * (ten - c * (ten - c * (five - c))));
+                (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing
+            }
+            Fresnel::Dielectric => {
+                let through = fresnel_transmitted(cosine, behind, terms.ior);
+                white - terms.tint + terms.tint * through
+            }
+        };
+        if terms.has_film && terms.has_parts() {
+            left += terms.tint.map(|x| x.min(T::ONE)) * film_passed(terms, cosine, terms.ior * behind);
         }
-        Fresnel::Schlick => {
-            let c = cosine.clamp(T::zero(), T::one());
-            // 1 − (1 − c)⁵.
-            let five = T::from_f64(5.0);
-            let ten = T::from_f64(10.0);
-            let beside_grazing = c * (five - c * (ten - c * (ten - c * (five - c))));
-            (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing
-        }
-        Fresnel::Dielectric => {
-            let through = fresnel_transmitted(cosine, behind, terms.ior);
-            white - terms.tint + terms.tint * through
-        }
-    };
-    if terms.has_film && matches!(terms.model, Fresnel::Schlick | Fresnel::Dielectric) {
-        left += terms.tint.map(|x| x.min(T::one())) * film_passed(terms, cosine, terms.ior * behind);
+        (white * (T::ONE - terms.weight) + left * terms.weight).at_least_zero()
     }
-    (white * (T::one() - terms.weight) + left * terms.weight).at_least_zero()
-}
 
-/// The share that a boundary of two dielectrics lets through, by the cosines on both sides; `ior` as in
-/// [`fresnel_dielectric`]. The refracted cosine is given and not computed from the other: at the critical angle that would
-/// lose half of its digits.
-#[inline(always)]
-pub fn fresnel_transmitted<T: Real>(cosine: T, behind: T, ior: T) -> T {
-    T::from_f64(0.5) * (passed(cosine, ior * behind) + passed(ior * cosine, behind))
-}
+    /// The share that a boundary of two dielectrics lets through, by the cosines on both sides; `ior` as in
+    /// [`fresnel_dielectric`]. The refracted cosine is given and not computed from the other: at the critical angle that would
+    /// lose half of its digits.
+    pub fn fresnel_transmitted<T: Real>(cosine: T, behind: T, ior: T) -> T {
+        T::HALF * (passed(cosine, ior * behind) + passed(ior * cosine, behind))
+    }
 
-/// 1 − ((a − b)/(a + b))².
-#[inline(always)]
-fn passed<T: Real>(a: T, b: T) -> T {
-    let sum = (a + b).max(T::from_f64(1e-12));
-    T::from_f64(4.0) * (a / sum) * (b / sum)
+    /// 1 − ((a − b)/(a + b))².
+    fn passed<T: Real>(a: T, b: T) -> T {
+        let sum = (a + b).max(T::from_f64(1e-12));
+        T::from_f64(4.0) * (a / sum) * (b / sum)
+    }
 }
 
 /// A metal of the preset list.

@@ -1,8 +1,7 @@
 //! What the Fresnel factor is computed from, and the reflectances of metals known by colours: what films on them need too.
 
-use super::real::{Mask, Real};
-use super::vector::Vec3;
 use crate::named::named;
+use crate::optics::prelude::*;
 
 named! {
     Fresnel {
@@ -43,10 +42,15 @@ pub struct FresnelTerms<T> {
 }
 
 impl<T: Real> FresnelTerms<T> {
+    /// True where a dielectric and a metal are mixed.
+    pub fn has_parts(&self) -> bool {
+        matches!(self.model, Fresnel::Schlick | Fresnel::Dielectric)
+    }
+
     /// The same without metal.
     #[inline(always)]
     pub fn of_dielectric(&self) -> Self {
-        let metalness = T::zero();
+        let metalness = T::ZERO;
         Self { metalness, ..*self }
     }
 }
@@ -66,48 +70,46 @@ impl<T: Real> FilmTerms<T> {
     #[inline(always)]
     pub fn none() -> Self {
         Self {
-            weight: T::zero(),
-            ior: T::one(),
-            path: Vec3::zero(),
+            weight: T::ZERO,
+            ior: T::ONE,
+            path: Vec3::ZERO,
         }
     }
 }
 
-/// Schlick's approximation (1994).
-#[inline(always)]
-pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
-    let x = (T::one() - cosine).clamp(T::zero(), T::one());
-    let x2 = x * x;
-    let grazing = x2 * x2 * x;
-    f0 + (Vec3::splat(T::one()) - f0) * grazing
-}
-
-/// The reflectance of a metal that is `f0` at normal incidence: Schlick's, darkened near 82 degrees by `edge_tint` (the
-/// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
-#[inline(always)]
-pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
-    let plain = fresnel_schlick(f0, cosine);
-    let is_tinted = (edge_tint.x + edge_tint.y + edge_tint.z).less(T::from_f64(3.0));
-    if !is_tinted.any() {
-        return plain;
+inlined! {
+    /// Schlick's approximation (1994).
+    pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
+        let x = (T::ONE - cosine).clamp(T::ZERO, T::ONE);
+        let x2 = x * x;
+        let grazing = x2 * x2 * x;
+        f0 + (Vec3::ONE - f0) * grazing
     }
-    let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
-    Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
-}
 
-/// Factor of [`edge_shape`] that leaves exactly the tint at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
-    let seventh = T::from_f64(1.0 / 7.0);
-    let white = Vec3::splat(T::one());
-    fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::one() / edge_shape(seventh))
-}
+    /// The reflectance of a metal that is `f0` at normal incidence: Schlick's, darkened near 82 degrees by `edge_tint` (the
+    /// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
+    pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
+        let plain = fresnel_schlick(f0, cosine);
+        let is_tinted = (edge_tint.x + edge_tint.y + edge_tint.z).less(T::from_f64(3.0));
+        if !is_tinted.any() {
+            return plain;
+        }
+        let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
+        Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
+    }
 
-/// Angular shape of the darkening towards the edge: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
-#[inline(always)]
-pub fn edge_shape<T: Real>(cosine: T) -> T {
-    let c = cosine.clamp(T::zero(), T::one());
-    let x = T::one() - c;
-    let x2 = x * x;
-    c * x2 * x2 * x2
+    /// Factor of [`edge_shape`] that leaves exactly the tint at a cosine of 1/7.
+    pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
+        let seventh = T::from_f64(1.0 / 7.0);
+        let white = Vec3::ONE;
+        fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::ONE / edge_shape(seventh))
+    }
+
+    /// Angular shape of the darkening towards the edge: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
+    pub fn edge_shape<T: Real>(cosine: T) -> T {
+        let c = cosine.clamp(T::ZERO, T::ONE);
+        let x = T::ONE - c;
+        let x2 = x * x;
+        c * x2 * x2 * x2
+    }
 }

@@ -9,8 +9,8 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, SimdMask};
 
-use super::elementary::{Bits, Single, by_arithmetic};
-use super::real::{Mask, Real};
+use super::elementary::{self, Bits, Single, functions};
+use super::real::{Mask, Real, inlined};
 
 /// A computation that is generic over SIMD lanes. A trait, because closures cannot be generic.
 pub trait InLanes {
@@ -43,15 +43,17 @@ fn token<S: Simd>() -> S {
     unsafe { std::mem::zeroed() }
 }
 
-macro_rules! operator {
-    ($trait:ident, $function:ident, $operator:tt) => {
-        impl<S: Simd> $trait for Lanes<S> {
-            type Output = Self;
-            #[inline(always)]
-            fn $function(self, other: Self) -> Self {
-                Self(self.0 $operator other.0)
+/// What has one function of two, by an operator.
+macro_rules! operators {
+    ($of:ident: $($trait:ident $function:ident $operator:tt)*) => {
+        $(
+            impl<S: Simd> $trait for $of<S> {
+                type Output = Self;
+                inlined! {
+                    fn $function(self, other: Self) -> Self { Self(self.0 $operator other.0) }
+                }
             }
-        }
+        )*
     };
 }
 
@@ -68,33 +70,23 @@ macro_rules! lanes {
 
             /// The numbers. Only [`in_lanes`] makes them, for an instruction set that is there.
             #[derive(Clone, Copy)]
-            pub(super) struct Lanes<S: Simd>($numbers<S>);
+            pub struct Lanes<S: Simd>($numbers<S>);
 
             /// One truth value a lane.
             #[derive(Clone, Copy)]
-            pub(super) struct Truths<S: Simd>($truths<S>);
+            pub struct Truths<S: Simd>($truths<S>);
 
-            impl<S: Simd> BitAnd for Truths<S> {
-                type Output = Self;
-                #[inline(always)]
-                fn bitand(self, other: Self) -> Self {
-                    Self(self.0 & other.0)
-                }
-            }
+            /// The bits of the numbers.
+            #[derive(Clone, Copy)]
+            pub struct Words<S: Simd>($words<S>);
 
-            impl<S: Simd> BitOr for Truths<S> {
-                type Output = Self;
-                #[inline(always)]
-                fn bitor(self, other: Self) -> Self {
-                    Self(self.0 | other.0)
-                }
-            }
+            operators!(Lanes: Add add + Sub sub - Mul mul * Div div /);
+            operators!(Truths: BitAnd bitand & BitOr bitor |);
 
             impl<S: Simd> Not for Truths<S> {
                 type Output = Self;
-                #[inline(always)]
-                fn not(self) -> Self {
-                    Self(!self.0)
+                inlined! {
+                    fn not(self) -> Self { Self(!self.0) }
                 }
             }
 
@@ -105,52 +97,31 @@ macro_rules! lanes {
             }
 
             impl<S: Simd> Mask for Truths<S> {
-                #[inline(always)]
-                fn splat(value: bool) -> Self {
-                    Self($truths::splat(token(), value))
-                }
-                #[inline(always)]
-                fn from_bits(bits: u32) -> Self {
-                    Self($truths::from_bitmask(token(), u64::from(bits)))
-                }
-                #[inline(always)]
-                fn to_bits(self) -> u32 {
-                    self.0.to_bitmask() as u32
-                }
-                #[inline(always)]
-                fn any(self) -> bool {
-                    self.0.any_true()
-                }
-                #[inline(always)]
-                fn all(self) -> bool {
-                    self.0.all_true()
+                inlined! {
+                    fn splat(value: bool) -> Self { Self($truths::splat(token(), value)) }
+                    fn from_bits(bits: u32) -> Self { Self($truths::from_bitmask(token(), u64::from(bits))) }
+                    fn to_bits(self) -> u32 { self.0.to_bitmask() as u32 }
+                    fn any(self) -> bool { self.0.any_true() }
+                    fn all(self) -> bool { self.0.all_true() }
                 }
             }
 
-            operator!(Add, add, +);
-            operator!(Sub, sub, -);
-            operator!(Mul, mul, *);
-            operator!(Div, div, /);
-
             impl<S: Simd> Neg for Lanes<S> {
                 type Output = Self;
-                #[inline(always)]
-                fn neg(self) -> Self {
-                    Self(-self.0)
+                inlined! {
+                    fn neg(self) -> Self { Self(-self.0) }
                 }
             }
 
             impl<S: Simd> AddAssign for Lanes<S> {
-                #[inline(always)]
-                fn add_assign(&mut self, other: Self) {
-                    *self = *self + other;
+                inlined! {
+                    fn add_assign(&mut self, other: Self) { *self = *self + other; }
                 }
             }
 
             impl<S: Simd> Default for Lanes<S> {
-                #[inline(always)]
-                fn default() -> Self {
-                    Self::from_f64(0.0)
+                inlined! {
+                    fn default() -> Self { Self::ZERO }
                 }
             }
 
@@ -160,144 +131,95 @@ macro_rules! lanes {
                 }
             }
 
+            impl<S: Simd> Lanes<S> {
+                /// The same number in each lane, as a constant.
+                const fn constant(value: f32) -> Self {
+                    const { assert!(size_of::<Self>() == size_of::<[f32; LANES]>()) };
+                    // SAFETY: of the same size, which the numbers fill, as the token has no bytes.
+                    unsafe { std::mem::transmute_copy(&[value; LANES]) }
+                }
+            }
+
             impl<S: Simd> Real for Lanes<S> {
                 type Mask = Truths<S>;
                 type Scalar = f32;
                 type Each<E: Copy + Default> = [E; LANES];
                 const LANES: usize = LANES;
+                const ZERO: Self = Self::constant(0.0);
+                const ONE: Self = Self::constant(1.0);
+                const TWO: Self = Self::constant(2.0);
+                const HALF: Self = Self::constant(0.5);
+                const TAU: Self = Self::constant(std::f64::consts::TAU as f32);
+                const FRAC_1_PI: Self = Self::constant(std::f64::consts::FRAC_1_PI as f32);
 
-                #[inline(always)]
-                fn from_f64(value: f64) -> Self {
-                    Self($numbers::splat(token(), value as f32))
-                }
-                #[inline(always)]
-                fn less(self, other: Self) -> Truths<S> {
-                    Truths(self.0.simd_lt(other.0))
-                }
-                #[inline(always)]
-                fn select(mask: Truths<S>, if_true: Self, if_false: Self) -> Self {
-                    Self(mask.0.select(if_true.0, if_false.0))
-                }
-                #[inline(always)]
-                fn min(self, other: Self) -> Self {
-                    // Other CPUs' instructions return NaN for a NaN on either side.
-                    if cfg!(target_arch = "x86_64") {
-                        Self(self.0.min(other.0))
-                    } else {
-                        Self::select(self.less(other), self, other)
+                inlined! {
+                    fn from_f64(value: f64) -> Self { Self($numbers::splat(token(), value as f32)) }
+                    fn less(self, other: Self) -> Truths<S> { Truths(self.0.simd_lt(other.0)) }
+                    fn select(mask: Truths<S>, if_true: Self, if_false: Self) -> Self {
+                        Self(mask.0.select(if_true.0, if_false.0))
                     }
-                }
-                #[inline(always)]
-                fn max(self, other: Self) -> Self {
-                    if cfg!(target_arch = "x86_64") {
-                        Self(self.0.max(other.0))
-                    } else {
-                        Self::select(other.less(self), self, other)
+                    fn min(self, other: Self) -> Self {
+                        // Other CPUs' instructions return NaN for a NaN on either side.
+                        if cfg!(target_arch = "x86_64") {
+                            Self(self.0.min(other.0))
+                        } else {
+                            Self::select(self.less(other), self, other)
+                        }
                     }
-                }
-                #[inline(always)]
-                fn abs(self) -> Self {
-                    Self(self.0.abs())
-                }
-                #[inline(always)]
-                fn sqrt(self) -> Self {
-                    Self(self.0.sqrt())
-                }
-                #[inline(always)]
-                fn floor(self) -> Self {
-                    Self(self.0.floor())
-                }
-                #[inline(always)]
-                fn each<E: Copy + Default>(mut f: impl FnMut(usize) -> E) -> [E; LANES] {
-                    let mut all = [E::default(); LANES];
-                    let mut lane = 0;
-                    while lane < LANES {
-                        all[lane] = f(lane);
-                        lane += 1;
+                    fn max(self, other: Self) -> Self {
+                        if cfg!(target_arch = "x86_64") {
+                            Self(self.0.max(other.0))
+                        } else {
+                            Self::select(other.less(self), self, other)
+                        }
                     }
-                    all
+                    fn abs(self) -> Self { Self(self.0.abs()) }
+                    fn sqrt(self) -> Self { Self(self.0.sqrt()) }
+                    fn floor(self) -> Self { Self(self.0.floor()) }
+                    fn each<E: Copy + Default>(mut f: impl FnMut(usize) -> E) -> [E; LANES] {
+                        let mut all = [E::default(); LANES];
+                        let mut lane = 0;
+                        while lane < LANES {
+                            all[lane] = f(lane);
+                            lane += 1;
+                        }
+                        all
+                    }
+                    fn from_each(numbers: &[f32; LANES]) -> Self { Self($numbers::load_array_ref(token(), numbers)) }
+                    fn to_each(self) -> [f32; LANES] { self.0.to_array() }
+                    fn load(numbers: &[f32]) -> Self { Self($numbers::from_slice(token(), &numbers[..LANES])) }
+                    fn store(self, numbers: &mut [f32]) { self.0.store_slice(&mut numbers[..LANES]); }
+                    fn vectorize<R>(f: impl FnOnce() -> R) -> R { token::<S>().vectorize(f) }
                 }
-                #[inline(always)]
-                fn from_each(numbers: &[f32; LANES]) -> Self {
-                    Self($numbers::load_array_ref(token(), numbers))
-                }
-                #[inline(always)]
-                fn to_each(self) -> [f32; LANES] {
-                    self.0.to_array()
-                }
-                #[inline(always)]
-                fn load(numbers: &[f32]) -> Self {
-                    Self($numbers::from_slice(token(), &numbers[..LANES]))
-                }
-                #[inline(always)]
-                fn store(self, numbers: &mut [f32]) {
-                    self.0.store_slice(&mut numbers[..LANES]);
-                }
-                #[inline(always)]
-                fn vectorize<R>(f: impl FnOnce() -> R) -> R {
-                    token::<S>().vectorize(f)
-                }
-                by_arithmetic! { Self }
+                functions!(elementary);
             }
 
             impl<S: Simd> Single for Lanes<S> {
                 type Bits = Words<S>;
-                #[inline(always)]
-                fn to_bits(self) -> Words<S> {
-                    Words(self.0.bitcast())
-                }
-                #[inline(always)]
-                fn from_bits(bits: Words<S>) -> Self {
-                    Self(bits.0.bitcast())
-                }
-                #[inline(always)]
-                fn to_whole(self) -> Words<S> {
-                    let whole: $whole<S> = self.0.to_int();
-                    Words(whole.bitcast())
-                }
-                #[inline(always)]
-                fn from_whole(whole: Words<S>) -> Self {
-                    let whole: $whole<S> = whole.0.bitcast();
-                    Self(whole.to_float())
-                }
-                #[inline(always)]
-                fn round_ties_even(self) -> Self {
-                    Self(self.0.round_ties_even())
+                inlined! {
+                    fn to_bits(self) -> Words<S> { Words(self.0.bitcast()) }
+                    fn from_bits(bits: Words<S>) -> Self { Self(bits.0.bitcast()) }
+                    fn to_whole(self) -> Words<S> {
+                        let whole: $whole<S> = self.0.to_int();
+                        Words(whole.bitcast())
+                    }
+                    fn from_whole(whole: Words<S>) -> Self {
+                        let whole: $whole<S> = whole.0.bitcast();
+                        Self(whole.to_float())
+                    }
+                    fn round_ties_even(self) -> Self { Self(self.0.round_ties_even()) }
                 }
             }
 
-            /// The bits of the numbers.
-            #[derive(Clone, Copy)]
-            pub(super) struct Words<S: Simd>($words<S>);
-
             impl<S: Simd> Bits for Words<S> {
-                #[inline(always)]
-                fn splat(word: u32) -> Self {
-                    Self($words::splat(token(), word))
-                }
-                #[inline(always)]
-                fn plus(self, other: Self) -> Self {
-                    Self(self.0 + other.0)
-                }
-                #[inline(always)]
-                fn and(self, other: Self) -> Self {
-                    Self(self.0 & other.0)
-                }
-                #[inline(always)]
-                fn or(self, other: Self) -> Self {
-                    Self(self.0 | other.0)
-                }
-                #[inline(always)]
-                fn xor(self, other: Self) -> Self {
-                    Self(self.0 ^ other.0)
-                }
-                #[inline(always)]
-                fn left<const BY: u32>(self) -> Self {
-                    Self(self.0 << BY)
-                }
-                #[inline(always)]
-                fn right<const BY: u32>(self) -> Self {
-                    Self(self.0 >> BY)
+                inlined! {
+                    fn splat(word: u32) -> Self { Self($words::splat(token(), word)) }
+                    fn plus(self, other: Self) -> Self { Self(self.0 + other.0) }
+                    fn and(self, other: Self) -> Self { Self(self.0 & other.0) }
+                    fn or(self, other: Self) -> Self { Self(self.0 | other.0) }
+                    fn xor(self, other: Self) -> Self { Self(self.0 ^ other.0) }
+                    fn left(self, by: u32) -> Self { Self(self.0 << by) }
+                    fn right(self, by: u32) -> Self { Self(self.0 >> by) }
                 }
             }
         }

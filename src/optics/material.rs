@@ -12,10 +12,9 @@ use super::curve::Curve;
 use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{Fresnel, FresnelTerms, fresnel_f0};
 use super::lobe::{Horizon, Lobe, LobeShape};
-use super::real::{Mask, Real, Scalar};
 use super::target::{TARGETS, TextureTarget};
 use super::thin_film::FilmTerms;
-use super::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
 /// The number of a texture that is not there.
 pub const NO_TEXTURE: u32 = u32::MAX;
@@ -275,194 +274,178 @@ const fn has_no_padding() -> bool {
 const _: () = assert!(has_no_padding());
 
 impl<T: Real> Material<T> {
-    /// The specular lobe. `tables` holds all materials' tables.
-    #[inline(always)]
-    pub fn shape<'a>(&self, tables: &'a [f32]) -> LobeShape<'a, T> {
-        LobeShape {
-            lobe: by_index(Lobe::ALL, self.lobe),
-            curve: by_index(Curve::ALL, self.curve),
-            horizon: by_index(Horizon::ALL, self.horizon),
-            roughness: self.roughness,
-            anisotropy: self.anisotropy,
-            eta: T::zero(),
-            table: tables.get(self.lobe_table as usize..).unwrap_or_default(),
+    inlined! {
+        /// The specular lobe. `tables` holds all materials' tables.
+        pub fn shape<'a>(&self, tables: &'a [f32]) -> LobeShape<'a, T> {
+            LobeShape {
+                lobe: by_index(Lobe::ALL, self.lobe),
+                curve: by_index(Curve::ALL, self.curve),
+                horizon: by_index(Horizon::ALL, self.horizon),
+                roughness: self.roughness,
+                anisotropy: self.anisotropy,
+                eta: T::ZERO,
+                table: tables.get(self.lobe_table as usize..).unwrap_or_default(),
+            }
         }
-    }
 
-    /// The refracting lobe, seen from within or without.
-    #[inline(always)]
-    pub fn transmission_shape<'a>(&self, tables: &'a [f32], is_inside: T::Mask) -> LobeShape<'a, T> {
-        LobeShape {
-            roughness: self.transmission_roughness,
-            eta: self.ior_ahead(is_inside),
-            ..self.shape(tables)
+        /// The refracting lobe, seen from within or without.
+        pub fn transmission_shape<'a>(&self, tables: &'a [f32], is_inside: T::Mask) -> LobeShape<'a, T> {
+            LobeShape {
+                roughness: self.transmission_roughness,
+                eta: self.ior_ahead(is_inside),
+                ..self.shape(tables)
+            }
         }
-    }
 
-    /// Relative index of refraction, behind over before the surface: inverted if a transmitting material is seen from
-    /// within.
-    #[inline(always)]
-    pub fn ior_ahead(&self, is_inside: T::Mask) -> T {
-        T::select(is_inside & self.transmits(), T::one() / self.ior, self.ior)
-    }
-
-    /// Relative index of refraction of what is reflected: as [`Self::ior_ahead`], but from outside under the coat.
-    #[inline(always)]
-    fn reflecting_ior_ahead(&self, is_inside: T::Mask) -> T {
-        T::select(is_inside & self.transmits(), T::one() / self.ior, self.reflecting_ior)
-    }
-
-    /// The index of what is reflected under a coat of this weight (OpenPBR 1.1, "Coat"): between the index over air and over
-    /// the coat, whose ratio is inverted where the coat's index is the greater one.
-    #[inline(always)]
-    pub fn ior_under_coat(&self, weight: T) -> T {
-        let one = T::one();
-        let ior = self.bare_ior + (self.coated_ior - self.bare_ior) * weight;
-        if !self.has_flag(WEIGHS_INDEX) {
-            return ior;
+        /// Relative index of refraction, behind over before the surface: inverted if a transmitting material is seen from
+        /// within.
+        pub fn ior_ahead(&self, is_inside: T::Mask) -> T {
+            T::select(is_inside & self.transmits(), T::ONE / self.ior, self.ior)
         }
-        let root = (fresnel_f0(ior) * self.specular_weight)
-            .min(T::from_f64(0.99))
-            .safe_sqrt();
-        (one + root) / (one - root)
-    }
 
-    /// GGX's roughness under a coat of this weight: facets of both spread the light (OpenPBR 1.1, "Roughening").
-    #[inline(always)]
-    pub fn roughness_under_coat(&self, roughness: T, weight: T) -> T {
-        let square = roughness * roughness;
-        let blurred = (square * square + self.coat_blur).min(T::one()).sqrt().sqrt();
-        roughness + (blurred - roughness) * weight
-    }
-
-    /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
-    #[inline(always)]
-    pub fn has_coated_table(&self) -> bool {
-        self.has_flag(COATS_BASE) && self.has_texture(&[TextureTarget::Coat])
-    }
-
-    /// True where textures change how the coat changes the roughness below it.
-    #[inline(always)]
-    pub fn has_varied_blur(&self) -> bool {
-        let varying = [
-            TextureTarget::Roughness,
-            TextureTarget::Coat,
-            TextureTarget::CoatRoughness,
-        ];
-        self.has_texture(&varying) && T::zero().less(self.coat_blur).any()
-    }
-
-    /// Terms of the Fresnel factor. From within, weight and tint have no effect: the interface is the bare dielectric, so
-    /// that total reflection conserves energy.
-    #[inline(always)]
-    pub fn fresnel_terms(&self, is_inside: T::Mask) -> FresnelTerms<T> {
-        let is_bare = is_inside & self.transmits();
-        let white = Vec3::splat(T::one());
-        let tint = Vec3::select(is_bare, white, self.specular_color);
-        let weight = T::select(is_bare, T::one(), self.specular_weight);
-        let spares_metal = self.has_flag(SPARES_METAL);
-        let is_in_index = self.has_flag(WEIGHS_INDEX);
-        FresnelTerms {
-            model: by_index(Fresnel::ALL, self.fresnel),
-            metal_f0: self.base_color,
-            metalness: self.metalness,
-            edge_tint: self.edge_tint,
-            tint,
-            metal_tint: if spares_metal { white } else { tint * weight },
-            weight: if is_in_index { T::one() } else { weight },
-            ior: self.reflecting_ior_ahead(is_inside),
-            eta: self.eta,
-            k: self.k,
-            has_film: self.has_film == 1,
-            film: self.film_terms(is_bare),
+        /// Relative index of refraction of what is reflected: as [`Self::ior_ahead`], but from outside under the coat.
+        fn reflecting_ior_ahead(&self, is_inside: T::Mask) -> T {
+            T::select(is_inside & self.transmits(), T::ONE / self.ior, self.reflecting_ior)
         }
-    }
 
-    /// The thin film, before it the interior where that is `within`, else air, or the coat as far as it counts.
-    #[inline(always)]
-    fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
-        if self.has_film == 0 {
-            return FilmTerms::none();
+        /// The index of what is reflected under a coat of this weight (OpenPBR 1.1, "Coat"): between the index over air and over
+        /// the coat, whose ratio is inverted where the coat's index is the greater one.
+        pub fn ior_under_coat(&self, weight: T) -> T {
+            let one = T::ONE;
+            let ior = self.bare_ior + (self.coated_ior - self.bare_ior) * weight;
+            if !self.has_flag(WEIGHS_INDEX) {
+                return ior;
+            }
+            let root = (fresnel_f0(ior) * self.specular_weight)
+                .min(T::from_f64(0.99))
+                .safe_sqrt();
+            (one + root) / (one - root)
         }
-        let before = T::select(within, self.ior, self.ior / self.reflecting_ior);
-        FilmTerms {
-            weight: self.film_weight,
-            ior: self.film_ior / before,
-            path: self.film_path * before,
+
+        /// GGX's roughness under a coat of this weight: facets of both spread the light (OpenPBR 1.1, "Roughening").
+        pub fn roughness_under_coat(&self, roughness: T, weight: T) -> T {
+            let square = roughness * roughness;
+            let blurred = (square * square + self.coat_blur).min(T::ONE).sqrt().sqrt();
+            roughness + (blurred - roughness) * weight
+        }
+
+        /// True if its albedo table is followed by that under a whole coat, because a texture varies the coat.
+        pub fn has_coated_table(&self) -> bool {
+            self.has_flag(COATS_BASE) && self.has_texture(&[TextureTarget::Coat])
+        }
+
+        /// True where textures change how the coat changes the roughness below it.
+        pub fn has_varied_blur(&self) -> bool {
+            let varying = [
+                TextureTarget::Roughness,
+                TextureTarget::Coat,
+                TextureTarget::CoatRoughness,
+            ];
+            self.has_texture(&varying) && self.coat_blur.above_zero().any()
+        }
+
+        /// Terms of the Fresnel factor. From within, weight and tint have no effect: the interface is the bare dielectric, so
+        /// that total reflection conserves energy.
+        pub fn fresnel_terms(&self, is_inside: T::Mask) -> FresnelTerms<T> {
+            let is_bare = is_inside & self.transmits();
+            let white = Vec3::ONE;
+            let tint = Vec3::select(is_bare, white, self.specular_color);
+            let weight = T::select(is_bare, T::ONE, self.specular_weight);
+            let spares_metal = self.has_flag(SPARES_METAL);
+            let is_in_index = self.has_flag(WEIGHS_INDEX);
+            FresnelTerms {
+                model: by_index(Fresnel::ALL, self.fresnel),
+                metal_f0: self.base_color,
+                metalness: self.metalness,
+                edge_tint: self.edge_tint,
+                tint,
+                metal_tint: if spares_metal { white } else { tint * weight },
+                weight: if is_in_index { T::ONE } else { weight },
+                ior: self.reflecting_ior_ahead(is_inside),
+                eta: self.eta,
+                k: self.k,
+                has_film: self.has_film == 1,
+                film: self.film_terms(is_bare),
+            }
+        }
+
+        /// The thin film, before it the interior where that is `within`, else air, or the coat as far as it counts.
+        fn film_terms(&self, within: T::Mask) -> FilmTerms<T> {
+            if self.has_film == 0 {
+                return FilmTerms::none();
+            }
+            let before = T::select(within, self.ior, self.ior / self.reflecting_ior);
+            FilmTerms {
+                weight: self.film_weight,
+                ior: self.film_ior / before,
+                path: self.film_path * before,
+            }
         }
     }
 
     /// The material at the lowest metalness of its textures, which decides whether there is a base or transmission.
     pub fn least_metallic(&self) -> Self {
         let is_varied = self.has_texture(&[TextureTarget::Metalness]);
-        let metalness = if is_varied { T::zero() } else { self.metalness };
+        let metalness = if is_varied { T::ZERO } else { self.metalness };
         Self { metalness, ..*self }
     }
 
-    /// True if textured.
-    #[inline(always)]
-    pub fn is_textured(&self) -> bool {
-        self.textures != [NO_TEXTURE; TARGETS]
-    }
+    inlined! {
+        /// True if textured.
+        pub fn is_textured(&self) -> bool {
+            self.textures != [NO_TEXTURE; TARGETS]
+        }
 
-    /// The record of a target's texture, or [`NO_TEXTURE`].
-    #[inline(always)]
-    pub fn texture(&self, target: TextureTarget) -> u32 {
-        self.textures[target as usize]
-    }
+        /// The record of a target's texture, or [`NO_TEXTURE`].
+        pub fn texture(&self, target: TextureTarget) -> u32 {
+            self.textures[target as usize]
+        }
 
-    /// True if one of the targets has a texture.
-    #[inline(always)]
-    pub fn has_texture(&self, targets: &[TextureTarget]) -> bool {
-        targets.iter().any(|target| self.texture(*target) != NO_TEXTURE)
-    }
+        /// True if one of the targets has a texture.
+        pub fn has_texture(&self, targets: &[TextureTarget]) -> bool {
+            targets.iter().any(|target| self.texture(*target) != NO_TEXTURE)
+        }
 
-    /// True if some light may pass straight through the surface.
-    #[inline(always)]
-    pub fn has_holes(&self) -> bool {
-        let is_masked = self.opacity.less(self.alpha_cutoff);
-        let is_clear = self.alpha_cutoff.less(T::zero()) & self.opacity.less(T::one());
-        let is_varied = self.has_texture(&[TextureTarget::Opacity]) || self.has_flag(VERTEX_OPACITY);
-        is_masked.any() || is_clear.any() || is_varied
-    }
+        /// True if some light may pass straight through the surface.
+        pub fn has_holes(&self) -> bool {
+            let is_masked = self.opacity.less(self.alpha_cutoff);
+            let is_clear = self.alpha_cutoff.below_zero() & self.opacity.less(T::ONE);
+            let is_varied = self.has_texture(&[TextureTarget::Opacity]) || self.has_flag(VERTEX_OPACITY);
+            is_masked.any() || is_clear.any() || is_varied
+        }
 
-    /// True if the flag is set.
-    #[inline(always)]
-    pub fn has_flag(&self, flag: u32) -> bool {
-        self.flags & flag != 0
-    }
+        /// True if the flag is set.
+        pub fn has_flag(&self, flag: u32) -> bool {
+            self.flags & flag != 0
+        }
 
-    /// Number of the light group of what it emits.
-    #[inline(always)]
-    pub fn light_group(&self) -> u32 {
-        self.flags >> LIGHT_GROUP_SHIFT
-    }
+        /// Number of the light group of what it emits.
+        pub fn light_group(&self) -> u32 {
+            self.flags >> LIGHT_GROUP_SHIFT
+        }
 
-    /// True if it varies over the surface: by a texture or vertex colours.
-    #[inline(always)]
-    pub fn is_varied(&self) -> bool {
-        self.is_textured() || self.has_flag(VERTEX_BASE | VERTEX_EMISSION)
-    }
+        /// True if it varies over the surface: by a texture or vertex colours.
+        pub fn is_varied(&self) -> bool {
+            self.is_textured() || self.has_flag(VERTEX_BASE | VERTEX_EMISSION)
+        }
 
-    /// Lanes with a visible Lambertian base.
-    #[inline(always)]
-    pub fn has_base(&self) -> T::Mask {
-        let is_opaque = self.transmission_weight.less(T::one());
-        is_opaque & self.metalness.less(T::one()) & T::zero().less(self.base_color.max_component())
-    }
+        /// Lanes with a visible Lambertian base.
+        pub fn has_base(&self) -> T::Mask {
+            let is_opaque = self.transmission_weight.less(T::ONE);
+            is_opaque & self.metalness.less(T::ONE) & self.base_color.max_component().above_zero()
+        }
 
-    #[inline(always)]
-    pub fn transmits(&self) -> T::Mask {
-        T::zero().less(self.transmission_weight) & self.metalness.less(T::one())
-    }
+        pub fn transmits(&self) -> T::Mask {
+            self.transmission_weight.above_zero() & self.metalness.less(T::ONE)
+        }
 
-    /// Lanes where the specular lobe reflects, from outside or from within.
-    #[inline(always)]
-    pub fn has_specular(&self) -> T::Mask {
-        let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
-        let is_varied = self.has_texture(&[TextureTarget::Metalness]);
-        let may_be_metal = T::zero().less(self.metalness) | T::Mask::splat(is_varied);
-        T::zero().less(self.specular_weight) | (is_spared & may_be_metal) | self.transmits()
+        /// Lanes where the specular lobe reflects, from outside or from within.
+        pub fn has_specular(&self) -> T::Mask {
+            let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
+            let is_varied = self.has_texture(&[TextureTarget::Metalness]);
+            let may_be_metal = self.metalness.above_zero() | T::Mask::splat(is_varied);
+            self.specular_weight.above_zero() | (is_spared & may_be_metal) | self.transmits()
+        }
     }
 }
 
@@ -470,12 +453,11 @@ impl<T: Real> Material<T> {
 #[inline(always)]
 pub fn coat_blur<T: Real>(roughness: T) -> T {
     let square = roughness * roughness;
-    T::from_f64(2.0) * square * square
+    T::TWO * square * square
 }
 
 /// The registry's entry with this index, or the first one.
-#[inline(always)]
-pub(super) fn by_index<E: Copy>(all: &[E], index: u32) -> E {
+pub fn by_index<E: Copy>(all: &[E], index: u32) -> E {
     all[(index as usize).min(all.len() - 1)]
 }
 
@@ -497,7 +479,7 @@ pub struct Surface<T: Real> {
 impl<T: Real> Surface<T> {
     /// A surface whose normal is z, seen from without along `wo`.
     pub fn upwards(wo: Vec3<T>) -> Self {
-        let normal = vec3(T::zero(), T::zero(), T::one());
+        let normal = vec3(T::ZERO, T::ZERO, T::ONE);
         Self {
             frame: frame_from_normal(normal),
             normal,

@@ -4,8 +4,7 @@
 use super::frame::{Frame, local_from_world};
 use super::fresnel::half_vector_cosine;
 use super::numeric::normalize_or;
-use super::real::Real;
-use super::vector::Vec3;
+use crate::optics::prelude::*;
 
 /// The widths along tangent and bitangent.
 #[derive(Clone, Copy, Debug)]
@@ -29,67 +28,61 @@ pub struct Facet<T> {
     pub cosine: T,
 }
 
-/// The facet that reflects `wi` to `wo`. For nearly opposite directions their sum is short: it is computed before the
-/// rounding of the frame, which would rotate it.
-#[inline(always)]
-pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
-    let h = normalize_or(wo + wi, frame.normal);
-    Facet {
-        wo: local_from_world(frame, wo),
-        wi: local_from_world(frame, wi),
-        h: local_from_world(frame, h),
-        cosine: half_vector_cosine(wo, wi),
+inlined! {
+    /// The facet that reflects `wi` to `wo`. For nearly opposite directions their sum is short: it is computed before the
+    /// rounding of the frame, which would rotate it.
+    pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
+        let h = normalize_or(wo + wi, frame.normal);
+        Facet {
+            wo: local_from_world(frame, wo),
+            wi: local_from_world(frame, wi),
+            h: local_from_world(frame, h),
+            cosine: half_vector_cosine(wo, wi),
+        }
     }
-}
 
-/// D(h) of GGX, written to keep the tangential components' precision for small α.
-#[inline(always)]
-pub fn ggx_distribution<T: Real>(alpha: Alpha<T>, h: Vec3<T>) -> T {
-    let (x, y) = (h.x / alpha.x, h.y / alpha.y);
-    let square = x * x + y * y + h.z * h.z;
-    T::from_f64(std::f64::consts::FRAC_1_PI) / (alpha.x * alpha.y * square * square)
-}
+    /// D(h) of GGX, written to keep the tangential components' precision for small α.
+    pub fn ggx_distribution<T: Real>(alpha: Alpha<T>, h: Vec3<T>) -> T {
+        let (x, y) = (h.x / alpha.x, h.y / alpha.y);
+        let square = x * x + y * y + h.z * h.z;
+        T::FRAC_1_PI / (alpha.x * alpha.y * square * square)
+    }
 
-/// √(z² + αx²x² + αy²y²): Smith's Λ is (that over |z| − 1)/2.
-#[inline(always)]
-pub fn smith_length<T: Real>(alpha: Alpha<T>, w: Vec3<T>) -> T {
-    let (x, y) = (alpha.x * w.x, alpha.y * w.y);
-    (w.z * w.z + x * x + y * y).sqrt()
-}
+    /// √(z² + αx²x² + αy²y²): Smith's Λ is (that over |z| − 1)/2.
+    pub fn smith_length<T: Real>(alpha: Alpha<T>, w: Vec3<T>) -> T {
+        let (x, y) = (alpha.x * w.x, alpha.y * w.y);
+        (w.z * w.z + x * x + y * y).sqrt()
+    }
 
-/// Masking of the view alone over its cosine: G1(wo)/cosθo = 2/(cosθo + smith_length).
-#[inline(always)]
-pub fn smith_g1_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>) -> T {
-    T::from_f64(2.0) / (wo.z.abs() + smith_length(alpha, wo)).max(T::from_f64(1e-12))
-}
+    /// Masking of the view alone over its cosine: G1(wo)/cosθo = 2/(cosθo + smith_length).
+    pub fn smith_g1_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>) -> T {
+        T::TWO / (wo.z.abs() + smith_length(alpha, wo)).max(T::from_f64(1e-12))
+    }
 
-/// Height-correlated masking and shadowing over cosθo: G2/cosθo; 0 if either direction is below the horizon.
-#[inline(always)]
-pub fn smith_g2_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let sum = wo.z * smith_length(alpha, wi) + wi.z * smith_length(alpha, wo);
-    let value = T::from_f64(2.0) * wi.z / sum.max(T::from_f64(1e-12));
-    let above = T::zero().less(wo.z) & T::zero().less(wi.z);
-    T::select(above, value, T::zero())
-}
+    /// Height-correlated masking and shadowing over cosθo: G2/cosθo; 0 if either direction is below the horizon.
+    pub fn smith_g2_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let sum = wo.z * smith_length(alpha, wi) + wi.z * smith_length(alpha, wo);
+        let value = T::TWO * wi.z / sum.max(T::from_f64(1e-12));
+        let above = wo.z.above_zero() & wi.z.above_zero();
+        value.masked(above)
+    }
 
-/// The density of a direction whose facet was drawn by visible normals: D G1/(4 cosθo).
-#[inline(always)]
-pub fn visible_density<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let facet = facet(frame, wo, wi);
-    let value = T::from_f64(0.25) * ggx_distribution(alpha, facet.h) * smith_g1_over_cosine(alpha, facet.wo);
-    T::select(T::zero().less(facet.h.z), value, T::zero())
-}
+    /// The density of a direction whose facet was drawn by visible normals: D G1/(4 cosθo).
+    pub fn visible_density<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let facet = facet(frame, wo, wi);
+        let value = T::from_f64(0.25) * ggx_distribution(alpha, facet.h) * smith_g1_over_cosine(alpha, facet.wo);
+        value.masked(facet.h.z.above_zero())
+    }
 
-/// The weight of such a direction: G2/G1.
-#[inline(always)]
-pub fn visible_weight<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
-    smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo)
-}
+    /// The weight of such a direction: G2/G1.
+    pub fn visible_weight<T: Real>(alpha: Alpha<T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
+        smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo)
+    }
 
-/// The weight of a direction whose facet was drawn in proportion to D cosθ: G2 (wo·h)/(cosθo h.z).
-#[inline(always)]
-pub fn distribution_weight<T: Real>(alpha: Alpha<T>, facet: Facet<T>) -> T {
-    let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
-    smith_g2_over_cosine(alpha, facet.wo, facet.wi) * ratio
+    /// The weight of a direction whose facet was drawn in proportion to D cosθ: G2 (wo·h)/(cosθo h.z).
+    pub fn distribution_weight<T: Real>(alpha: Alpha<T>, facet: Facet<T>) -> T {
+        let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
+        smith_g2_over_cosine(alpha, facet.wo, facet.wi) * ratio
+    }
 }

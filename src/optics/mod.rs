@@ -33,3 +33,11 @@ pub mod thin_film;
 pub mod tone;
 pub mod vector;
 pub mod warp;
+
+/// What all code on numbers uses.
+pub(crate) mod prelude {
+    pub use super::elementary::Single;
+    pub use super::real::{Mask, Real, Scalar};
+    pub(crate) use super::real::{inlined, out_of_line, vectorized};
+    pub use super::vector::{Vec3, vec3};
+}

@@ -4,7 +4,7 @@
 //! first two dimensions of the Sobol sequence, shuffled and Owen-scrambled per pixel and pair by the hash of Laine and
 //! Karras (Burley, "Practical hash-based Owen scrambling", JCGT 2020; constants by Vegdahl).
 
-use super::real::Real;
+use super::real::{Real, inlined};
 use crate::named::named;
 
 named! {
@@ -29,7 +29,6 @@ pub struct RandomState {
 }
 
 /// The pixel's stream. `x`, `y` in pixels, below 65 536.
-#[inline(always)]
 pub fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) -> RandomState {
     RandomState {
         key: hash_bits((x | (y << 16)) ^ hash_bits(seed)),
@@ -41,7 +40,6 @@ pub fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) 
 /// Random state of sample number `sample` of a render. Even and odd samples are two independent randomisations of the Sobol
 /// sequence, each in its order. So the difference of their means gives the error of the whole, which the samples' spread
 /// does not if they are dependent (docs/MATHEMATICS.md, section 8).
-#[inline(always)]
 pub fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) -> RandomState {
     let state = random_state(x, y, seed, sample, sequence);
     match sequence {
@@ -59,7 +57,6 @@ pub fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) ->
 }
 
 /// A bijection of the 32-bit numbers without visible structure (Wellons' lowbias32).
-#[inline(always)]
 pub fn hash_bits(bits: u32) -> u32 {
     let mut x = bits;
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
@@ -75,14 +72,12 @@ pub fn unit_from_bits<T: Real>(bits: u32) -> T {
 
 /// The independent sequence: for a fixed key and dimension a permutation of the 2³² samples, so no number of a pixel's
 /// stream repeats before all have been drawn.
-#[inline(always)]
 pub fn random_bits(key: u32, sample: u32, dimension: u32) -> u32 {
     let stream = hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9));
     hash_bits(hash_bits(sample ^ stream).wrapping_add(stream.rotate_left(16) ^ key))
 }
 
 /// Scrambles as Owen would, from the lowest bit up: each bit is flipped by a hash of the bits below it.
-#[inline(always)]
 pub fn scramble_from_low(bits: u32, seed: u32) -> u32 {
     let mut x = bits;
     x ^= x.wrapping_mul(0x3d20_adea);
@@ -93,7 +88,6 @@ pub fn scramble_from_low(bits: u32, seed: u32) -> u32 {
 }
 
 /// Sobol's second dimension with its bits reversed: Pascal's triangle modulo 2 applied to the index's bits.
-#[inline(always)]
 pub fn sobol_second_reversed(index: u32) -> u32 {
     let mut x = index;
     x ^= (x >> 1) & 0x5555_5555;
@@ -104,7 +98,6 @@ pub fn sobol_second_reversed(index: u32) -> u32 {
 }
 
 /// The bits of the pair of numbers number `dimension` of this path.
-#[inline(always)]
 pub fn random_pair_bits(state: RandomState, dimension: u32) -> [u32; 2] {
     match state.sequence {
         Sequence::Sobol => sobol_pair_bits(state.key, state.sample, dimension),
@@ -112,34 +105,28 @@ pub fn random_pair_bits(state: RandomState, dimension: u32) -> [u32; 2] {
     }
 }
 
-#[inline(always)]
 fn sobol_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
     let seed = sobol_seed(key, dimension);
     let index = sobol_index(sample, seed);
     [sobol_first(index, seed), sobol_second(index, seed)]
 }
 
-#[inline(always)]
 fn sobol_seed(key: u32, dimension: u32) -> u32 {
     hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491))
 }
 
-#[inline(always)]
 fn sobol_index(sample: u32, seed: u32) -> u32 {
     scramble_from_low(sample.reverse_bits(), seed).reverse_bits()
 }
 
-#[inline(always)]
 fn sobol_first(index: u32, seed: u32) -> u32 {
     scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits()
 }
 
-#[inline(always)]
 fn sobol_second(index: u32, seed: u32) -> u32 {
     scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits()
 }
 
-#[inline(always)]
 fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
     [
         random_bits(key, sample, 2 * dimension),
@@ -147,58 +134,53 @@ fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
     ]
 }
 
-/// The same for several paths, by their keys and samples. Written so that compilers vectorise it.
-#[inline(always)]
-fn random_pairs_bits<T: Real>(
-    keys: &T::Each<u32>,
-    samples: &T::Each<u32>,
-    sequence: Sequence,
-    dimension: u32,
-) -> [T::Each<u32>; 2] {
-    let (keys, samples) = (keys.as_ref(), samples.as_ref());
-    match sequence {
-        Sequence::Sobol => {
-            let seeds = T::each(|lane| sobol_seed(keys[lane], dimension));
-            let seeds = seeds.as_ref();
-            let indices = T::each(|lane| sobol_index(samples[lane], seeds[lane]));
-            let indices = indices.as_ref();
-            [
-                T::each(|lane| sobol_first(indices[lane], seeds[lane])),
-                T::each(|lane| sobol_second(indices[lane], seeds[lane])),
-            ]
+inlined! {
+    /// The same for several paths, by their keys and samples. Written so that compilers vectorise it.
+    fn random_pairs_bits<T: Real>(
+        keys: &T::Each<u32>,
+        samples: &T::Each<u32>,
+        sequence: Sequence,
+        dimension: u32,
+    ) -> [T::Each<u32>; 2] {
+        let (keys, samples) = (keys.as_ref(), samples.as_ref());
+        match sequence {
+            Sequence::Sobol => {
+                let seeds = T::each(|lane| sobol_seed(keys[lane], dimension));
+                let seeds = seeds.as_ref();
+                let indices = T::each(|lane| sobol_index(samples[lane], seeds[lane]));
+                let indices = indices.as_ref();
+                [
+                    T::each(|lane| sobol_first(indices[lane], seeds[lane])),
+                    T::each(|lane| sobol_second(indices[lane], seeds[lane])),
+                ]
+            }
+            Sequence::Independent => [
+                T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension)),
+                T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension + 1)),
+            ],
         }
-        Sequence::Independent => [
-            T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension)),
-            T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension + 1)),
-        ],
     }
-}
 
-/// The pairs of numbers in [0, 1) number `dimension` of some paths at once.
-#[inline(always)]
-pub fn random_pairs<T: Real>(
-    keys: &T::Each<u32>,
-    samples: &T::Each<u32>,
-    sequence: Sequence,
-    dimension: u32,
-) -> [T; 2] {
-    let [first, second] = random_pairs_bits::<T>(keys, samples, sequence, dimension);
-    [units_from_bits(&first), units_from_bits(&second)]
-}
+    /// The pairs of numbers in [0, 1) number `dimension` of some paths at once.
+    pub fn random_pairs<T: Real>(
+        keys: &T::Each<u32>,
+        samples: &T::Each<u32>,
+        sequence: Sequence,
+        dimension: u32,
+    ) -> [T; 2] {
+        let [first, second] = random_pairs_bits::<T>(keys, samples, sequence, dimension);
+        [units_from_bits(&first), units_from_bits(&second)]
+    }
 
-#[inline(always)]
-fn units_from_bits<T: Real>(bits: &T::Each<u32>) -> T {
-    let bits = bits.as_ref();
-    T::from_lanes(
-        #[inline(always)]
-        |lane| unit_from_bits(bits[lane]),
-    )
-}
+    fn units_from_bits<T: Real>(bits: &T::Each<u32>) -> T {
+        let bits = bits.as_ref();
+        T::from_lanes(|lane| unit_from_bits(bits[lane]))
+    }
 
-/// The pair of numbers in [0, 1) number `dimension` of this path.
-#[inline(always)]
-pub fn random_pair<T: Real>(state: RandomState, dimension: u32) -> [T; 2] {
-    random_pair_bits(state, dimension).map(unit_from_bits)
+    /// The pair of numbers in [0, 1) number `dimension` of this path.
+    pub fn random_pair<T: Real>(state: RandomState, dimension: u32) -> [T; 2] {
+        random_pair_bits(state, dimension).map(unit_from_bits)
+    }
 }
 
 /// Steps of [`even_point`]: of a sequence that covers the unit square evenly, and of two further numbers. Source: Roberts,

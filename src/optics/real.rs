@@ -6,7 +6,44 @@
 //! generic over [`Scalar`]; lanes call it one by one.
 
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Index, Mul, Neg, Not, Sub};
+
+/// Functions of numbers, each of them inlined into what is compiled for the lanes' instruction set ([`Real::vectorize`]):
+/// elsewhere an operation on lanes is a call.
+macro_rules! inlined {
+    ($($(#[$doc:meta])* $of:vis fn $name:ident
+        $(<$lifetime:lifetime>)? $(<$($generic:ident $(: $bound:ident $(+ $more:ident)*)?),+>)? ($($argument:tt)*) $(-> $result:ty)?
+        $body:block)*) => {
+        $(
+            $(#[$doc])*
+            #[inline(always)]
+            $of fn $name $(<$lifetime>)? $(<$($generic $(: $bound $(+ $more)*)?),+>)? ($($argument)*) $(-> $result)? $body
+        )*
+    };
+}
+pub(crate) use inlined;
+
+/// [`Real::vectorize`] for an expression.
+macro_rules! vectorized {
+    ($number:ident, $body:expr) => {
+        $number::vectorize(
+            #[inline(always)]
+            || $body,
+        )
+    };
+}
+pub(crate) use vectorized;
+
+/// [`Real::out_of_line`] for an expression.
+macro_rules! out_of_line {
+    ($number:ident, $body:expr) => {
+        $number::out_of_line(
+            #[inline(always)]
+            || $body,
+        )
+    };
+}
+pub(crate) use out_of_line;
 
 /// The outcome of a comparison: `bool`, or one truth value a lane.
 pub trait Mask:
@@ -44,9 +81,15 @@ pub trait Real:
     /// The number in one lane.
     type Scalar: Scalar;
     /// Something for each lane.
-    type Each<E: Copy + Default>: Copy + AsRef<[E]>;
+    type Each<E: Copy + Default>: Copy + AsRef<[E]> + Index<usize, Output = E>;
 
     const LANES: usize;
+    const ZERO: Self;
+    const ONE: Self;
+    const TWO: Self;
+    const HALF: Self;
+    const TAU: Self;
+    const FRAC_1_PI: Self;
 
     /// The nearest value of this type, the same in each lane.
     fn from_f64(value: f64) -> Self;
@@ -96,59 +139,49 @@ pub trait Real:
         Self::vectorize(f)
     }
 
-    /// A whole number, exact below 2²⁴.
-    #[inline(always)]
-    fn from_count(value: u32) -> Self {
-        Self::from_f64(f64::from(value))
-    }
-    /// 0.
-    #[inline(always)]
-    fn zero() -> Self {
-        Self::from_f64(0.0)
-    }
-    /// 1.
-    #[inline(always)]
-    fn one() -> Self {
-        Self::from_f64(1.0)
-    }
-    /// `self` limited to [`low`, `high`].
-    #[inline(always)]
-    fn clamp(self, low: Self, high: Self) -> Self {
-        self.max(low).min(high)
-    }
-    /// √max(0, x), for values that rounding may have made negative.
-    #[inline(always)]
-    fn safe_sqrt(self) -> Self {
-        self.max(Self::zero()).sqrt()
-    }
-    /// `self ≠ other`; false if either is NaN.
-    #[inline(always)]
-    fn differs(self, other: Self) -> Self::Mask {
-        self.less(other) | other.less(self)
-    }
-    #[inline(always)]
-    fn is_nan(self) -> Self::Mask {
-        let below = self.less(Self::one());
-        !(below | Self::zero().less(self))
-    }
-    /// The number of one lane.
-    #[inline(always)]
-    fn lane(self, lane: usize) -> Self::Scalar {
-        self.to_each().as_ref()[lane]
-    }
-    /// The numbers that `f` says for the lanes.
-    #[inline(always)]
-    fn from_lanes(f: impl FnMut(usize) -> Self::Scalar) -> Self {
-        Self::from_each(&Self::each(f))
-    }
-    /// The numbers of a table at places that are whole and within it.
-    #[inline(always)]
-    fn look_up(table: &[f32], place: Self) -> Self {
-        let places = place.to_each();
-        Self::from_lanes(
-            #[inline(always)]
-            |lane| Self::Scalar::from_f64(f64::from(table[places.as_ref()[lane].to_f64() as usize])),
-        )
+    inlined! {
+        /// A whole number, exact below 2²⁴.
+        fn from_count(value: u32) -> Self {
+            Self::from_f64(f64::from(value))
+        }
+        /// `self` limited to [`low`, `high`].
+        fn clamp(self, low: Self, high: Self) -> Self {
+            self.max(low).min(high)
+        }
+        /// √max(0, x), for values that rounding may have made negative.
+        fn safe_sqrt(self) -> Self {
+            self.max(Self::ZERO).sqrt()
+        }
+        fn above_zero(self) -> Self::Mask {
+            Self::ZERO.less(self)
+        }
+        fn below_zero(self) -> Self::Mask {
+            self.less(Self::ZERO)
+        }
+        /// The number where the mask holds, else 0.
+        fn masked(self, mask: Self::Mask) -> Self {
+            Self::select(mask, self, Self::ZERO)
+        }
+        /// `self ≠ other`; false if either is NaN.
+        fn differs(self, other: Self) -> Self::Mask {
+            self.less(other) | other.less(self)
+        }
+        fn is_nan(self) -> Self::Mask {
+            !(self.less(Self::ONE) | self.above_zero())
+        }
+        /// The number of one lane.
+        fn lane(self, lane: usize) -> Self::Scalar {
+            self.to_each()[lane]
+        }
+        /// The numbers that `f` says for the lanes.
+        fn from_lanes(f: impl FnMut(usize) -> Self::Scalar) -> Self {
+            Self::from_each(&Self::each(f))
+        }
+        /// The numbers of a table at places that are whole and within it.
+        fn look_up(table: &[f32], place: Self) -> Self {
+            let places = place.to_each();
+            Self::from_lanes(|lane| Self::Scalar::from_f64(f64::from(table[places[lane].to_f64() as usize])))
+        }
     }
 }
 

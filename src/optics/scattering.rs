@@ -9,105 +9,98 @@
 use super::albedo::{
     ALBEDO_LENGTH, ALBEDO_NODES, ROUGH_ALBEDO_LENGTH, ROUGHNESS_NODES, albedo_lookup, rough_albedo_lookup, view_at,
 };
-use super::elementary::Single;
-use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
+use super::fresnel::{FresnelTerms, fresnel, fresnel_dielectric, fresnel_parts, fresnel_transmitted};
 use super::lanes::{InLanes, in_lanes};
 use super::lobe::ggx::visible_normal;
 use super::lobe::{LobeShape, microfacet_alpha};
 use super::material::{COMPENSATES, Material, Surface};
 use super::microfacet::{Alpha, smith_g1_over_cosine, smith_g2_over_cosine};
 use super::random::even_point;
-use super::real::{Mask, Real};
 use super::refraction::{refracted, refracted_square};
 use super::thin_film::film_passed;
-use super::vector::{Vec3, vec3};
 use crate::instructions::level;
+use crate::optics::prelude::*;
 use crate::parallel;
 
-/// Factor that keeps a clear interface's light, linear RGB: one over the energy of reflection and refraction together. A
-/// film shares the light otherwise in each channel.
-#[inline(always)]
-pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> Vec3<T> {
-    if !material.has_flag(COMPENSATES) {
-        return Vec3::splat(T::one());
+inlined! {
+    /// Factor that keeps a clear interface's light, linear RGB: one over the energy of reflection and refraction together. A
+    /// film shares the light otherwise in each channel.
+    pub fn interface_gain<T: Real>(material: &Material<T>, surface: &Surface<T>, shape: &LobeShape<'_, T>) -> Vec3<T> {
+        if !material.has_flag(COMPENSATES) {
+            return Vec3::ONE;
+        }
+        let is_within = surface.is_within(material);
+        let gain = |channel: usize| {
+            let [_, outside, inside] = kept_energies(material, surface, shape, channel);
+            T::ONE / T::select(is_within, inside, outside)
+        };
+        let first = gain(0);
+        if material.has_film == 0 || !material.transmits().any() {
+            return Vec3::splat(first);
+        }
+        vec3(first, gain(1), gain(2))
     }
-    let is_within = surface.is_within(material);
-    let gain = |channel: usize| {
-        let [_, outside, inside] = kept_energies(material, surface, shape, channel);
-        T::one() / T::select(is_within, inside, outside)
-    };
-    let first = gain(0);
-    if material.has_film == 0 || !material.transmits().any() {
-        return Vec3::splat(first);
-    }
-    vec3(first, gain(1), gain(2))
-}
 
-/// The share that the specular lobe reflects at a half vector, linear RGB, with what its facets scatter more than once;
-/// `once` is its Fresnel factor.
-#[inline(always)]
-pub fn scattered_again<T: Real>(
-    material: &Material<T>,
-    surface: &Surface<T>,
-    shape: &LobeShape<'_, T>,
-    terms: &FresnelTerms<T>,
-    cosine: T,
-    once: Vec3<T>,
-) -> Vec3<T> {
-    if !material.has_flag(COMPENSATES) {
-        return once;
+    /// The share that the specular lobe reflects at a half vector, linear RGB, with what its facets scatter more than once;
+    /// `once` is its Fresnel factor.
+    pub fn scattered_again<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        terms: &FresnelTerms<T>,
+        cosine: T,
+        once: Vec3<T>,
+    ) -> Vec3<T> {
+        if !material.has_flag(COMPENSATES) {
+            return once;
+        }
+        out_of_line!(T, compensated(material, surface, shape, terms, cosine))
     }
-    T::out_of_line(
-        #[inline(always)]
-        || compensated(material, surface, shape, terms, cosine),
-    )
-}
 
-/// [`scattered_again`] of a lobe that is compensated.
-#[inline(always)]
-fn compensated<T: Real>(
-    material: &Material<T>,
-    surface: &Surface<T>,
-    shape: &LobeShape<'_, T>,
-    terms: &FresnelTerms<T>,
-    cosine: T,
-) -> Vec3<T> {
-    let (white, one) = (Vec3::splat(T::one()), T::one());
-    let [kept, ..] = kept_energies(material, surface, shape, 0);
-    let again = (one - kept) / kept;
-    if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
-        let head_on = fresnel(terms, one);
-        return fresnel(terms, cosine) * (white + head_on * (again * terms.metalness));
+    /// [`scattered_again`] of a lobe that is compensated.
+    fn compensated<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        terms: &FresnelTerms<T>,
+        cosine: T,
+    ) -> Vec3<T> {
+        let (white, one) = (Vec3::ONE, T::ONE);
+        let [kept, ..] = kept_energies(material, surface, shape, 0);
+        let again = (one - kept) / kept;
+        if !terms.has_parts() {
+            let head_on = fresnel(terms, one);
+            return fresnel(terms, cosine) * (white + head_on * (again * terms.metalness));
+        }
+        let [dielectric, metal] = fresnel_parts(terms, cosine);
+        let mut head_on = terms.metal_f0 * terms.metal_tint;
+        if terms.has_film {
+            head_on = fresnel_parts(terms, one)[1];
+        }
+        let metal = metal * (white + head_on * again);
+        // The refracting share of a dielectric is clear; the rest lies over a base.
+        let share = material.transmission_weight.masked(material.transmits());
+        let gain = white + (interface_gain(material, surface, shape) - white) * share;
+        (dielectric * gain).mix(metal, terms.metalness)
     }
-    let [dielectric, metal] = fresnel_parts(terms, cosine);
-    let mut head_on = terms.metal_f0 * terms.metal_tint;
-    if terms.has_film {
-        head_on = fresnel_parts(terms, one)[1];
-    }
-    let metal = metal * (white + head_on * again);
-    // The refracting share of a dielectric is clear; the rest lies over a base.
-    let share = T::select(material.transmits(), material.transmission_weight, T::zero());
-    let gain = white + (interface_gain(material, surface, shape) - white) * share;
-    (dielectric * gain).mix(metal, terms.metalness)
-}
 
-/// Energies that single scattering keeps for a view, by a channel's table: of a white metal, and of a clear interface from
-/// outside and within.
-#[inline(always)]
-fn kept_energies<T: Real>(
-    material: &Material<T>,
-    surface: &Surface<T>,
-    shape: &LobeShape<'_, T>,
-    channel: usize,
-) -> [T; 3] {
-    let place = surface.frame.normal.dot(surface.wo).safe_sqrt();
-    if material.has_rough_tables == 1 {
-        let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
-        let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, material.roughness);
-        return [metal, outside, inside];
+    /// Energies that single scattering keeps for a view, by a channel's table: of a white metal, and of a clear interface from
+    /// outside and within.
+    fn kept_energies<T: Real>(
+        material: &Material<T>,
+        surface: &Surface<T>,
+        shape: &LobeShape<'_, T>,
+        channel: usize,
+    ) -> [T; 3] {
+        let place = surface.frame.normal.dot(surface.wo).safe_sqrt();
+        if material.has_rough_tables == 1 {
+            let table = (channel * ROUGH_ALBEDO_LENGTH) as u32;
+            let [metal, outside, inside, _] = rough_albedo_lookup(shape.table, table, place, material.roughness);
+            return [metal, outside, inside];
+        }
+        let kept = albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place);
+        [kept.x, kept.y, kept.z]
     }
-    let kept = albedo_lookup(shape.table, (channel * ALBEDO_LENGTH) as u32, place);
-    [kept.x, kept.y, kept.z]
 }
 
 /// Table of the energies that a material's lobe keeps, over the root of the view's cosine, and over the roughness if its
@@ -205,10 +198,7 @@ impl InLanes for Kept<'_> {
     type Output = [Vec3<f64>; 3];
 
     fn run<T: Single>(self) -> Self::Output {
-        T::vectorize(
-            #[inline(always)]
-            || self.means::<T>(),
-        )
+        vectorized!(T, self.means::<T>())
     }
 }
 
@@ -221,10 +211,10 @@ impl Kept<'_> {
         let is_stretched = self.alpha.x != self.alpha.y;
         let interface = self.clear.map(Interface::<T>::of);
         let cosine = T::from_f64(self.cosine);
-        let mut sums = [Vec3::zero(); 3];
+        let mut sums = [Vec3::ZERO; 3];
         let mut first = 0;
         while first < count {
-            let xi = [T::load(&across[first..]), T::load(&up[first..]), T::zero()];
+            let xi = [T::load(&across[first..]), T::load(&up[first..]), T::ZERO];
             let turn = match is_stretched {
                 true => Some(T::load(&azimuths[first..])),
                 false => None,
@@ -259,21 +249,21 @@ impl Kept<'_> {
     }
 }
 
-/// Widths in another precision.
-#[inline(always)]
-fn cast<T: Real>(alpha: Alpha<f64>) -> Alpha<T> {
-    Alpha {
-        x: T::from_f64(alpha.x),
-        y: T::from_f64(alpha.y),
+inlined! {
+    /// Widths in another precision.
+    fn cast<T: Real>(alpha: Alpha<f64>) -> Alpha<T> {
+        Alpha {
+            x: T::from_f64(alpha.x),
+            y: T::from_f64(alpha.y),
+        }
     }
-}
 
-/// Adds lanes one by one in f64: what is summed does not depend on their number.
-#[inline(always)]
-fn add<T: Single>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
-    let [r, g, b] = [energy.x.to_each(), energy.y.to_each(), energy.z.to_each()];
-    for lane in 0..T::LANES {
-        *sum += Vec3::from_f32([r.as_ref()[lane], g.as_ref()[lane], b.as_ref()[lane]]);
+    /// Adds lanes one by one in f64: what is summed does not depend on their number.
+    fn add<T: Single>(sum: &mut Vec3<f64>, energy: Vec3<T>) {
+        let [r, g, b] = [energy.x.to_each(), energy.y.to_each(), energy.z.to_each()];
+        for lane in 0..T::LANES {
+            *sum += Vec3::from_f32([r[lane], g[lane], b[lane]]);
+        }
     }
 }
 
@@ -307,48 +297,46 @@ struct Side<T> {
 }
 
 impl<T: Real> Side<T> {
-    #[inline(always)]
-    fn of(material: &Material<f64>, is_inside: bool) -> Self {
-        let has_one_index = material.fresnel_terms(is_inside).ior == material.ior_ahead(is_inside);
-        let (material, is_inside) = (material.cast::<T>(), T::Mask::splat(is_inside));
-        Self {
-            terms: FresnelTerms {
-                tint: Vec3::splat(T::one()),
-                ..material.fresnel_terms(is_inside)
-            },
-            eta: material.ior_ahead(is_inside),
-            has_one_index,
+    inlined! {
+        fn of(material: &Material<f64>, is_inside: bool) -> Self {
+            let has_one_index = material.fresnel_terms(is_inside).ior == material.ior_ahead(is_inside);
+            let (material, is_inside) = (material.cast::<T>(), T::Mask::splat(is_inside));
+            Self {
+                terms: FresnelTerms {
+                    tint: Vec3::ONE,
+                    ..material.fresnel_terms(is_inside)
+                },
+                eta: material.ior_ahead(is_inside),
+                has_one_index,
+            }
         }
-    }
 
-    /// What a film lets through more, by channel.
-    #[inline(always)]
-    fn film(&self, cosine: T) -> Vec3<T> {
-        if !self.terms.has_film {
-            return Vec3::zero();
+        /// What a film lets through more, by channel.
+        fn film(&self, cosine: T) -> Vec3<T> {
+            if !self.terms.has_film {
+                return Vec3::ZERO;
+            }
+            let height = refracted_square(cosine, self.terms.ior).safe_sqrt();
+            film_passed(&self.terms, cosine, height)
         }
-        let height = refracted_square(cosine, self.terms.ior).safe_sqrt();
-        film_passed(&self.terms, cosine, height)
-    }
 
-    /// The share that a facet reflects, under a film that lets this much more through.
-    #[inline(always)]
-    fn reflected(&self, cosine: T, film: Vec3<T>) -> Vec3<T> {
-        Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film
-    }
+        /// The share that a facet reflects, under a film that lets this much more through.
+        fn reflected(&self, cosine: T, film: Vec3<T>) -> Vec3<T> {
+            Vec3::splat(fresnel_dielectric(cosine, self.terms.ior)) - film
+        }
 
-    /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
-    #[inline(always)]
-    fn let_through(&self, through: Alpha<T>, wo: Vec3<T>, h: Vec3<T>, film: Vec3<T>) -> Vec3<T> {
-        let refracted = refracted(wo, h, self.eta);
-        let (zero, one) = (T::zero(), T::one());
-        let [before, behind] = [wo.dot(h).clamp(zero, one), (-refracted.wi.dot(h)).clamp(zero, one)];
-        let share = match self.has_one_index {
-            true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + film,
-            false => Vec3::splat(one) - self.reflected(before, film),
-        };
-        let seen = smith_g1_over_cosine(through, refracted.wi) * refracted.wi.z.abs();
-        let is_lost = refracted.is_total | !refracted.wi.z.less(zero);
-        share * T::select(is_lost, zero, seen)
+        /// The share that a facet with the normal `h` refracts, as far as it is seen behind.
+        fn let_through(&self, through: Alpha<T>, wo: Vec3<T>, h: Vec3<T>, film: Vec3<T>) -> Vec3<T> {
+            let refracted = refracted(wo, h, self.eta);
+            let (zero, one) = (T::ZERO, T::ONE);
+            let [before, behind] = [wo.dot(h).clamp(zero, one), (-refracted.wi.dot(h)).clamp(zero, one)];
+            let share = match self.has_one_index {
+                true => Vec3::splat(fresnel_transmitted(before, behind, self.eta)) + film,
+                false => Vec3::splat(one) - self.reflected(before, film),
+            };
+            let seen = smith_g1_over_cosine(through, refracted.wi) * refracted.wi.z.abs();
+            let is_lost = refracted.is_total | !refracted.wi.z.below_zero();
+            share * T::select(is_lost, zero, seen)
+        }
     }
 }

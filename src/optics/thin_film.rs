@@ -11,9 +11,8 @@
 
 pub use super::fresnel_terms::FilmTerms;
 use super::fresnel_terms::{Fresnel, FresnelTerms, fresnel_metal};
-use super::real::{Mask, Real};
 use super::refraction::refracted_square;
-use super::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
 /// The wavelengths of red, green and blue in nm.
 pub const WAVELENGTHS_NM: [f64; 3] = [620.0, 540.0, 450.0];
@@ -37,166 +36,145 @@ pub fn film_path(thickness_um: f32) -> Vec3<f32> {
     Vec3::from_f64(WAVELENGTHS_NM.map(phase))
 }
 
-/// The change by the film of what the dielectric of a surface reflects, tint included.
-#[inline(always)]
-pub fn film_change_of_dielectric<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    if !terms.metalness.less(T::one()).any() {
-        return Vec3::zero();
+inlined! {
+    /// The change by the film of what the dielectric of a surface reflects, tint included.
+    pub fn film_change_of_dielectric<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+        if !terms.metalness.less(T::ONE).any() {
+            return Vec3::ZERO;
+        }
+        let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
+        let passed = out_of_line!(T, film_passed(terms, cosine, height));
+        -(terms.tint.map(|x| x.min(T::ONE)) * passed) * terms.weight
     }
-    let height = refracted_square(cosine.max(T::from_f64(LEAST_FILM_COSINE)), terms.ior).safe_sqrt();
-    let passed = T::out_of_line(
-        #[inline(always)]
-        || film_passed(terms, cosine, height),
-    );
-    -(terms.tint.map(|x| x.min(T::one())) * passed) * terms.weight
-}
 
-/// The change by the film of what the metal of a surface reflects, tint included.
-#[inline(always)]
-pub fn film_change_of_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    if !T::zero().less(terms.metalness).any() {
-        return Vec3::zero();
+    /// The change by the film of what the metal of a surface reflects, tint included.
+    pub fn film_change_of_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+        if !terms.metalness.above_zero().any() {
+            return Vec3::ZERO;
+        }
+        let changed = out_of_line!(T, film_on_metal(terms, cosine.max(T::from_f64(LEAST_FILM_COSINE))));
+        changed * terms.metal_tint
     }
-    let changed = T::out_of_line(
-        #[inline(always)]
-        || film_on_metal(terms, cosine.max(T::from_f64(LEAST_FILM_COSINE))),
-    );
-    changed * terms.metal_tint
-}
 
-/// The change by the film of what a dielectric lets through. `height` is its relative index times the cosine behind it.
-#[inline(always)]
-pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: T) -> Vec3<T> {
-    let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
-    let behind = Behind {
-        perpendicular: [height, T::zero()],
-        parallel: [height / (terms.ior * terms.ior), T::zero()],
-    };
-    let bare = entered_bare(cosine, behind);
-    (entered(&terms.film, cosine, [behind; 3]) - Vec3::splat(bare)) * terms.film.weight
-}
+    /// The change by the film of what a dielectric lets through. `height` is its relative index times the cosine behind it.
+    pub fn film_passed<T: Real>(terms: &FresnelTerms<T>, cosine: T, height: T) -> Vec3<T> {
+        let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
+        let behind = Behind {
+            perpendicular: [height, T::ZERO],
+            parallel: [height / (terms.ior * terms.ior), T::ZERO],
+        };
+        let bare = entered_bare(cosine, behind);
+        (entered(&terms.film, cosine, [behind; 3]) - Vec3::splat(bare)) * terms.film.weight
+    }
 
-/// The share reflected by a film on a conductor of `eta` and `k`, untinted.
-#[inline(always)]
-pub fn film_on_conductor<T: Real>(terms: &FresnelTerms<T>, cosine: T, bare: Vec3<T>) -> Vec3<T> {
-    T::out_of_line(
-        #[inline(always)]
-        || {
+    /// The share reflected by a film on a conductor of `eta` and `k`, untinted.
+    pub fn film_on_conductor<T: Real>(terms: &FresnelTerms<T>, cosine: T, bare: Vec3<T>) -> Vec3<T> {
+        out_of_line!(T, {
             let cosine = cosine.max(T::from_f64(LEAST_FILM_COSINE));
             let (eta, k) = (terms.eta, terms.k);
             let behind = [(eta.x, k.x), (eta.y, k.y), (eta.z, k.z)].map(|(eta, k)| admittances(cosine, eta, k));
-            let filmed = Vec3::splat(T::one()) - entered(&terms.film, cosine, behind);
+            let filmed = Vec3::ONE - entered(&terms.film, cosine, behind);
             bare.mix(filmed.at_least_zero(), terms.film.weight)
-        },
-    )
-}
-
-/// The change by the film of what a metal known by its colours reflects: its loss is scaled as that of the complex index.
-#[inline(always)]
-fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    let (f0, edge) = (terms.metal_f0, terms.edge_tint);
-    let behind = [(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)].map(|(f0, edge)| {
-        let [eta, k] = index_of_colors(f0, edge);
-        admittances(cosine, eta, k)
-    });
-    let filmed = entered(&terms.film, cosine, behind);
-    let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(FILM_TINY)));
-    let scale = vec3(filmed.x / x, filmed.y / y, filmed.z / z);
-    let reflected = fresnel_metal(f0, edge, cosine);
-    let lost = Vec3::splat(T::one()) - reflected;
-    ((lost - lost * scale) * terms.film.weight + reflected).at_least_zero() - reflected
-}
-
-/// Real and imaginary part of the index of a metal that reflects `f0` at normal incidence, with the edge's tint.
-#[inline(always)]
-pub fn index_of_colors<T: Real>(f0: T, edge: T) -> [T; 2] {
-    let one = T::one();
-    let r = f0.min(T::from_f64(LARGEST_FILM_F0));
-    let root = r.sqrt();
-    let eta = edge * (one - r) / (one + r) + (one - edge) * (one + root) / (one - root);
-    let square = ((eta + one) * (eta + one) * r - (eta - one) * (eta - one)) / (one - r);
-    [eta, square.safe_sqrt()]
-}
-
-/// Admittances of a medium of a complex index.
-#[inline(always)]
-fn admittances<T: Real>(cosine: T, eta: T, k: T) -> Behind<T> {
-    let two = T::from_f64(2.0);
-    let [x, y] = [refracted_square(cosine, eta) - k * k, two * eta * k];
-    // The root of x + iy, without cancellation.
-    let leg = (T::from_f64(0.5) * ((x * x + y * y).sqrt() + x.abs())).sqrt();
-    let other = T::from_f64(0.5) * y / leg.max(T::from_f64(FILM_TINY));
-    let is_below = x.less(T::zero());
-    let [re, im] = [T::select(is_below, other, leg), T::select(is_below, leg, other)];
-    // Over the squared index for the other polarisation.
-    let [square, twice] = [(eta - k) * (eta + k), two * eta * k];
-    let size = eta * eta + k * k;
-    let scale = T::one() / (size * size).max(T::from_f64(FILM_TINY));
-    Behind {
-        perpendicular: [re, im],
-        parallel: [
-            ((re * square + im * twice) * scale).max(T::zero()),
-            (im * square - re * twice) * scale,
-        ],
+        })
     }
-}
 
-/// The share of unpolarised light that enters the media behind a film, by channel.
-#[inline(always)]
-fn entered<T: Real>(film: &FilmTerms<T>, cosine: T, behind: [Behind<T>; 3]) -> Vec3<T> {
-    // Beyond the film's own critical angle it counts as one that light just grazes.
-    let square = refracted_square(cosine, film.ior).max(T::zero());
-    let (height, index_square) = (square.sqrt(), film.ior * film.ior);
-    let channel = |path: T, behind: Behind<T>| {
-        T::vectorize(
-            #[inline(always)]
-            || {
+    /// The change by the film of what a metal known by its colours reflects: its loss is scaled as that of the complex index.
+    fn film_on_metal<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+        let (f0, edge) = (terms.metal_f0, terms.edge_tint);
+        let behind = [(f0.x, edge.x), (f0.y, edge.y), (f0.z, edge.z)].map(|(f0, edge)| {
+            let [eta, k] = index_of_colors(f0, edge);
+            admittances(cosine, eta, k)
+        });
+        let filmed = entered(&terms.film, cosine, behind);
+        let [x, y, z] = behind.map(|behind| entered_bare(cosine, behind).max(T::from_f64(FILM_TINY)));
+        let scale = vec3(filmed.x / x, filmed.y / y, filmed.z / z);
+        let reflected = fresnel_metal(f0, edge, cosine);
+        let lost = Vec3::ONE - reflected;
+        ((lost - lost * scale) * terms.film.weight + reflected).at_least_zero() - reflected
+    }
+
+    /// Real and imaginary part of the index of a metal that reflects `f0` at normal incidence, with the edge's tint.
+    pub fn index_of_colors<T: Real>(f0: T, edge: T) -> [T; 2] {
+        let one = T::ONE;
+        let r = f0.min(T::from_f64(LARGEST_FILM_F0));
+        let root = r.sqrt();
+        let eta = edge * (one - r) / (one + r) + (one - edge) * (one + root) / (one - root);
+        let square = ((eta + one) * (eta + one) * r - (eta - one) * (eta - one)) / (one - r);
+        [eta, square.safe_sqrt()]
+    }
+
+    /// Admittances of a medium of a complex index.
+    fn admittances<T: Real>(cosine: T, eta: T, k: T) -> Behind<T> {
+        let two = T::TWO;
+        let [x, y] = [refracted_square(cosine, eta) - k * k, two * eta * k];
+        // The root of x + iy, without cancellation.
+        let leg = (T::HALF * ((x * x + y * y).sqrt() + x.abs())).sqrt();
+        let other = T::HALF * y / leg.max(T::from_f64(FILM_TINY));
+        let is_below = x.below_zero();
+        let [re, im] = [T::select(is_below, other, leg), T::select(is_below, leg, other)];
+        // Over the squared index for the other polarisation.
+        let [square, twice] = [(eta - k) * (eta + k), two * eta * k];
+        let size = eta * eta + k * k;
+        let scale = T::ONE / (size * size).max(T::from_f64(FILM_TINY));
+        Behind {
+            perpendicular: [re, im],
+            parallel: [
+                ((re * square + im * twice) * scale).max(T::ZERO),
+                (im * square - re * twice) * scale,
+            ],
+        }
+    }
+
+    /// The share of unpolarised light that enters the media behind a film, by channel.
+    fn entered<T: Real>(film: &FilmTerms<T>, cosine: T, behind: [Behind<T>; 3]) -> Vec3<T> {
+        // Beyond the film's own critical angle it counts as one that light just grazes.
+        let square = refracted_square(cosine, film.ior).max(T::ZERO);
+        let (height, index_square) = (square.sqrt(), film.ior * film.ior);
+        let channel = |path: T, behind: Behind<T>| {
+            vectorized!(T, {
                 let phase = path * height;
                 let is_small = phase.less(T::from_f64(1e-4));
-                let across = path * T::select(is_small, T::one(), phase.sin() / phase.max(T::from_f64(FILM_TINY)));
+                let across = path * T::select(is_small, T::ONE, phase.sin() / phase.max(T::from_f64(FILM_TINY)));
                 let along = phase.cos();
                 let perpendicular = entered_polarised(cosine, behind.perpendicular, square, [along, across]);
                 let square = square / (index_square * index_square);
                 let parallel = entered_polarised(cosine, behind.parallel, square, [along, across * index_square]);
-                T::from_f64(0.5) * (perpendicular + parallel)
-            },
+                T::HALF * (perpendicular + parallel)
+            })
+        };
+        let [x, y, z] = behind;
+        vec3(
+            channel(film.path.x, x),
+            channel(film.path.y, y),
+            channel(film.path.z, z),
         )
-    };
-    let [x, y, z] = behind;
-    vec3(
-        channel(film.path.x, x),
-        channel(film.path.y, y),
-        channel(film.path.z, z),
-    )
-}
+    }
 
-/// The same without a film.
-#[inline(always)]
-fn entered_bare<T: Real>(cosine: T, behind: Behind<T>) -> T {
-    let (zero, one) = (T::zero(), T::one());
-    let [perpendicular, parallel] =
-        [behind.perpendicular, behind.parallel].map(|behind| entered_polarised(cosine, behind, zero, [one, zero]));
-    T::from_f64(0.5) * (perpendicular + parallel)
-}
+    /// The same without a film.
+    fn entered_bare<T: Real>(cosine: T, behind: Behind<T>) -> T {
+        let (zero, one) = (T::ZERO, T::ONE);
+        let [perpendicular, parallel] =
+            [behind.perpendicular, behind.parallel].map(|behind| entered_polarised(cosine, behind, zero, [one, zero]));
+        T::HALF * (perpendicular + parallel)
+    }
 
-/// The share of one polarisation that enters. `film_square` is the film's squared admittance; then the cosine of its phase,
-/// and its sine over the admittance.
-#[inline(always)]
-fn entered_polarised<T: Real>(before: T, behind: [T; 2], film_square: T, [along, across]: [T; 2]) -> T {
-    let [re, im] = behind;
-    let x = (before + re) * along + before * im * across;
-    let y = im * along - (before * re + film_square) * across;
-    T::from_f64(4.0) * before * re / (x * x + y * y).max(T::from_f64(FILM_TINY))
-}
+    /// The share of one polarisation that enters. `film_square` is the film's squared admittance; then the cosine of its phase,
+    /// and its sine over the admittance.
+    fn entered_polarised<T: Real>(before: T, behind: [T; 2], film_square: T, [along, across]: [T; 2]) -> T {
+        let [re, im] = behind;
+        let x = (before + re) * along + before * im * across;
+        let y = im * along - (before * re + film_square) * across;
+        T::from_f64(4.0) * before * re / (x * x + y * y).max(T::from_f64(FILM_TINY))
+    }
 
-/// The cosine at which a facet reflects as a lobe does on average, from its albedo under the factors 1 − (1 − c)⁵ and
-/// (1 − c)⁵; and its albedo under 1.
-#[inline(always)]
-pub fn mean_facet<T: Real>([constant, grazing]: [T; 2]) -> [T; 2] {
-    let energy = constant + grazing;
-    let share = (grazing / energy.max(T::from_f64(FILM_TINY))).clamp(T::zero(), T::one());
-    let cosine = T::one() - share.max(T::from_f64(FILM_TINY)).powf(T::from_f64(0.2));
-    [cosine, energy]
+    /// The cosine at which a facet reflects as a lobe does on average, from its albedo under the factors 1 − (1 − c)⁵ and
+    /// (1 − c)⁵; and its albedo under 1.
+    pub fn mean_facet<T: Real>([constant, grazing]: [T; 2]) -> [T; 2] {
+        let energy = constant + grazing;
+        let share = (grazing / energy.max(T::from_f64(FILM_TINY))).clamp(T::ZERO, T::ONE);
+        let cosine = T::ONE - share.max(T::from_f64(FILM_TINY)).powf(T::from_f64(0.2));
+        [cosine, energy]
+    }
 }
 
 /// True where a film changes what a model reflects: not where everything is reflected at any angle.

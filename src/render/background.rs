@@ -1,12 +1,11 @@
 //! Work beside the window whose latest request wins: plots, fits, checks.
 
 use std::io;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::mailbox::{IDLE, Mailbox};
 use crate::panics::{caught, lock};
 
 /// Interval at which held work checks whether to continue.
@@ -14,38 +13,26 @@ const HOLD_STEP: Duration = Duration::from_millis(25);
 
 /// Answers queries on a thread of its own. A query that has not been started is replaced by the next one.
 pub struct Background<Q, A> {
-    shared: Arc<Shared<Q, A>>,
+    queries: Sender<(usize, Q)>,
+    shared: Arc<Shared<A>>,
 }
 
-struct Shared<Q, A> {
-    orders: Mailbox<Orders<Q>>,
+struct Shared<A> {
+    /// Numbers of the latest query, and of the latest that the thread is done with.
+    asked: AtomicUsize,
+    done: AtomicUsize,
     answer: Mutex<Option<A>>,
     failure: Mutex<Option<String>>,
 }
 
-struct Orders<Q> {
-    query: Option<Q>,
-    is_busy: bool,
-    quit: bool,
-}
-
-impl<Q> Default for Orders<Q> {
-    fn default() -> Self {
-        Self {
-            query: None,
-            is_busy: false,
-            quit: false,
-        }
-    }
-}
-
-/// Handle through which the work reports.
-pub struct Responder<'a, Q, A> {
-    shared: &'a Shared<Q, A>,
+/// Handle through which the work on a query reports.
+pub struct Responder<'a, A> {
+    shared: &'a Shared<A>,
+    query: usize,
     repaint: &'a dyn Fn(),
 }
 
-impl<Q, A> Responder<'_, Q, A> {
+impl<A> Responder<'_, A> {
     /// Shows an answer, which may be followed by a better one.
     pub fn publish(&self, answer: A) {
         *lock(&self.shared.answer) = Some(answer);
@@ -54,16 +41,15 @@ impl<Q, A> Responder<'_, Q, A> {
 
     /// Waits while `hold` is set. Returns false once superseded.
     pub fn wait_while_held(&self, hold: &AtomicBool) -> bool {
-        while hold.load(Ordering::Relaxed) && !self.is_superseded() {
+        while hold.load(Relaxed) && !self.is_superseded() {
             std::thread::sleep(HOLD_STEP);
         }
         !self.is_superseded()
     }
 
-    /// Whether a newer query has superseded this one.
+    /// Whether there is a newer query, or nobody who waits for an answer.
     pub fn is_superseded(&self) -> bool {
-        let orders = self.shared.orders.look();
-        orders.quit || orders.query.is_some()
+        self.shared.asked.load(Relaxed) != self.query
     }
 }
 
@@ -72,40 +58,43 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
     pub fn spawn(
         name: &str,
         repaint: impl Fn() + Send + 'static,
-        mut work: impl FnMut(Q, &Responder<'_, Q, A>) + Send + 'static,
+        mut work: impl FnMut(Q, &Responder<'_, A>) + Send + 'static,
     ) -> io::Result<Self> {
+        let (queries, asked) = channel();
         let shared = Arc::new(Shared {
-            orders: Mailbox::default(),
+            asked: AtomicUsize::new(0),
+            done: AtomicUsize::new(0),
             answer: Mutex::default(),
             failure: Mutex::default(),
         });
         let of_thread = shared.clone();
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
-            while let Some(query) = next(&of_thread) {
+            for (number, query) in asked {
                 let responder = Responder {
                     shared: &of_thread,
+                    query: number,
                     repaint: &repaint,
                 };
+                if responder.is_superseded() {
+                    continue;
+                }
                 *lock(&of_thread.failure) = None;
                 if let Err(why) = caught(|| work(query, &responder)) {
                     *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
                 }
                 // Free again before the window looks.
-                of_thread.orders.look().is_busy = false;
+                of_thread.done.store(number, Relaxed);
                 repaint();
             }
         })?;
-        Ok(Self { shared })
+        Ok(Self { queries, shared })
     }
 
     pub fn ask(&self, query: Q) {
-        self.shared.orders.change(|orders| orders.query = Some(query));
-    }
-
-    /// Withdraws a query that has not been started.
-    pub(super) fn withdraw(&self) {
-        self.shared.orders.look().query = None;
+        let number = self.shared.asked.fetch_add(1, Relaxed) + 1;
+        // The thread lasts as long as this.
+        let _ = self.queries.send((number, query));
     }
 
     pub fn latest(&self) -> Option<A>
@@ -116,12 +105,12 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
     }
 
     /// Whether there is an answer.
-    pub(super) fn has_answer(&self) -> bool {
+    pub fn has_answer(&self) -> bool {
         lock(&self.shared.answer).is_some()
     }
 
     /// The latest answer, taken away.
-    pub(super) fn take(&self) -> Option<A> {
+    pub fn take(&self) -> Option<A> {
         lock(&self.shared.answer).take()
     }
 
@@ -132,25 +121,13 @@ impl<Q: Send + 'static, A: Send + 'static> Background<Q, A> {
 
     /// Whether something asked for is still to come.
     pub fn is_busy(&self) -> bool {
-        let orders = self.shared.orders.look();
-        orders.is_busy || orders.query.is_some()
+        self.shared.done.load(Relaxed) != self.shared.asked.load(Relaxed)
     }
 }
 
 impl<Q, A> Drop for Background<Q, A> {
+    /// Supersedes what is under way; the thread ends after it.
     fn drop(&mut self) {
-        self.shared.orders.change(|orders| orders.quit = true);
+        self.shared.asked.fetch_add(1, Relaxed);
     }
-}
-
-/// Waits for a query; `None` when it is time to go.
-fn next<Q, A>(shared: &Shared<Q, A>) -> Option<Q> {
-    shared.orders.wait(|orders| match orders.query.take() {
-        _ if orders.quit => ControlFlow::Break(None),
-        None => ControlFlow::Continue(IDLE),
-        query => {
-            orders.is_busy = true;
-            ControlFlow::Break(query)
-        }
-    })
 }

@@ -32,32 +32,40 @@ pub struct Measurement {
 
 /// Inputs for the length of a round.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pacing {
+pub struct Pacing {
     /// Engine time so far, in seconds; `None` if rounds end by samples alone. The CPU engine does so with adaptive sampling
     /// or a noise limit: tiles pause, and rendering stops, at the end of a round. So the same render twice gives the same image.
-    pub(super) engine_seconds: Option<f64>,
+    pub engine_seconds: Option<f64>,
     /// True if the image is denoised after each round, and its error is the stop criterion.
-    pub(super) is_denoised: bool,
+    pub is_denoised: bool,
+}
+
+/// What is done between rounds.
+#[derive(Clone, Copy, Debug)]
+pub enum Work {
+    /// Estimating the error.
+    Measuring,
+    /// Setting the goals.
+    Planning,
 }
 
 /// Rounds of rendering, each followed by an error measurement.
 #[derive(Debug, Default)]
-pub(super) struct Convergence {
+pub struct Convergence {
     /// Samples per pixel that each tile is to have at the end of the round.
-    pub(super) goals: Vec<u32>,
+    pub goals: Vec<u32>,
     /// Measurements, oldest first.
-    pub(super) history: Vec<Measurement>,
+    pub history: Vec<Measurement>,
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
-    /// Time of a measurement with planning in seconds: the minimum so far, because other work may disturb it.
-    measure_seconds: Option<f64>,
-    plan_seconds: Option<f64>,
+    /// Time of a measurement and of planning in seconds: the minimum so far, because other work may disturb it.
+    least_seconds: [Option<f64>; 2],
     /// Total time of measurements and planning, in seconds.
-    pub(super) total_seconds: f64,
+    pub total_seconds: f64,
 }
 
 /// The samples of the tile that has the fewest, of the part that is rendered.
-pub(super) fn fewest_samples(schedule: &Schedule, settings: &RenderSettings) -> u32 {
+pub fn fewest_samples(schedule: &Schedule, settings: &RenderSettings) -> u32 {
     let grid = schedule.grid();
     let samples = schedule.samples().iter().enumerate();
     let rendered = samples.filter(|(tile, _)| grid.is_rendered(*tile, settings.region));
@@ -66,7 +74,7 @@ pub(super) fn fewest_samples(schedule: &Schedule, settings: &RenderSettings) -> 
 
 impl Convergence {
     /// The latest error seen.
-    pub(super) fn noise(&self) -> Option<Noise> {
+    pub fn noise(&self) -> Option<Noise> {
         self.history.last().map(|measurement| measurement.noise)
     }
 
@@ -78,34 +86,29 @@ impl Convergence {
     }
 
     /// Whether something was rendered since the last look.
-    pub(super) fn is_stale(&self, schedule: &Schedule) -> bool {
+    pub fn is_stale(&self, schedule: &Schedule) -> bool {
         schedule.pixel_samples() > self.measured_samples
     }
 
-    /// Records how long estimating the error took.
-    pub(super) fn looked(&mut self, seconds: f64) {
+    /// Records how long some work took.
+    pub fn took(&mut self, work: Work, seconds: f64) {
         self.total_seconds += seconds;
-        self.measure_seconds = lesser(self.measure_seconds, seconds);
-    }
-
-    /// Records how long setting the goals took.
-    pub(super) fn planned(&mut self, seconds: f64) {
-        self.total_seconds += seconds;
-        self.plan_seconds = lesser(self.plan_seconds, seconds);
+        let least = &mut self.least_seconds[work as usize];
+        *least = Some(least.map_or(seconds, |least| least.min(seconds)));
     }
 
     /// Measures the error of the rendered part.
-    pub(super) fn measure(&mut self, film: &Film, schedule: &Schedule, settings: &RenderSettings, engine_seconds: f64) {
+    pub fn measure(&mut self, film: &Film, schedule: &Schedule, settings: &RenderSettings, engine_seconds: f64) {
         self.measured_samples = schedule.pixel_samples();
         let grid = schedule.grid();
         let seen = match settings.region {
-            Some(region) => noise(&film.of_pixels(|pixel| grid.is_within(grid.of_pixel(pixel), region))),
+            Some(_) => noise(&film.of_pixels(|pixel| grid.is_rendered(grid.of_pixel(pixel), settings.region))),
             None => noise(film),
         };
         if let Some(noise) = seen {
             self.history.push(Measurement {
                 engine_seconds,
-                samples_per_pixel: mean_samples(schedule),
+                samples_per_pixel: mean_samples(schedule, None),
                 noise,
             });
         }
@@ -114,10 +117,8 @@ impl Convergence {
     /// Growth of samples in a round that is long enough for its measurement to stay within its share of time.
     fn paced(&self, schedule: &Schedule, settings: &RenderSettings, pacing: Pacing) -> f64 {
         let look = match pacing.engine_seconds {
-            Some(seconds) => {
-                (self.measure_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9)
-            }
-            None => LOOK_SAMPLES / rendered_samples(schedule, settings).max(1.0),
+            Some(seconds) => self.least_seconds.iter().flatten().sum::<f64>() / seconds.max(1e-9),
+            None => LOOK_SAMPLES / mean_samples(schedule, settings.region).max(1.0),
         };
         let most = match (pacing.is_denoised && settings.noise.is_some(), self.history.len()) {
             (true, _) => GROWTH_TARGETED,
@@ -129,42 +130,33 @@ impl Convergence {
 
     /// Sets the goals of the next round: at most `settings.samples` per pixel, and none outside the rendered part. `film` is
     /// read if tiles may pause.
-    pub(super) fn next_round(
-        &mut self,
-        film: Option<&Film>,
-        schedule: &Schedule,
-        settings: &RenderSettings,
-        pacing: Pacing,
-    ) {
-        self.next_round_of_all(film, schedule, settings, pacing);
-        let Some(region) = settings.region else { return };
+    pub fn next_round(&mut self, film: Option<&Film>, schedule: &Schedule, settings: &RenderSettings, pacing: Pacing) {
+        self.goals = self.goals_of_all(film, schedule, settings, pacing);
         let grid = schedule.grid();
         for (tile, (goal, samples)) in self.goals.iter_mut().zip(schedule.samples()).enumerate() {
-            if !grid.is_within(tile, region) {
+            if !grid.is_rendered(tile, settings.region) {
                 *goal = *samples;
             }
         }
     }
 
-    fn next_round_of_all(
-        &mut self,
+    fn goals_of_all(
+        &self,
         film: Option<&Film>,
         schedule: &Schedule,
         settings: &RenderSettings,
         pacing: Pacing,
-    ) {
+    ) -> Vec<u32> {
         let samples = schedule.samples();
         let most = samples.iter().copied().max().unwrap_or(0);
         let least = settings.least_samples();
         let has_target = settings.noise.is_some() || settings.is_adaptive();
         if has_target && fewest_samples(schedule, settings) < least {
-            self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
-            return;
+            return samples.iter().map(|samples| least.max(*samples)).collect();
         }
         // Two samples in every pixel are the fewest from which the error can be estimated.
         if most < 2 {
-            self.goals = vec![settings.samples.min(2); samples.len()];
-            return;
+            return vec![settings.samples.min(2); samples.len()];
         }
         let paced = self.paced(schedule, settings, pacing);
         let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
@@ -175,8 +167,7 @@ impl Convergence {
                 samples_max: settings.samples,
                 region: settings.region,
             };
-            self.goals = next_goals(film, samples, round);
-            return;
+            return next_goals(film, samples, round);
         }
         let growth = match (settings.noise, self.noise()) {
             // The error falls as 1/√n; rather a little short of the target than beyond it.
@@ -188,29 +179,18 @@ impl Convergence {
         };
         let growth = growth.max(growth_min);
         let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
-        self.goals = vec![goal.min(settings.samples); samples.len()];
+        vec![goal.min(settings.samples); samples.len()]
     }
 }
 
-/// Samples per pixel, averaged over the part that is rendered.
-fn rendered_samples(schedule: &Schedule, settings: &RenderSettings) -> f64 {
+/// Samples per pixel, averaged over a region, or over the image.
+pub fn mean_samples(schedule: &Schedule, region: Option<[f64; 4]>) -> f64 {
     let grid = schedule.grid();
     let tiles = schedule.samples().iter().enumerate();
     let [mut samples, mut pixels] = [0; 2];
-    for (tile, count) in tiles.filter(|(tile, _)| grid.is_rendered(*tile, settings.region)) {
+    for (tile, count) in tiles.filter(|(tile, _)| grid.is_rendered(*tile, region)) {
         samples += grid.pixels(tile) * u64::from(*count);
         pixels += grid.pixels(tile);
     }
     samples as f64 / pixels.max(1) as f64
-}
-
-fn lesser(least: Option<f64>, seconds: f64) -> Option<f64> {
-    Some(least.map_or(seconds, |least| least.min(seconds)))
-}
-
-/// Samples per pixel, averaged over the image.
-pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
-    let grid = schedule.grid();
-    let pixels = u64::from(grid.width) * u64::from(grid.height);
-    schedule.pixel_samples() as f64 / pixels.max(1) as f64
 }

@@ -1,6 +1,5 @@
 //! Why a session refuses a document or fails.
 
-use super::memory;
 use crate::compile::AssetError;
 use crate::gpu::GpuError;
 
@@ -13,12 +12,9 @@ pub enum SessionError {
     /// The GPU can't be used.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// The image does not fit into memory; nothing was started.
-    #[error(transparent)]
-    TooLarge(#[from] memory::TooLarge),
-    /// The model's instances do not fit into memory one by one; nothing was started.
-    #[error(transparent)]
-    Instances(#[from] memory::InstancesTooLarge),
+    /// It does not fit into memory; nothing was started.
+    #[error("{0}")]
+    TooLarge(String),
 }
 
 impl SessionError {

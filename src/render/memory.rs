@@ -1,7 +1,7 @@
 //! Check, before a render, whether it fits into memory.
 
-pub use crate::import::free_memory::LIMIT_VARIABLE;
-pub(super) use crate::import::free_memory::{free, limit};
+use super::engine::{EngineInfo, EngineKind};
+pub use crate::import::limits::{LIMIT_VARIABLE, free, limit};
 use crate::job::Job;
 use crate::job::effect::EffectId;
 use crate::job::film::Extras;
@@ -20,80 +20,53 @@ const SOFTWARE_GPU_BYTES: u64 = 56;
 /// Bytes per triangle of instances on a GPU: measured on software Vulkan, with 7.7 million triangles.
 const INSTANCED_TRIANGLE_BYTES: u64 = 380;
 
-/// The model's instances are too large for a GPU engine, which stores them one by one.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "on a GPU the {triangles} triangles of the model's instances take {needed_mib} MiB of memory, and {allowed_mib} MiB are \
-     free for them. Render on the CPU with --engine cpu, which stores each mesh once, or close other programs"
-)]
-pub struct InstancesTooLarge {
-    triangles: u64,
-    needed_mib: u64,
-    allowed_mib: u64,
-}
-
-/// The render is too large.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "an image of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
-     Make it smaller (at most about {side} x {side}), or close other programs{remedy}"
-)]
-pub struct TooLarge {
-    width: u32,
-    height: u32,
-    needed_mib: u64,
-    allowed_mib: u64,
-    /// Side of the largest square image that fits, in pixels.
-    side: u64,
-    remedy: &'static str,
-}
-
-/// Refuses a job that needs more than `allowed` bytes. `is_software_gpu`: the GPU shares the CPU's memory.
-pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), TooLarge> {
-    let needs = Needs::of(job, is_software_gpu);
+/// Refuses a job that needs more than `allowed` bytes, in words: its image, or beside it the instances of its model, which a
+/// GPU stores one by one.
+pub fn check(job: &Job, engine: &EngineInfo, allowed: u64) -> Result<(), String> {
+    let needs = Needs::of(job, engine);
     let needed = needs.bytes();
-    if needed <= allowed {
-        return Ok(());
-    }
-    let [width, height] = job.settings.image_size;
-    Err(TooLarge {
-        width,
-        height,
-        needed_mib: needed.div_ceil(1 << 20),
-        allowed_mib: allowed >> 20,
-        side: needs.pixels_within(allowed).isqrt(),
-        remedy: if needs.is_denoised {
+    let in_mib = |bytes: u64| bytes.div_ceil(1 << 20);
+    let allowed_mib = allowed >> 20;
+    if needed > allowed {
+        let [width, height] = job.settings.image_size;
+        let side = needs.pixels_within(allowed).isqrt();
+        let remedy = if needs.is_denoised {
             ", or switch denoising off"
         } else {
             ""
-        },
-    })
-}
-
-/// Refuses a job for a GPU engine whose instances need more than `allowed` bytes, beside the image.
-pub(super) fn check_instances(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), InstancesTooLarge> {
-    let triangles = job.geometry.triangles_to_copy() as u64;
-    let needed = triangles * INSTANCED_TRIANGLE_BYTES;
-    if triangles == 0 || needed + Needs::of(job, is_software_gpu).bytes() <= allowed {
-        return Ok(());
+        };
+        return Err(format!(
+            "an image of {width} x {height} pixels takes {} MiB of memory, and {allowed_mib} MiB are free for it. \
+             Make it smaller (at most about {side} x {side}), or close other programs{remedy}",
+            in_mib(needed)
+        ));
     }
-    Err(InstancesTooLarge {
-        triangles,
-        needed_mib: needed.div_ceil(1 << 20),
-        allowed_mib: allowed >> 20,
-    })
+    let triangles = match engine.kind {
+        EngineKind::Gpu => job.geometry.triangles_to_copy() as u64,
+        EngineKind::Cpu => 0,
+    };
+    let copied = triangles * INSTANCED_TRIANGLE_BYTES;
+    if triangles > 0 && copied + needed > allowed {
+        return Err(format!(
+            "on a GPU the {triangles} triangles of the model's instances take {} MiB of memory, and {allowed_mib} MiB are \
+             free for them. Render on the CPU with --engine cpu, which stores each mesh once, or close other programs",
+            in_mib(copied)
+        ));
+    }
+    Ok(())
 }
 
 /// Memory of a job's render, including display and output.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Needs {
+pub struct Needs {
     pixels: u64,
     pixel_bytes: u64,
     is_denoised: bool,
 }
 
 impl Needs {
-    pub(super) fn of(job: &Job, is_software_gpu: bool) -> Self {
+    pub fn of(job: &Job, engine: &EngineInfo) -> Self {
+        let is_software_gpu = engine.kind == EngineKind::Gpu && engine.is_software;
         let given = |is_given: bool, bytes: u64| if is_given { bytes } else { 0 };
         let extras = Extras::of(job);
         // The GPU's sums of both are at most as large as the film's.
@@ -116,7 +89,7 @@ impl Needs {
         }
     }
 
-    pub(super) fn bytes(&self) -> u64 {
+    pub fn bytes(&self) -> u64 {
         let of_library = (self.pixels * DENOISER_BYTES).min(DENOISER_BYTES_MOST);
         self.pixels * self.pixel_bytes + if self.is_denoised { of_library } else { 0 }
     }

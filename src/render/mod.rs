@@ -3,21 +3,17 @@
 //! `submit` a document, `step` with a time budget until `progress` is done, read `film` or `image`.
 
 pub mod background;
-mod chosen;
 mod convergence;
 pub mod denoise;
 pub mod display;
 mod engine;
-pub mod environment_thumbnails;
 mod error;
 pub mod frame;
 mod lens;
 pub mod light_layers;
 pub mod looks;
-mod mailbox;
 pub mod memory;
 pub mod output;
-mod picture_cache;
 pub mod precision_maps;
 pub mod priority;
 mod progress;

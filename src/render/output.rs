@@ -82,23 +82,16 @@ pub struct Layers {
     pub features: Features,
     /// Light groups as rendered, before the mix.
     pub lights: Vec<LightLayer>,
-    /// Samples in each pixel's mean.
-    pub samples: Vec<f32>,
-    /// Variance of each pixel's mean luminance; infinite below two samples.
-    pub variance: Vec<f32>,
 }
 
 impl Layers {
     /// The layers of a film, with given first-hit features.
     pub fn of(film: &Film, features: Features) -> Self {
-        let pixels = 0..film.pixel_count();
         Self {
             image: film.image(),
             denoised: None,
             features,
             lights: Vec::new(),
-            samples: pixels.clone().map(|pixel| film.samples_of(pixel) as f32).collect(),
-            variance: pixels.map(|pixel| film.variance_of_mean_at(pixel) as f32).collect(),
         }
     }
 }
@@ -220,15 +213,21 @@ fn color_channels(prefix: &str, image: &Image, names: &[&str]) -> Vec<(String, V
 
 fn layer_channels(layers: &Layers) -> Vec<(String, Vec<f32>)> {
     let features = &layers.features;
-    let mut channels = Vec::new();
-    for i in 0..3 {
-        let vector = |values: &[[f32; 3]]| values.iter().map(|value| value[i]).collect();
-        channels.push((format!("albedo.{}", COLORS[i]), vector(&features.albedo)));
-        channels.push((format!("normal.{}", ["X", "Y", "Z"][i]), vector(&features.normal)));
+    let numbers = [
+        ("depth.Z", &features.depth),
+        ("samples.Y", &features.samples),
+        ("variance.Y", &features.variance),
+    ];
+    let mut channels: Vec<_> = numbers.map(|(name, values)| (name.to_owned(), values.clone())).into();
+    for (name, axes, vectors) in [("albedo", "RGB", &features.albedo), ("normal", "XYZ", &features.normal)] {
+        let vectors = axes.chars().enumerate().map(|(i, axis)| {
+            (
+                format!("{name}.{axis}"),
+                vectors.iter().map(|vector| vector[i]).collect(),
+            )
+        });
+        channels.extend(vectors);
     }
-    channels.push(("depth.Z".to_owned(), features.depth.clone()));
-    channels.push(("samples.Y".to_owned(), layers.samples.clone()));
-    channels.push(("variance.Y".to_owned(), layers.variance.clone()));
     channels
 }
 

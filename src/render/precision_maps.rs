@@ -4,6 +4,7 @@ use std::io;
 use std::sync::Arc;
 
 use super::background::Background;
+use super::seen_map::fitted;
 use crate::cpu::precision::precision;
 use crate::job::Job;
 use crate::job::precision::PrecisionMap;
@@ -17,15 +18,10 @@ pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
 /// Starts the thread that makes maps; `repaint` is called when one is finished.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
     Background::spawn("precision", repaint, |job: Arc<Job>, responder| {
-        if let Some(map) = precision(&job, map_size(job.settings.image_size), || responder.is_superseded()) {
+        if let Some(map) = precision(&job, fitted(job.settings.image_size, SIDE_MAX_PX), || {
+            responder.is_superseded()
+        }) {
             responder.publish(Arc::new(map));
         }
     })
-}
-
-/// Size of the map: the image's aspect within [`SIDE_MAX_PX`].
-fn map_size([width, height]: [u32; 2]) -> [u32; 2] {
-    let longest = width.max(height).max(1);
-    let kept = SIDE_MAX_PX.min(longest);
-    [width, height].map(|side| (side * kept).div_ceil(longest).max(1))
 }

@@ -6,7 +6,7 @@ const APART: i32 = 19;
 
 /// Lowers the priority of the calling thread and of threads that it starts later (among them a software driver's and the
 /// denoiser's). Only once: threads of a lowered one are not lowered again. No effect if the system has no thread priorities.
-pub(super) fn lower_thread_priority() {
+pub fn lower_thread_priority() {
     lower_to(NICENESS);
 }
 

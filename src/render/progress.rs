@@ -36,7 +36,7 @@ pub struct Progress {
     pub noise: Option<Noise>,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
-    /// Estimated error of the denoised image, see [`Session::set_denoised_error`](super::Session::set_denoised_error).
+    /// Estimated error of the denoised image, see [`Session::denoised`](super::Session::denoised).
     pub denoised: Option<Distance>,
     /// True if the target also applies to the denoised image's error, if lower.
     pub targets_denoised: bool,

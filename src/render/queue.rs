@@ -1,23 +1,20 @@
 //! Queue of renders in the background, one after the other, with their own thread and session.
 
 use std::io;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
+use std::thread::Thread;
 use std::time::Duration;
 
 use super::engine::EngineChoice;
-use super::error::SessionError;
-use super::mailbox::{IDLE, Mailbox};
-use super::output::{self, OutputError, Rendered};
+use super::output;
 use super::session::Session;
 use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
-use super::turntable::{self, Turntable, TurntableError};
+use super::turntable::{self, Turntable};
 use crate::compile::Assets;
 use crate::document::Document;
-use crate::panics::caught;
-use crate::store::FileError;
+use crate::panics::{caught, lock};
 use crate::store::replace::check_saving;
 
 /// Pause of a render while something moves in the window.
@@ -71,13 +68,14 @@ impl Entry {
 
 /// The queue and its thread. Dropping it cancels all tasks.
 pub struct Queue {
-    book: Arc<Mailbox<Book>>,
+    book: Arc<Mutex<Book>>,
+    thread: Thread,
 }
 
 #[derive(Default)]
 struct Book {
-    entries: Vec<Entry>,
-    tasks: Vec<(u64, Task, EngineChoice)>,
+    /// Those that wait with what they are to do.
+    entries: Vec<(Entry, Option<Order>)>,
     /// Ends of tasks not yet reported.
     news: Vec<Result<String, String>>,
     last_id: u64,
@@ -89,194 +87,192 @@ struct Book {
     quits: bool,
 }
 
-/// Errors of a task.
-#[derive(Debug, thiserror::Error)]
-enum TaskError {
-    #[error(transparent)]
-    Session(#[from] SessionError),
-    #[error(transparent)]
-    File(#[from] FileError),
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    #[error(transparent)]
-    Turntable(#[from] TurntableError),
-}
-
-impl Mailbox<Book> {
-    /// The next task, once there is one; `None` when it is time to go.
-    fn next(&self) -> Option<(u64, Task, EngineChoice)> {
-        self.wait(|book| {
-            if book.quits {
-                return ControlFlow::Break(None);
-            }
-            if book.is_paused || book.tasks.is_empty() {
-                return ControlFlow::Continue(IDLE);
-            }
-            let next = book.tasks.remove(0);
-            book.is_cancelled = false;
-            book.set(next.0, State::Rendering(0.0));
-            ControlFlow::Break(Some(next))
-        })
-    }
-
-    /// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
-    fn report(&self, id: u64, share: f64) -> bool {
-        let mut has_rested = false;
-        self.wait(|book| {
-            book.set(id, State::Rendering(share));
-            let is_over = book.is_cancelled || book.quits;
-            if book.gives_way && !std::mem::replace(&mut has_rested, true) {
-                return ControlFlow::Continue(GIVES_WAY);
-            }
-            if book.is_paused && !is_over {
-                return ControlFlow::Continue(IDLE);
-            }
-            ControlFlow::Break(!is_over)
-        })
-    }
-
-    fn end(&self, id: u64, ended: Result<String, String>) {
-        let mut book = self.look();
-        let state = match &ended {
-            Ok(words) if book.is_cancelled => State::Cancelled(words.clone()),
-            Ok(words) => State::Done(words.clone()),
-            Err(why) => State::Failed(why.clone()),
-        };
-        book.set(id, state);
-        book.news.push(ended);
-    }
-}
+type Order = (Task, EngineChoice);
 
 impl Book {
+    /// The next task, if there is one and it may begin.
+    fn next(&mut self) -> Option<(u64, Order)> {
+        let mut waiting = self.entries.iter_mut().filter(|_| !self.is_paused);
+        let (entry, order) = waiting.find(|(_, order)| order.is_some())?;
+        entry.state = State::Rendering(0.0);
+        self.is_cancelled = false;
+        Some((entry.id, order.take()?))
+    }
+
     fn set(&mut self, id: u64, state: State) {
-        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == id) {
+        if let Some((entry, _)) = self.entries.iter_mut().find(|(entry, _)| entry.id == id) {
             entry.state = state;
         }
     }
+
+    fn end(&mut self, id: u64, ended: Result<String, String>) {
+        let state = match ended.clone() {
+            Ok(words) if self.is_cancelled => State::Cancelled(words),
+            Ok(words) => State::Done(words),
+            Err(why) => State::Failed(why),
+        };
+        self.set(id, state);
+        self.news.push(ended);
+    }
+}
+
+/// Waits for what `take` takes of the book; `None` when it is time to go.
+fn wait<R>(book: &Mutex<Book>, mut take: impl FnMut(&mut Book) -> Option<R>) -> Option<R> {
+    loop {
+        let mut now = lock(book);
+        if now.quits {
+            return None;
+        }
+        if let Some(taken) = take(&mut now) {
+            return Some(taken);
+        }
+        drop(now);
+        std::thread::park();
+    }
+}
+
+/// Reports a task's progress, and waits while paused. Returns false if it is cancelled.
+fn report(book: &Mutex<Book>, id: u64, share: f64) -> bool {
+    lock(book).set(id, State::Rendering(share));
+    if lock(book).gives_way {
+        std::thread::sleep(GIVES_WAY);
+    }
+    let goes_on = |book: &mut Book| (book.is_cancelled || !book.is_paused).then_some(!book.is_cancelled);
+    wait(book, goes_on).unwrap_or(false)
 }
 
 impl Queue {
     /// An empty queue; models and environments are shared. `repaint` is called when there is something new to show.
     pub fn new(assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let book = Arc::new(Mailbox::<Book>::default());
+        let book = Arc::new(Mutex::<Book>::default());
         let of_thread = book.clone();
-        std::thread::Builder::new().name("queue".to_owned()).spawn(move || {
+        let thread = std::thread::Builder::new().name("queue".to_owned()).spawn(move || {
             super::priority::lower_thread_priority();
-            let mut session: Option<(EngineChoice, Session)> = None;
-            while let Some((id, task, engine)) = of_thread.next() {
+            let mut kept: Option<(EngineChoice, Session)> = None;
+            while let Some((id, (task, engine))) = wait(&of_thread, Book::next) {
                 repaint();
                 let mut on_progress = |share: f64| {
-                    let continues = of_thread.report(id, share);
+                    let continues = report(&of_thread, id, share);
                     repaint();
                     continues
                 };
+                // A session that panicked is not used again.
+                let session = kept.take().filter(|(choice, _)| *choice == engine);
                 let rendered = caught(|| {
-                    let session = opened(&mut session, engine, &assets)?;
+                    let session = match session {
+                        Some((_, session)) => session,
+                        None => Session::open_with(engine, assets.clone())?,
+                    };
+                    let (_, session) = kept.insert((engine, session));
                     render(session, engine, &task, &mut on_progress)
                 });
                 let ended = match rendered {
-                    Ok(Ok(words)) => Ok(words),
-                    Ok(Err(error)) => Err(error.to_string()),
+                    Ok(ended) => ended.map_err(crate::in_words),
                     Err(why) => {
-                        // A session that panicked is not used again.
-                        session = None;
+                        kept = None;
                         Err(format!("an internal error: {why}"))
                     }
                 };
-                of_thread.end(id, ended);
-                if of_thread.look().tasks.is_empty() {
+                let mut book = lock(&of_thread);
+                book.end(id, ended);
+                if book.entries.iter().all(|(entry, _)| entry.is_over()) {
                     // An engine's memory is the viewport's again.
-                    session = None;
+                    kept = None;
                 }
+                drop(book);
                 repaint();
             }
         })?;
-        Ok(Self { book })
+        let thread = thread.thread().clone();
+        Ok(Self { book, thread })
+    }
+
+    /// Changes the book and wakes the thread.
+    fn change(&self, change: impl FnOnce(&mut Book)) {
+        change(&mut lock(&self.book));
+        self.thread.unpark();
     }
 
     /// Appends a task, to be rendered by an engine.
     pub fn add(&self, task: Task, engine: EngineChoice) {
-        self.book.change(|book| {
+        self.change(|book| {
             book.last_id += 1;
-            let (id, name) = (book.last_id, free_name(&book.entries, &task.name()));
-            book.entries.push(Entry {
-                id,
-                name,
+            let entry = Entry {
+                id: book.last_id,
+                name: free_name(&book.entries, &task.name()),
                 state: State::Waiting,
-            });
-            book.tasks.push((id, task, engine));
+            };
+            book.entries.push((entry, Some((task, engine))));
         });
     }
 
     /// All tasks, in order.
     pub fn entries(&self) -> Vec<Entry> {
-        self.book.look().entries.clone()
+        lock(&self.book)
+            .entries
+            .iter()
+            .map(|(entry, _)| entry.clone())
+            .collect()
     }
 
     /// Results of tasks that ended since the last call: summaries or errors.
     pub fn take_news(&self) -> Vec<Result<String, String>> {
-        std::mem::take(&mut self.book.look().news)
+        std::mem::take(&mut lock(&self.book).news)
     }
 
     /// Whether tasks are waiting or under way.
     pub fn is_busy(&self) -> bool {
-        self.book.look().entries.iter().any(|entry| !entry.is_over())
+        lock(&self.book).entries.iter().any(|(entry, _)| !entry.is_over())
     }
 
     /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
         let is_rendering = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
-        self.book.change(|book| {
-            if book.entries.iter().any(is_rendering) {
+        self.change(|book| {
+            if book.entries.iter().any(|(entry, _)| is_rendering(entry)) {
                 book.is_cancelled = true;
             } else {
-                book.entries.retain(|entry| entry.id != id);
-                book.tasks.retain(|(of, ..)| *of != id);
+                book.entries.retain(|(entry, _)| entry.id != id);
             }
         });
     }
 
     /// Removes ended tasks.
     pub fn remove_over(&self) {
-        self.book.look().entries.retain(|entry| !entry.is_over());
+        self.change(|book| book.entries.retain(|(entry, _)| !entry.is_over()));
     }
 
     /// Moves a waiting task to the front.
     pub fn put_first(&self, id: u64) {
-        let mut book = self.book.look();
-        if let Some(from) = book.tasks.iter().position(|(of, ..)| *of == id) {
-            book.tasks[..=from].rotate_right(1);
-        }
-        let is_waiting = |entry: &Entry| entry.state == State::Waiting;
-        let first = book.entries.iter().position(is_waiting);
-        let from = book
-            .entries
-            .iter()
-            .position(|entry| entry.id == id && is_waiting(entry));
-        if let (Some(first), Some(from)) = (first, from) {
-            book.entries[first..=from].rotate_right(1);
-        }
+        self.change(|book| {
+            let waiting = |entry: &(Entry, Option<Order>)| entry.1.is_some();
+            let first = book.entries.iter().position(waiting);
+            let from = book.entries.iter().position(|entry| entry.0.id == id && waiting(entry));
+            if let (Some(first), Some(from)) = (first, from) {
+                book.entries[first..=from].rotate_right(1);
+            }
+        });
     }
 
     /// Pauses or resumes rendering.
     pub fn pause(&self, is_paused: bool) {
-        self.book.change(|book| book.is_paused = is_paused);
+        self.change(|book| book.is_paused = is_paused);
     }
 
     /// Whether it was stopped.
     pub fn is_paused(&self) -> bool {
-        self.book.look().is_paused
+        lock(&self.book).is_paused
     }
 
     /// Yields most of the time to the window, or stops yielding.
     pub fn give_way(&self, gives_way: bool) {
-        self.book.look().gives_way = gives_way;
+        self.change(|book| book.gives_way = gives_way);
     }
 }
 
 impl Drop for Queue {
     fn drop(&mut self) {
-        self.book.change(|book| book.quits = true);
+        self.change(|book| book.quits = true);
     }
 }
 
@@ -293,26 +289,11 @@ impl Task {
 }
 
 /// A unique name: with a number if taken.
-fn free_name(entries: &[Entry], name: &str) -> String {
+fn free_name(entries: &[(Entry, Option<Order>)], name: &str) -> String {
     let numbered = (2..).map(|number| format!("{name} ({number})"));
     let mut names = std::iter::once(name.to_owned()).chain(numbered);
-    let is_free = |name: &String| entries.iter().all(|entry| entry.name != *name);
+    let is_free = |name: &String| entries.iter().all(|(entry, _)| entry.name != *name);
     names.find(is_free).unwrap_or_default()
-}
-
-/// The session for an engine: the one that is there, unless it has another.
-fn opened<'a>(
-    session: &'a mut Option<(EngineChoice, Session)>,
-    engine: EngineChoice,
-    assets: &Assets,
-) -> Result<&'a mut Session, SessionError> {
-    if session.as_ref().is_none_or(|(choice, _)| *choice != engine) {
-        *session = None;
-    }
-    Ok(match session {
-        Some((_, session)) => session,
-        None => &mut session.insert((engine, Session::open_with(engine, assets.clone())?)).1,
-    })
 }
 
 /// Renders a task and returns its summary.
@@ -321,7 +302,7 @@ fn render(
     engine: EngineChoice,
     task: &Task,
     on_progress: &mut dyn FnMut(f64) -> bool,
-) -> Result<String, TaskError> {
+) -> anyhow::Result<String> {
     match task {
         Task::Picture { document, path } => picture(session, engine, document, path, on_progress),
         Task::Turntable(table) => {
@@ -339,7 +320,7 @@ fn picture(
     document: &Document,
     path: &Path,
     on_progress: &mut dyn FnMut(f64) -> bool,
-) -> Result<String, TaskError> {
+) -> anyhow::Result<String> {
     output::format_of(path)?;
     check_saving(path)?;
     submit(session, engine, document)?;
@@ -351,13 +332,8 @@ fn picture(
     if !ended.progress.is_done {
         return Ok(format!("{} cancelled: nothing was written", path.display()));
     }
-    let (image, lights) = (session.image()?, session.light_layers()?);
-    let rendered = Rendered {
-        lights: &lights,
-        denoised: ended.denoised.as_ref().map(|denoised| denoised.image.as_ref()),
-        ..Rendered::from(&image)
-    };
-    output::write(path, rendered, document)?;
+    let denoised = ended.denoised.as_ref().map(|denoised| denoised.image.as_ref());
+    session.write_image(path, denoised, document)?;
     let [samples, seconds] = [ended.progress.mean_samples, ended.progress.render_seconds];
     let path = path.display();
     Ok(format!(

@@ -128,7 +128,7 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
 }
 
 /// Adds the lobes of equal look, one after the other, unless something else is asked for meanwhile.
-fn compare(mut report: SampleReport, responder: &Responder<'_, SampleQuery, SampleAnswer>) {
+fn compare(mut report: SampleReport, responder: &Responder<'_, SampleAnswer>) {
     let request = report.query.request.clone();
     let target = &request.model;
     if !target.has_density() {

@@ -42,9 +42,7 @@ pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
 
 /// The map of a job in these columns and rows, at any size of its image; `None` if superseded.
 pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
-    let longest = columns.max(rows).max(1);
-    let kept = SIDE_MAX_PX.min(longest);
-    let [width, height] = [columns, rows].map(|side| (side * kept).div_ceil(longest).max(1));
+    let [width, height] = fitted([columns, rows], SIDE_MAX_PX);
     let mut seen = Vec::with_capacity((width * height) as usize);
     let all: Vec<u32> = (0..height).collect();
     for some in all.chunks(ROWS) {
@@ -62,6 +60,12 @@ pub fn seen_map(job: &Arc<Job>, [columns, rows]: [u32; 2], is_superseded: impl F
         height,
         seen,
     })
+}
+
+/// An image's shape within a longest side.
+pub fn fitted(size: [u32; 2], side_max: u32) -> [u32; 2] {
+    let longest = size[0].max(size[1]).max(1);
+    size.map(|side| (side * side_max.min(longest)).div_ceil(longest).max(1))
 }
 
 fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {

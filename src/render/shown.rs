@@ -169,31 +169,20 @@ pub fn map_of_image(image: &Image, view: &ViewSettings, shown: Shown) -> Option<
 
 /// The map of a view of the film; `None` for other views.
 pub fn map_of_film(source: &Source<'_>, shown: Shown) -> Option<Map> {
-    let film = source.film;
+    let features = || Features::of(source.film, source.world_units_per_unit);
     Some(match shown {
         Shown::Picture | Shown::Precision | Shown::FalseColor | Shown::Clipping => return None,
         Shown::Error => map_of_errors(&source.errors()),
+        Shown::Variance => map_of_errors(&features().variance),
         Shown::Samples => {
-            let counts: Vec<f32> = (0..film.pixel_count())
-                .map(|pixel| film.samples_of(pixel) as f32)
-                .collect();
-            let high = f64::from(counts.iter().copied().fold(0.0, f32::max)).max(1.0);
+            let counts = features().samples;
+            let high = f64::from(counts.iter().copied().fold(1.0, f32::max));
             linear_map(&counts, [0.0, high])
         }
-        Shown::Albedo => Map {
-            rgba: colors(&Features::of(film, source.world_units_per_unit).albedo, |[r, g, b]| {
-                srgb_from_linear(vec3(r, g, b)).to_f32()
-            }),
-            scale: None,
-        },
-        Shown::Normal => Map {
-            rgba: colors(&Features::of(film, source.world_units_per_unit).normal, |normal| {
-                normal.map(|x| 0.5 + 0.5 * x)
-            }),
-            scale: None,
-        },
+        Shown::Albedo => colors(&features().albedo, |[r, g, b]| srgb_from_linear(vec3(r, g, b)).to_f32()),
+        Shown::Normal => colors(&features().normal, |normal| normal.map(|x| 0.5 + 0.5 * x)),
         Shown::Depth => {
-            let depths = Features::of(film, source.world_units_per_unit).depth;
+            let depths = features().depth;
             let ends = depths
                 .iter()
                 .filter(|depth| depth.is_finite())
@@ -202,12 +191,6 @@ pub fn map_of_film(source: &Source<'_>, shown: Shown) -> Option<Map> {
                 [low.min(depth), high.max(depth)]
             });
             linear_map(&depths, [low.min(high), high.max(low.min(high) + 1e-9)])
-        }
-        Shown::Variance => {
-            let variances: Vec<f32> = (0..film.pixel_count())
-                .map(|pixel| film.variance_of_mean_at(pixel) as f32)
-                .collect();
-            map_of_errors(&variances)
         }
     })
 }
@@ -228,15 +211,12 @@ fn map_of_errors(errors: &[f32]) -> Map {
 }
 
 fn linear_map(values: &[f32], [low, high]: [f64; 2]) -> Map {
-    let is_logarithmic = false;
-    colored(
-        values,
-        Scale {
-            low,
-            high,
-            is_logarithmic,
-        },
-    )
+    let scale = Scale {
+        low,
+        high,
+        is_logarithmic: false,
+    };
+    colored(values, scale)
 }
 
 fn colored(values: &[f32], scale: Scale) -> Map {
@@ -253,13 +233,16 @@ fn colored(values: &[f32], scale: Scale) -> Map {
     }
 }
 
-/// Bytes of colours in [0, 1].
-fn colors(values: &[[f32; 3]], encode: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> Vec<u8> {
+/// Colours in [0, 1].
+fn colors(values: &[[f32; 3]], encode: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> Map {
     let bytes = |value: &[f32; 3]| {
         let [r, g, b] = encode(*value).map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8);
         [r, g, b, 255]
     };
-    parallel::map_each(values, bytes).into_flattened()
+    Map {
+        rgba: parallel::map_each(values, bytes).into_flattened(),
+        scale: None,
+    }
 }
 
 /// Stops from middle grey of a luminance that has the exposure, −∞ for black.
@@ -306,22 +289,15 @@ fn with_clipping(mut rgba: Vec<u8>) -> Vec<u8> {
 pub struct PixelFacts {
     /// Standard error of the shown luminance, relative to the image's mean.
     pub errors: Vec<f32>,
-    /// Samples per pixel.
-    pub samples: Vec<u32>,
-    /// First-hit features.
     pub features: Features,
 }
 
 impl PixelFacts {
     /// The quantities of a film.
     pub fn of(source: &Source<'_>) -> Self {
-        let film = source.film;
         Self {
             errors: source.errors(),
-            samples: (0..film.pixel_count())
-                .map(|pixel| film.samples_of(pixel) as u32)
-                .collect(),
-            features: Features::of(film, source.world_units_per_unit),
+            features: Features::of(source.film, source.world_units_per_unit),
         }
     }
 }

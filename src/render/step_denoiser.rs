@@ -68,7 +68,7 @@ impl StepDenoiser {
             Ok(denoised) => {
                 self.seconds += denoised.seconds;
                 if let Some(error) = denoised.error {
-                    session.set_denoised_error(error);
+                    session.denoised = Some(error);
                 }
                 Ok(Some(denoised))
             }

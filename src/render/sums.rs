@@ -17,7 +17,7 @@ use crate::document::change::Change;
 use crate::document::effect::without_what_is_off;
 use crate::document::{Document, GroupName};
 use crate::job::features::Features;
-use crate::job::film::{Extras, Film, HalfSums, LightSums};
+use crate::job::film::{Extras, Film};
 use crate::job::guides::GUIDE_SAMPLES;
 use crate::render::denoise::Noisy;
 use crate::render::light_layers::{LightLayer, light_groups, light_layers, mixed};
@@ -50,12 +50,9 @@ pub struct KeptFilm {
 /// Why films cannot be read, joined or written.
 #[derive(Debug, thiserror::Error)]
 pub enum SumsError {
-    /// Not an EXR file, or damaged.
-    #[error("{}: cannot be read as an image: {reason}; render it again with --keep-sums", path.display())]
-    Read { path: PathBuf, reason: String },
-    /// An image without sums, or with those of an older version.
-    #[error("{}: has no sums that this version reads ({missing} is missing); render it with --keep-sums", path.display())]
-    NoSums { path: PathBuf, missing: String },
+    /// Not an image with sums that this version reads, or with sums that cannot be joined.
+    #[error("{}: {reason}", path.display())]
+    File { path: PathBuf, reason: String },
     /// The document inside is damaged.
     #[error(transparent)]
     Document(#[from] FileError),
@@ -65,34 +62,28 @@ pub enum SumsError {
          join one that begins at 0"
     )]
     NotSeen,
-    /// Sums of another image.
-    #[error("{}: of another image than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
-    Differs {
-        path: PathBuf,
-        first: PathBuf,
-        differs: String,
-    },
-    /// Samples that are in both.
-    #[error("{}: samples {from} to {to} are in {} too; render others by --samples-from and --samples-to", path.display(), first.display())]
-    Twice {
-        path: PathBuf,
-        first: PathBuf,
-        from: u32,
-        to: u32,
-    },
 }
 
-/// Channels of the upper and the lower half of each number's bits.
-fn doubles(name: &str, values: impl Iterator<Item = f64> + Clone) -> [(String, FlatSamples); 2] {
-    let upper = values.clone().map(|x| (x.to_bits() >> 32) as u32).collect();
-    let lower = values.map(|x| x.to_bits() as u32).collect();
-    let of = |half: &str, bits| (format!("sums.{name}.{half}"), FlatSamples::U32(bits));
-    [of("high", upper), of("low", lower)]
+impl SumsError {
+    fn of(path: &Path, reason: String) -> Self {
+        Self::File {
+            path: path.to_owned(),
+            reason,
+        }
+    }
 }
 
-/// Name of the sums of a light group in one half of the samples, such as `light.key.even`.
-fn light_sums(group: GroupName, half: &str) -> String {
-    format!("light.{}.{half}", group.as_str())
+/// 32 bits of each pixel: the channel's name, the array that they are of (of [`Film::words`], or the numbers of guide samples), their place among the words
+/// of a pixel there, and whether they are an f32.
+type Channel = (String, Array, usize, bool);
+
+#[derive(Clone, Copy)]
+enum Array {
+    Pixels,
+    Coverage,
+    Lights,
+    Guides,
+    GuideSamples,
 }
 
 impl KeptFilm {
@@ -169,43 +160,66 @@ impl KeptFilm {
         Ok(attributes)
     }
 
-    /// The sums by the names of their channels.
-    pub fn channels(&self) -> Vec<(String, FlatSamples)> {
-        let film = &self.film;
-        let pixels = || 0..film.pixel_count();
+    /// Every channel but those of deviations and numbers of samples, which are narrower here.
+    fn layout(groups: &[GroupName], extras: Extras) -> Vec<Channel> {
         let mut channels = Vec::new();
-        let groups = light_groups(film, &self.document);
-        let groups = || groups.iter().enumerate();
+        // The lower half of a number comes first in memory.
+        let double = |name: String, array: Array, place: usize| {
+            ["low", "high"].map(|half| {
+                (
+                    format!("{name}.{half}"),
+                    array,
+                    2 * place + usize::from(half == "high"),
+                    false,
+                )
+            })
+        };
         for (half, word) in HALVES.into_iter().enumerate() {
             for (i, color) in COLORS.into_iter().enumerate() {
-                let sums = pixels().map(|pixel| film.halves(pixel)[half].color[i]);
-                channels.extend(doubles(&format!("{word}.{color}"), sums));
-                for (group, name) in groups() {
-                    let sums = pixels().map(|pixel| film.lights(pixel)[group][half][i]);
-                    channels.extend(doubles(&format!("{}.{color}", light_sums(*name, word)), sums));
+                channels.extend(double(format!("{word}.{color}"), Array::Pixels, 5 * half + i));
+                for (group, name) in groups.iter().enumerate() {
+                    let name = format!("light.{}.{word}.{color}", name.as_str());
+                    channels.extend(double(name, Array::Lights, 6 * group + 3 * half + i));
                 }
             }
-            let of = |pixel: usize| film.halves(pixel)[half];
-            let deviations = pixels()
-                .map(|pixel| of(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32)
-                .collect();
-            channels.push((format!("sums.{word}.deviations"), FlatSamples::F32(deviations)));
-            let samples = pixels().map(|pixel| of(pixel).samples as u32).collect();
-            channels.push((format!("sums.{word}.samples"), FlatSamples::U32(samples)));
-        }
-        if film.extras().coverage {
-            channels.extend(doubles("coverage", pixels().map(|pixel| film.color(pixel)[3])));
-        }
-        if film.extras().guides {
-            let guides: &[[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice(&film.guides);
-            for (half, word) in HALVES.into_iter().enumerate() {
-                for (i, name) in GUIDES.into_iter().enumerate() {
-                    let values = guides.iter().map(|guides| guides[half][i]).collect();
-                    channels.push((format!("sums.guides.{word}.{name}"), FlatSamples::F32(values)));
-                }
-                let samples = self.guide_samples.iter().map(|samples| samples[half]).collect();
-                channels.push((format!("sums.guides.{word}.samples"), FlatSamples::U32(samples)));
+            if extras.guides {
+                let guides = GUIDES.into_iter().enumerate();
+                let guides =
+                    guides.map(|(i, name)| (format!("guides.{word}.{name}"), Array::Guides, 8 * half + i, true));
+                channels.extend(guides);
+                channels.push((format!("guides.{word}.samples"), Array::GuideSamples, half, false));
             }
+        }
+        if extras.coverage {
+            channels.extend(double("coverage".to_owned(), Array::Coverage, 0));
+        }
+        channels
+    }
+
+    /// The sums by the names of their channels.
+    pub fn channels(&self) -> Vec<(String, FlatSamples)> {
+        let (film, pixels) = (&self.film, self.film.pixel_count());
+        let mut channels = Vec::new();
+        for (half, word) in HALVES.into_iter().enumerate() {
+            let sums = |pixel: usize| film.halves(pixel)[half];
+            let deviation = |pixel| sums(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32;
+            let deviations = FlatSamples::F32((0..pixels).map(deviation).collect());
+            let samples = FlatSamples::U32((0..pixels).map(|pixel| sums(pixel).samples as u32).collect());
+            channels.push((format!("sums.{word}.deviations"), deviations));
+            channels.push((format!("sums.{word}.samples"), samples));
+        }
+        let layout = Self::layout(&light_groups(&self.film, &self.document), self.film.extras());
+        for (name, array, place, is_float) in layout {
+            let array = match array {
+                Array::GuideSamples => self.guide_samples.as_flattened(),
+                array => self.film.words()[array as usize],
+            };
+            let words = array.iter().skip(place).step_by(array.len() / pixels).copied();
+            let samples = match is_float {
+                true => FlatSamples::F32(words.map(f32::from_bits).collect()),
+                false => FlatSamples::U32(words.collect()),
+            };
+            channels.push((format!("sums.{name}"), samples));
         }
         channels
     }
@@ -215,54 +229,42 @@ impl KeptFilm {
         let file = Sums::open(path)?;
         let [samples, units, document] = file.kept()?;
         let document = parse_document(path, document.as_bytes())?.value;
-        let samples = ranges(&samples).ok_or_else(|| file.missing(KEPT))?;
-        let world_units_per_unit = units.parse().map_err(|_| file.missing(KEPT))?;
+        let samples: Option<_> = samples.split(',').map(range).collect();
         let groups = without_what_is_off(&document).light_groups();
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
             guides: file.has_guides(),
             light_groups: groups.len() as u32,
         };
-        let [width, height] = file.size();
-        let mut film = Film::keeping(width, height, extras);
-        let halves = file.halves(film.pixel_count())?;
-        for (pixel, halves) in halves.iter().enumerate() {
-            film.set_halves(pixel, halves);
-        }
-        for (group, name) in groups.iter().enumerate() {
-            for (half, word) in HALVES.into_iter().enumerate() {
-                file.add_light(&mut film, group, half, &light_sums(*name, word))?;
-            }
-        }
-        if extras.coverage {
-            let coverage = file.doubles("coverage")?.into_iter().enumerate();
-            coverage.for_each(|(pixel, sum)| film.add_coverage(pixel, sum));
-        }
-        let mut guide_samples = vec![[0; 2]; film.pixel_count()];
-        if extras.guides {
-            let guides: &mut [[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice_mut(&mut film.guides);
-            for (half, word) in HALVES.into_iter().enumerate() {
-                for (i, name) in GUIDES.into_iter().enumerate() {
-                    let values = file.numbers(&format!("guides.{word}.{name}"))?.iter();
-                    guides
-                        .iter_mut()
-                        .zip(values)
-                        .for_each(|(sums, value)| sums[half][i] = *value);
-                }
-                let samples = file.words(&format!("guides.{word}.samples"))?.iter();
-                guide_samples
-                    .iter_mut()
-                    .zip(samples)
-                    .for_each(|(own, samples)| own[half] = *samples);
-            }
-        }
-        Ok(Self {
+        let film = Film::keeping(file.layer.size.0 as u32, file.layer.size.1 as u32, extras);
+        let pixels = film.pixel_count();
+        let mut kept = Self {
             film,
             document,
-            samples,
-            guide_samples,
-            world_units_per_unit,
-        })
+            samples: samples.ok_or_else(|| file.missing(KEPT))?,
+            guide_samples: vec![[0; 2]; pixels],
+            world_units_per_unit: units.parse().map_err(|_| file.missing(KEPT))?,
+        };
+        for (name, array, place, is_float) in Self::layout(&groups, extras) {
+            let array = match array {
+                Array::GuideSamples => kept.guide_samples.as_flattened_mut(),
+                array => &mut *kept.film.words_mut()[array as usize],
+            };
+            let each = array.len() / pixels;
+            let own = array.iter_mut().skip(place).step_by(each);
+            own.zip(file.words(&name, is_float)?)
+                .for_each(|(own, word)| *own = word);
+        }
+        for (half, word) in HALVES.into_iter().enumerate() {
+            let deviations = file.words(&format!("{word}.deviations"), true)?;
+            let samples = file.words(&format!("{word}.samples"), false)?;
+            for (pixel, (deviation, samples)) in deviations.into_iter().zip(samples).enumerate() {
+                let sums = &mut kept.film.pixels[pixel][half];
+                sums.squared_deviations = f64::from(f32::from_bits(deviation));
+                sums.samples = f64::from(samples);
+            }
+        }
+        Ok(kept)
     }
 
     /// Maximum samples per pixel.
@@ -281,25 +283,22 @@ impl KeptFilm {
 
     /// Adds the samples of another film of the same image. The paths are for messages.
     pub fn add(&mut self, other: &Self, path: &Path, first: &Path) -> Result<(), SumsError> {
-        let differs = |differs: &str| SumsError::Differs {
-            path: path.to_owned(),
-            first: first.to_owned(),
-            differs: differs.to_owned(),
+        let first = first.display();
+        let differs = match (self.film.width, self.film.height) == (other.film.width, other.film.height) {
+            true if self.is_alike(other) => None,
+            true => Some("what was rendered, or how"),
+            false => Some("size"),
         };
-        if (self.film.width, self.film.height) != (other.film.width, other.film.height) {
-            return Err(differs("size"));
-        }
-        if !self.is_alike(other) {
-            return Err(differs("what was rendered, or how"));
+        if let Some(differs) = differs {
+            let reason =
+                format!("of another image than {first}: they differ in {differs}; render both with the same settings");
+            return Err(SumsError::of(path, reason));
         }
         for [from, to] in &other.samples {
             if self.samples.iter().any(|own| own[0] < *to && *from < own[1]) {
-                return Err(SumsError::Twice {
-                    path: path.to_owned(),
-                    first: first.to_owned(),
-                    from: *from,
-                    to: *to,
-                });
+                let remedy = "render others by --samples-from and --samples-to";
+                let reason = format!("samples {from} to {to} are in {first} too; {remedy}");
+                return Err(SumsError::of(path, reason));
             }
         }
         for pixel in 0..self.film.pixel_count() {
@@ -345,23 +344,18 @@ impl<'a> Sums<'a> {
             .first_valid_layer()
             .all_attributes()
             .from_file(path)
-            .map_err(|error| SumsError::Read {
-                path: path.to_owned(),
-                reason: error.to_string(),
+            .map_err(|error| {
+                let reason = format!("cannot be read as an image: {error}; render it again with --keep-sums");
+                SumsError::of(path, reason)
             })?;
         let layer = image.layer_data;
         Ok(Self { path, layer })
     }
 
-    fn size(&self) -> [u32; 2] {
-        [self.layer.size.0 as u32, self.layer.size.1 as u32]
-    }
-
     fn missing(&self, missing: &str) -> SumsError {
-        SumsError::NoSums {
-            path: self.path.to_owned(),
-            missing: missing.to_owned(),
-        }
+        let remedy = "render it with --keep-sums";
+        let reason = format!("has no sums that this version reads ({missing} is missing); {remedy}");
+        SumsError::of(self.path, reason)
     }
 
     /// The numbers of the samples, the world's units and the document.
@@ -387,57 +381,13 @@ impl<'a> Sums<'a> {
         channels.any(|channel| channel.name.to_string().starts_with("sums.guides."))
     }
 
-    fn words(&self, name: &str) -> Result<&[u32], SumsError> {
-        match self.find(name) {
-            Some(FlatSamples::U32(words)) => Ok(words),
+    /// The words of a channel, which are f32 or u32.
+    fn words(&self, name: &str, are_floats: bool) -> Result<Vec<u32>, SumsError> {
+        match (self.find(name), are_floats) {
+            (Some(FlatSamples::U32(words)), false) => Ok(words.clone()),
+            (Some(FlatSamples::F32(numbers)), true) => Ok(numbers.iter().map(|number| number.to_bits()).collect()),
             _ => Err(self.missing(name)),
         }
-    }
-
-    fn numbers(&self, name: &str) -> Result<&[f32], SumsError> {
-        match self.find(name) {
-            Some(FlatSamples::F32(numbers)) => Ok(numbers),
-            _ => Err(self.missing(name)),
-        }
-    }
-
-    fn doubles(&self, name: &str) -> Result<Vec<f64>, SumsError> {
-        let high = self.words(&format!("{name}.high"))?;
-        let low = self.words(&format!("{name}.low"))?;
-        let both = high.iter().zip(low);
-        let joined = both.map(|(high, low)| (u64::from(*high) << 32) | u64::from(*low));
-        Ok(joined.map(f64::from_bits).collect())
-    }
-
-    /// Adds the sums of a light group in one half of the samples to a film.
-    fn add_light(&self, film: &mut Film, group: usize, half: usize, name: &str) -> Result<(), SumsError> {
-        for (channel, color) in COLORS.into_iter().enumerate() {
-            for (pixel, sum) in self.doubles(&format!("{name}.{color}"))?.into_iter().enumerate() {
-                let mut sums = LightSums::default();
-                sums[half][channel] = sum;
-                film.add_light(pixel, group, sums);
-            }
-        }
-        Ok(())
-    }
-
-    /// The sums of both halves of each pixel's samples.
-    fn halves(&self, pixels: usize) -> Result<Vec<[HalfSums; 2]>, SumsError> {
-        let mut halves = vec![[HalfSums::default(); 2]; pixels];
-        for (half, word) in HALVES.into_iter().enumerate() {
-            for (i, color) in COLORS.into_iter().enumerate() {
-                let sums = self.doubles(&format!("{word}.{color}"))?;
-                let of_pixels = halves.iter_mut().zip(sums);
-                of_pixels.for_each(|(halves, sum)| halves[half].color[i] = sum);
-            }
-            let deviations = self.numbers(&format!("{word}.deviations"))?;
-            let counts = self.words(&format!("{word}.samples"))?;
-            for ((halves, deviation), count) in halves.iter_mut().zip(deviations).zip(counts) {
-                halves[half].squared_deviations = f64::from(*deviation);
-                halves[half].samples = f64::from(*count);
-            }
-        }
-        Ok(halves)
     }
 }
 
@@ -451,11 +401,6 @@ fn joined(ranges: &mut Vec<[u32; 2]>) {
         }
     }
     *ranges = whole;
-}
-
-/// Ranges as text, such as `0-64,128-192`.
-fn ranges(text: &str) -> Option<Vec<[u32; 2]>> {
-    text.split(',').map(range).collect()
 }
 
 /// A range as text, such as `0-64`.

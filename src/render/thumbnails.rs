@@ -1,4 +1,4 @@
-//! Thumbnails of materials, rendered in the background and cached on disk.
+//! Thumbnails of materials and environments, made in the background and cached on disk.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -8,30 +8,50 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use image::{ImageFormat, RgbaImage};
+
 use super::background::{Background, Responder};
 use super::display::display;
 use super::looks::{ball, denoise_if_possible};
 use super::step_denoiser::StepDenoiser;
-use super::{EngineChoice, Session, SessionError, picture_cache};
+use super::{EngineChoice, Session, SessionError};
 use crate::document::{Document, MaterialSettings};
-use crate::scene::ModelSource;
-use crate::store::preset::material_text;
+use crate::import::environment::load;
+use crate::scene::{
+    ModelSource,
+    environment::{Environment, EnvironmentSource, thumbnail},
+};
+use crate::store::{picture::png_bytes, preset::material_text, replace::save_atomically};
 
-/// Columns and rows of a thumbnail.
-pub const SIDE: u32 = 192;
+/// Columns and rows of a material's thumbnail.
+const SIDE: u32 = 192;
+/// Columns and rows of an environment's.
+const ENVIRONMENT_SIZE: [u32; 2] = [256, 128];
 /// Samples per pixel: the noise is invisible at this size, and removed if denoised.
 const SAMPLES: u32 = 24;
 /// Render time between two checks for a newer request.
 const STEP: Duration = Duration::from_millis(30);
-/// Cache version: increase if thumbnails of the same material change.
+/// Cache version: increase if thumbnails of the same thing change.
 const VERSION: u32 = 5;
 
-/// A thumbnail: RGBA, 8 bits each, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels, rows from the top.
-pub type Thumbnail = Arc<Vec<u8>>;
-/// Thumbnails by [`key`].
-pub type Thumbnails = Arc<HashMap<u64, Thumbnail>>;
-/// Renders the thumbnails of the materials that it was asked for last, in their order; answers grow.
-pub type ThumbnailWorker = Background<Vec<MaterialSettings>, Thumbnails>;
+/// What a thumbnail is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    Material(Box<MaterialSettings>),
+    Environment(EnvironmentSource),
+}
+
+/// The thumbnails that are wanted, in their order, each with what it is to be called.
+pub struct Wanted {
+    pub subjects: Vec<(String, Subject)>,
+    /// An environment that is loaded already: a large file is not read twice.
+    pub loaded: Option<(EnvironmentSource, Arc<Environment>)>,
+}
+
+/// Alpha is not premultiplied; `None` if none can be made.
+pub type Thumbnail = Option<Arc<RgbaImage>>;
+/// Those made so far, by what they are called.
+pub type Thumbnails = Arc<HashMap<String, Thumbnail>>;
 
 /// Cache key, equal for materials of equal appearance.
 pub fn key(material: &MaterialSettings) -> u64 {
@@ -39,44 +59,103 @@ pub fn key(material: &MaterialSettings) -> u64 {
         name: String::new(),
         ..material.clone()
     };
+    hash(material_text(Path::new(""), &nameless))
+}
+
+fn hash(of: impl std::hash::Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (
-        VERSION,
-        env!("CARGO_PKG_VERSION"),
-        material_text(Path::new(""), &nameless),
-    )
-        .hash(&mut hasher);
+    (VERSION, env!("CARGO_PKG_VERSION"), of).hash(&mut hasher);
     hasher.finish()
 }
 
-/// Starts the worker; `folder`, created if needed, caches thumbnails between starts. It pauses while `hold` is set, for the
-/// viewport.
-pub fn spawn_thumbnails(
-    folder: PathBuf,
-    hold: Arc<AtomicBool>,
-    repaint: impl Fn() + Send + 'static,
-) -> io::Result<ThumbnailWorker> {
-    let mut studio: Option<Studio> = None;
-    let mut made: HashMap<u64, Thumbnail> = HashMap::new();
-    Background::spawn("thumbnails", repaint, move |materials, responder| {
-        for material in materials {
-            let key = key(&material);
-            if made.contains_key(&key) {
-                continue;
-            }
-            let path = folder.join(format!("{key:016x}.png"));
-            let picture =
-                picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, responder));
-            match picture {
-                Ok(Some(pixels)) => {
-                    made.insert(key, Arc::new(pixels));
-                    responder.publish(Arc::new(made.clone()));
-                }
-                Ok(None) => return,
-                Err(error) => log::warn!("no thumbnail of {}: {error}", material.name),
+impl Subject {
+    /// Folder in the cache, and key: an environment's changes with its file's size and date.
+    fn place(&self) -> (&'static str, u64) {
+        match self {
+            Self::Material(material) => ("thumbnails", key(material)),
+            Self::Environment(source) => {
+                let metadata = match source {
+                    EnvironmentSource::File(path) => std::fs::metadata(path).ok(),
+                    _ => None,
+                };
+                let state = metadata.map(|metadata| (metadata.len(), metadata.modified().ok()));
+                ("environments", hash((source, state)))
             }
         }
+    }
+}
+
+/// Starts the worker for the latest request; `cache`, created if needed, keeps thumbnails between starts. It pauses while
+/// `hold` is set, for the viewport.
+pub fn spawn_thumbnails(
+    cache: Option<PathBuf>,
+    hold: Arc<AtomicBool>,
+    repaint: impl Fn() + Send + 'static,
+) -> io::Result<Background<Wanted, Thumbnails>> {
+    let mut studio: Option<Studio> = None;
+    let mut made: HashMap<u64, Thumbnail> = HashMap::new();
+    Background::spawn("thumbnails", repaint, move |wanted: Wanted, responder| {
+        let mut found = HashMap::new();
+        for (name, subject) in &wanted.subjects {
+            let (folder, key) = subject.place();
+            if !made.contains_key(&key) {
+                let file = cache
+                    .as_ref()
+                    .map(|cache| cache.join(folder).join(format!("{key:016x}.png")));
+                let mut picture = file.as_deref().and_then(read);
+                if picture.is_none() {
+                    if !responder.wait_while_held(&hold) {
+                        return;
+                    }
+                    picture = match subject {
+                        Subject::Material(material) => match rendered(&mut studio, material, &hold, responder) {
+                            Ok(None) => return,
+                            rendered => rendered.map_err(crate::in_words),
+                        },
+                        Subject::Environment(source) => match &wanted.loaded {
+                            Some((of, environment)) if of == source => Ok(small(environment)),
+                            _ => load(source)
+                                .map(|environment| small(&environment))
+                                .map_err(crate::in_words),
+                        },
+                    }
+                    // Reported when it is used.
+                    .unwrap_or_else(|error| {
+                        log::debug!("no thumbnail of {name}: {error}");
+                        None
+                    });
+                    if let (Some(file), Some(picture)) = (file, &picture)
+                        && let Err(error) = write(&file, picture)
+                    {
+                        // The next start makes it again.
+                        log::debug!("{error}");
+                    }
+                }
+                made.insert(key, picture.map(Arc::new));
+            }
+            found.insert(name.clone(), made.get(&key).cloned().flatten());
+            responder.publish(Arc::new(found.clone()));
+        }
     })
+}
+
+fn read(path: &Path) -> Option<RgbaImage> {
+    let bytes = std::fs::read(path).ok()?;
+    let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Png).ok()?;
+    Some(picture.into_rgba8())
+}
+
+fn write(path: &Path, picture: &RgbaImage) -> Result<(), String> {
+    let bytes = png_bytes(picture.dimensions().into(), picture, None)?;
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    save_atomically(path, &bytes).map_err(crate::in_words)
+}
+
+fn small(environment: &Environment) -> Option<RgbaImage> {
+    let [width, height] = ENVIRONMENT_SIZE;
+    RgbaImage::from_raw(width, height, thumbnail(environment, width, height).concat())
 }
 
 /// The document of a thumbnail.
@@ -101,15 +180,12 @@ struct Studio {
 }
 
 /// `None` if superseded.
-fn make<A>(
+fn rendered(
     studio: &mut Option<Studio>,
     material: &MaterialSettings,
     hold: &AtomicBool,
-    responder: &Responder<'_, Vec<MaterialSettings>, A>,
-) -> Result<Option<Vec<u8>>, SessionError> {
-    if !responder.wait_while_held(hold) {
-        return Ok(None);
-    }
+    responder: &Responder<'_, Thumbnails>,
+) -> Result<Option<RgbaImage>, SessionError> {
     let document = document(material);
     let Studio { session, step_denoiser } = match studio {
         Some(studio) => studio,
@@ -124,10 +200,9 @@ fn make<A>(
             return Ok(None);
         }
     }
-    let denoised = step_denoiser.finish(session)?;
-    let image = match denoised {
+    let image = match step_denoiser.finish(session)? {
         Some(denoised) => denoised.image,
         None => Arc::new(session.image()?),
     };
-    Ok(Some(display(&image, &document.view)))
+    Ok(RgbaImage::from_raw(SIDE, SIDE, display(&image, &document.view)))
 }

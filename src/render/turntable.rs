@@ -4,8 +4,6 @@ use std::path::{Path, PathBuf};
 
 use super::display::display;
 use super::engine::EngineChoice;
-use super::error::SessionError;
-use super::output::{self, OutputError, Rendered};
 use super::session::Session;
 use super::step_denoiser::StepDenoiser;
 use super::to_end::{step_to_end, submit};
@@ -13,7 +11,7 @@ use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
 use crate::store::FileError;
 use crate::store::replace::check_saving;
-use crate::store::video::{Video, VideoError};
+use crate::store::video::Video;
 
 /// Frames a second of a video at first.
 pub const FPS: f64 = 24.0;
@@ -54,23 +52,6 @@ pub struct TurntableOutcome {
     pub dropped: u64,
 }
 
-/// Why there are not all frames.
-#[derive(Debug, thiserror::Error)]
-pub enum TurntableError {
-    /// The folder cannot be made, or the video's file not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The scene or the engine.
-    #[error(transparent)]
-    Session(#[from] SessionError),
-    /// Errors of a frame.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// Errors of the video.
-    #[error(transparent)]
-    Video(#[from] VideoError),
-}
-
 /// The file of a frame, counted from 1: `frame-0001.png`.
 pub fn frame_path(folder: &Path, number: u32) -> PathBuf {
     folder.join(format!("frame-{number:04}.png"))
@@ -78,7 +59,7 @@ pub fn frame_path(folder: &Path, number: u32) -> PathBuf {
 
 impl Turntable {
     /// Creates the folder and the video: errors occur before rendering.
-    fn begin(&self) -> Result<Option<Video>, TurntableError> {
+    fn begin(&self) -> anyhow::Result<Option<Video>> {
         if let Some(folder) = &self.folder {
             std::fs::create_dir_all(folder).map_err(|source| FileError::Write {
                 path: folder.clone(),
@@ -97,13 +78,13 @@ impl Turntable {
 ///
 /// # Errors
 ///
-/// [`TurntableError`] naming the file; earlier frames stay.
+/// They name the file; earlier frames stay.
 pub fn render(
     session: &mut Session,
     engine: EngineChoice,
     table: &Turntable,
     on_progress: &mut dyn FnMut(TurntableProgress) -> bool,
-) -> Result<TurntableOutcome, TurntableError> {
+) -> anyhow::Result<TurntableOutcome> {
     let mut video = table.begin()?;
     let mut outcome = TurntableOutcome::default();
     let mut center_world = [0.0; 3];
@@ -126,19 +107,16 @@ pub fn render(
         }
         outcome.render_seconds += ended.progress.render_seconds;
         outcome.dropped += session.film()?.dropped();
-        let image = session.image()?;
         let denoised = ended.denoised.as_ref().map(|denoised| denoised.image.as_ref());
         if let Some(folder) = &table.folder {
-            let lights = session.light_layers()?;
-            let rendered = Rendered {
-                lights: &lights,
-                denoised,
-                ..Rendered::from(&image)
-            };
-            output::write(&frame_path(folder, frame + 1), rendered, &document)?;
+            session.write_image(&frame_path(folder, frame + 1), denoised, &document)?;
         }
         if let Some(video) = &mut video {
-            video.add(&display(denoised.unwrap_or(&image), &document.view))?;
+            let shown = match denoised {
+                Some(image) => display(image, &document.view),
+                None => display(&session.image()?, &document.view),
+            };
+            video.add(&shown)?;
         }
         outcome.frames = frame + 1;
         // A frame of a single step may be done in the last step.

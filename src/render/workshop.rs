@@ -4,11 +4,11 @@
 //! block all other dispatches of the device.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::time::{Duration, Instant};
+use std::thread::JoinHandle;
+use std::time::Instant;
 
 use super::engine::Engine;
-use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuEngine, GpuError, Traversal};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Traversal};
 use crate::job::Job;
 use crate::job::plan::Specialisation;
 
@@ -19,53 +19,39 @@ const KEPT: usize = 3;
 struct Preparation {
     specialisation: Specialisation,
     begun: Instant,
-    engine: Receiver<Result<GpuEngine, GpuError>>,
+    engine: JoinHandle<Result<GpuEngine, GpuError>>,
 }
 
 /// See the module.
-pub(super) struct Workshop {
+pub struct Workshop {
     kind: AdapterKind,
     traversal: Traversal,
     /// An engine that is open and has no kernel yet.
-    blank: Option<GpuEngine>,
+    pub blank: Option<GpuEngine>,
     /// Ready engines, the most recently used last.
     ready: Vec<GpuEngine>,
     in_work: Option<Preparation>,
     /// Compile time of the latest kernel.
-    compile_time: Option<Duration>,
+    pub compile_seconds: Option<f64>,
 }
 
 impl Workshop {
     /// Around an engine that has just been opened.
-    pub(super) fn new(blank: GpuEngine) -> Self {
+    pub fn new(blank: GpuEngine) -> Self {
         let is_software = blank.device().is_software();
         Self {
-            kind: if is_software {
-                AdapterKind::Software
-            } else {
-                AdapterKind::Hardware
-            },
+            kind: AdapterKind::of(is_software),
             traversal: blank.device().traversal,
             blank: Some(blank),
             ready: Vec::new(),
             in_work: None,
-            compile_time: None,
+            compile_seconds: None,
         }
-    }
-
-    /// The device of the engine that has no kernel yet.
-    pub(super) fn blank_device(&self) -> Option<&GpuDevice> {
-        self.blank.as_ref().map(GpuEngine::device)
-    }
-
-    /// Compile time of the latest kernel, in seconds.
-    pub(super) fn compile_seconds(&self) -> Option<f64> {
-        self.compile_time.as_ref().map(Duration::as_secs_f64)
     }
 
     /// Starts a job on the GPU if its kernel is ready, else on the CPU until [`Self::finished`] returns one. After an error
     /// the current engine continues.
-    pub(super) fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
+    pub fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
         if let Engine::Gpu(engine) = current
             && engine.has_kernel(job)
         {
@@ -78,7 +64,7 @@ impl Workshop {
             }
             None => {
                 self.compile(job);
-                let mut engine = Engine::Cpu(Box::default());
+                let mut engine = Engine::default();
                 engine.submit(job.clone())?;
                 engine
             }
@@ -98,26 +84,17 @@ impl Workshop {
         if self.in_work.is_some() {
             return;
         }
-        let (sender, engine) = channel();
         let (blank, kind, traversal) = (self.blank.take(), self.kind, self.traversal);
         let prepared = job.clone();
-        let work = move || {
-            let prepare = || {
-                let mut engine = match blank {
-                    Some(engine) => engine,
-                    None => GpuEngine::new(GpuAdapter::find(kind)?.open(traversal)?)?,
-                };
-                engine.prepare(prepared)?;
-                Ok(engine)
+        let prepare = move || {
+            let mut engine = match blank {
+                Some(engine) => engine,
+                None => GpuEngine::new(GpuAdapter::find(kind)?.open(traversal)?)?,
             };
-            // The session may be gone.
-            let _ = sender.send(prepare());
+            engine.prepare(prepared)?;
+            Ok(engine)
         };
-        if std::thread::Builder::new()
-            .name("kernel".to_owned())
-            .spawn(work)
-            .is_ok()
-        {
+        if let Ok(engine) = std::thread::Builder::new().name("kernel".to_owned()).spawn(prepare) {
             self.in_work = Some(Preparation {
                 specialisation: job.plan.specialisation(),
                 begun: Instant::now(),
@@ -127,21 +104,16 @@ impl Workshop {
     }
 
     /// The engine with this job, once its kernel is ready.
-    pub(super) fn finished(&mut self, job: &Arc<Job>) -> Result<Option<GpuEngine>, GpuError> {
-        let Some(preparation) = &self.in_work else {
+    pub fn finished(&mut self, job: &Arc<Job>) -> Result<Option<GpuEngine>, GpuError> {
+        let Some(preparation) = self.in_work.take_if(|preparation| preparation.engine.is_finished()) else {
             self.compile(job);
             return Ok(None);
         };
-        let outcome = match preparation.engine.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(None),
-            Err(TryRecvError::Disconnected) => {
-                Err(GpuError::Lost("the thread that compiled a kernel stopped".to_owned()))
-            }
-            Ok(outcome) => outcome,
-        };
         let is_wanted = preparation.specialisation == job.plan.specialisation();
-        self.compile_time = Some(preparation.begun.elapsed());
-        self.in_work = None;
+        self.compile_seconds = Some(preparation.begun.elapsed().as_secs_f64());
+        let stopped = "the thread that compiled a kernel stopped";
+        let outcome = preparation.engine.join();
+        let outcome = outcome.unwrap_or_else(|_| Err(GpuError::Lost(stopped.to_owned())));
         let mut engine = match outcome {
             // Another job's error: this job is tried separately.
             Err(error) if !is_wanted && !error.is_lost() => {
@@ -157,10 +129,9 @@ impl Workshop {
             self.compile(job);
             return Ok(None);
         }
-        let taken = engine.submit(job.clone());
-        if taken.is_err() {
+        if let Err(error) = engine.submit(job.clone()) {
             self.ready.push(engine);
-            return taken.map(|()| None);
+            return Err(error);
         }
         Ok(Some(engine))
     }

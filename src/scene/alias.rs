@@ -48,10 +48,9 @@ pub(super) fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
 
 /// Index of the grid cell (`size` is columns and rows) of a position in [0, 1)², and the position inside it, in [0, 1]². Two
 /// numbers select the cell, since one of 24 bits would leave few bits per entry of a large table.
-#[inline(always)]
 pub fn grid_place<T: Scalar>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
     let (cells, place) = grid_places(xi, size);
-    (cells.as_ref()[0], place)
+    (cells[0], place)
 }
 
 /// The same for each lane.
@@ -61,7 +60,7 @@ pub fn grid_places<T: Real>(xi: [T; 2], size: [u32; 2]) -> (T::Each<u32>, [T; 2]
     let [row, y] = split(xi[1], size[1]);
     let (columns, rows) = (column.to_each(), row.to_each());
     let number = |whole: T::Scalar| whole.to_f64() as u32;
-    let cell = |lane| number(rows.as_ref()[lane]) * size[0] + number(columns.as_ref()[lane]);
+    let cell = |lane| number(rows[lane]) * size[0] + number(columns[lane]);
     (T::each(cell), [x, y])
 }
 
@@ -70,5 +69,5 @@ pub fn grid_places<T: Real>(xi: [T; 2], size: [u32; 2]) -> (T::Each<u32>, [T; 2]
 fn split<T: Real>(xi: T, count: u32) -> [T; 2] {
     let scaled = xi * T::from_f64(f64::from(count));
     let whole = scaled.floor().min(T::from_f64(f64::from(count - 1)));
-    [whole, (scaled - whole).min(T::one())]
+    [whole, (scaled - whole).min(T::ONE)]
 }

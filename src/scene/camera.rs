@@ -3,8 +3,7 @@
 use crate::named::named;
 use glam::DVec3;
 
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::Vec3;
+use crate::optics::prelude::*;
 use crate::optics::warp::uniform_disc;
 
 named! {
@@ -144,15 +143,15 @@ pub fn orbit_direction(yaw_deg: f64, pitch_deg: f64) -> DVec3 {
 /// Offset of a sample from its pixel's centre, in pixels. Sampled from the filter, so that all samples have equal weight.
 #[inline(always)]
 pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     if filter_kind == PixelFilter::Box as u32 {
         return [xi[0] - half, xi[1] - half];
     }
     // The radius of a Gaussian cut off at GAUSSIAN_RADIUS, by inversion.
     let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
     let radius =
-        T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::one() - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
-    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
+        T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::ONE - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
+    let phi_rad = T::TAU * xi[1];
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
@@ -166,7 +165,7 @@ pub fn pixel_ray<T: Real>(
     [xi_pixel, xi_lens]: [[T; 2]; 2],
 ) -> [Vec3<T>; 2] {
     let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let place = [pixel[0] + half + offset[0], pixel[1] + half + offset[1]];
     camera_ray(camera, place, image_size, xi_lens)
 }
@@ -174,16 +173,16 @@ pub fn pixel_ray<T: Real>(
 /// The ray through an image position, in pixels from the top left: (origin, unit direction).
 #[inline(always)]
 pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
-    let two = T::from_f64(2.0);
-    let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::one();
-    let y = T::one() - two * place[1] / T::from_f64(f64::from(image_size[1]));
-    let is_parallel = T::zero().less(camera.parallel_from).any();
+    let two = T::TWO;
+    let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::ONE;
+    let y = T::ONE - two * place[1] / T::from_f64(f64::from(image_size[1]));
+    let is_parallel = camera.parallel_from.above_zero().any();
     let (origin, along) = if is_parallel {
         (camera.origin + camera.right * x + camera.up * y, camera.forward)
     } else {
         (camera.origin, camera.forward + camera.right * x + camera.up * y)
     };
-    if !T::zero().less(camera.lens_radius).any() {
+    if !camera.lens_radius.above_zero().any() {
         return [origin, along.normalize()];
     }
     let disc = uniform_disc(xi_lens);

@@ -13,9 +13,8 @@ use glam::DVec3;
 use super::area_shape::AreaShape;
 use super::environment::{Environment, environment_local_from_world, environment_radiance};
 use super::ground::HALF_SIDE;
-use crate::optics::real::{Real, Scalar};
+use crate::optics::prelude::*;
 use crate::optics::table::NODE_LENGTH;
-use crate::optics::vector::{Vec3, vec3};
 use crate::parallel;
 
 /// Nodes per side with area lights; without them the light is uniform.
@@ -212,12 +211,12 @@ pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -
 
 /// The node of the table before a place along an axis, and how far the place is behind it.
 fn catcher_node<T: Scalar>(along: T, side: usize) -> (usize, T) {
-    let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::one());
+    let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::ONE);
     let bend = T::from_f64(f64::from(CATCHER_BEND));
-    let bent = away * (T::one() + bend) / (away + bend);
-    let turned = T::select(along.less(T::zero()), -bent, bent);
+    let bent = away * (T::ONE + bend) / (away + bend);
+    let turned = T::select(along.below_zero(), -bent, bent);
     let last = T::from_f64(side as f64 - 1.0);
-    let place = (turned * T::from_f64(0.5) + T::from_f64(0.5)) * last;
+    let place = (turned * T::HALF + T::HALF) * last;
     let low = place.floor();
     (low.to_f64() as usize, place - low)
 }
@@ -234,7 +233,7 @@ fn catcher_radiance<T: Scalar>(tables: &[f32], table: u32, side: usize, row: usi
 pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T {
     let reflection = T::from_f64(f64::from(tables[table as usize + 1]));
     let straight = T::from_f64(f64::from(CATCHER_REFLECTANCE));
-    let away = (T::one() - cosine).clamp(T::zero(), T::one());
+    let away = (T::ONE - cosine).clamp(T::ZERO, T::ONE);
     let squared = away * away;
-    reflection * (straight + (T::one() - straight) * squared * squared * away)
+    reflection * (straight + (T::ONE - straight) * squared * squared * away)
 }

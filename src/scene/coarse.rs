@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use std::ops::Range;
 
-use super::part::Part;
+use super::part::{Part, exact};
 use crate::parallel;
 
 /// Cosine of the largest lean of a normal from its triangle: 6 degrees. Beyond, the light cut off by the triangle's own
@@ -21,9 +21,7 @@ pub(super) fn is_coarse([all, leaning]: [f64; 2]) -> bool {
 /// Twice the area of all triangles, and of those from which a normal leans far.
 pub(super) fn leaning_areas(part: &Part) -> [f64; 2] {
     let of_triangle = |triangle: usize| {
-        let [a, b, c] = part
-            .corners(triangle)
-            .map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let [a, b, c] = exact(part.corners(triangle));
         let out = (b - a).cross(c - a);
         let area = out.length();
         let leans = part.triangles[triangle].iter().any(|&vertex| {

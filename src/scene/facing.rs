@@ -5,6 +5,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 use super::geometry::Geometry;
+use super::part::exact;
 use crate::parallel;
 
 /// Deviation of a corner's normal from its face's, as 1 − cosine: the rounding of f32 normals.
@@ -15,9 +16,7 @@ const TOLERANCE: f64 = 1e-6;
 pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
     let eye = DVec3::from_array(eye);
     let of_face = |triangle: usize| {
-        let [a, b, c] = geometry
-            .corners(triangle)
-            .map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let [a, b, c] = exact(geometry.corners(triangle));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let is_along = |shading: [f32; 3]| {
             let shading = DVec3::from_array(shading.map(f64::from)).normalize_or_zero();

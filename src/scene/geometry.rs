@@ -11,13 +11,13 @@ use super::area_shape::AreaShape;
 use super::coarse::{is_coarse, leaning_areas};
 use super::convex::is_convex;
 use super::ground::Ground;
-use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Wide};
-use super::instanced::{Instanced, Traceable};
+use super::hierarchy::{EntryPoints, PACKET, Packet, PacketHits, Placement, Wide};
+use super::instanced::{Instance, Instanced, Traceable};
 use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::memory::prefetch;
 use super::model::Model;
-use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
+use super::part::{NO_OBJECT, Part, Vertex, exact, is_finite, is_traceable};
 use crate::instructions;
 use crate::parallel;
 
@@ -46,16 +46,14 @@ pub struct Geometry {
     model_is_convex: bool,
     /// See [`Geometry::is_coarse`].
     model_is_coarse: bool,
-    /// Centre of the model's bounding box, in world units.
-    /// Centre of the bounding box, in world space.
+    /// Centre of the model's bounding box, in world space.
     pub center_world: DVec3,
     /// Bounding radius of the model in world units: from that centre to the farthest vertex of a triangle; 1 without
     /// triangles.
     pub world_units_per_unit: f64,
     /// Bounds of the model (without ground and area lights): lowest and highest corner, in world units.
     pub bounds_world: [DVec3; 2],
-    /// Triangles left out because a corner is not finite.
-    /// Number of triangles with a corner that is not finite.
+    /// Number of triangles left out that have a corner that is not finite.
     pub dropped_not_finite: usize,
     /// Triangles left out because they have no area.
     pub dropped_no_area: usize,
@@ -155,42 +153,35 @@ impl Geometry {
         self.model_is_coarse
     }
 
-    #[inline(always)]
     pub fn triangle_count(&self) -> usize {
         self.first_instanced() + self.instanced.triangle_count()
     }
 
     /// Number of the first triangle of the instances.
-    #[inline(always)]
     fn first_instanced(&self) -> usize {
         self.model.triangles.len() + self.around.triangles.len()
     }
 
     /// Both parts, each with the number of its first triangle.
-    #[inline(always)]
     pub fn parts(&self) -> [(&Part, usize); 2] {
         [(&self.model, 0), (&self.around, self.model.triangles.len())]
     }
 
-    /// The part that a triangle is in, and its number there; its number among the instances' if it is one of them.
-    #[inline(always)]
-    fn part_of(&self, triangle: usize) -> Result<(&Part, usize), usize> {
+    /// The part that a triangle is in, its number there, and the instance of the part.
+    fn find(&self, triangle: usize) -> (&Part, usize, Option<&Instance>) {
         match triangle.checked_sub(self.model.triangles.len()) {
-            None => Ok((&self.model, triangle)),
+            None => (&self.model, triangle, None),
             Some(after) => match after.checked_sub(self.around.triangles.len()) {
-                None => Ok((&self.around, after)),
-                Some(instanced) => Err(instanced),
+                None => (&self.around, after, None),
+                Some(instanced) => self.instanced.find(instanced),
             },
         }
     }
 
     /// The material slot of a triangle.
-    #[inline(always)]
     pub fn slot(&self, triangle: usize) -> u32 {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.slots[triangle],
-            Err(triangle) => self.instanced.slot(triangle),
-        }
+        let (part, triangle, _) = self.find(triangle);
+        part.slots[triangle]
     }
 
     /// The material slots of all triangles in order.
@@ -201,50 +192,35 @@ impl Geometry {
 
     /// The model's object that a triangle belongs to; [`NO_OBJECT`] for ground and area lights.
     pub fn object(&self, triangle: usize) -> u32 {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.objects[triangle],
-            Err(triangle) => self.instanced.object(triangle),
-        }
+        let (part, triangle, instance) = self.find(triangle);
+        instance.map_or(part.objects[triangle], |instance| instance.object)
     }
 
     /// The places of a triangle's corners.
-    #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.corners(triangle),
-            Err(triangle) => self.instanced.corners(triangle),
-        }
+        let (part, triangle, instance) = self.find(triangle);
+        placed(part.corners(triangle), instance, Placement::point)
     }
 
     /// Shading attributes of a triangle's vertices; for normals and tangents, which an instance turns, see
     /// [`Geometry::normals`] and [`Geometry::tangents`].
-    #[inline(always)]
     pub fn vertices(&self, triangle: usize) -> [&Vertex; 3] {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.vertices_of(triangle),
-            Err(triangle) => self.instanced.vertices(triangle),
-        }
+        let (part, triangle, instance) = self.find(triangle);
+        placed(part.vertices_of(triangle), instance, |_, vertex| vertex)
     }
 
     /// Normals at a triangle's corners.
-    #[inline(always)]
     pub fn normals(&self, triangle: usize) -> [[f32; 3]; 3] {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.vertices_of(triangle).map(|vertex| vertex.normal),
-            Err(triangle) => self.instanced.normals(triangle),
-        }
+        let (part, triangle, instance) = self.find(triangle);
+        let normals = part.vertices_of(triangle).map(|vertex| vertex.normal);
+        placed(normals, instance, Placement::normal)
     }
 
     /// Tangents at a triangle's corners, with the signs of their bitangents.
-    #[inline(always)]
     pub fn tangents(&self, triangle: usize) -> [[f32; 4]; 3] {
-        match self.part_of(triangle) {
-            Ok((part, triangle)) => part.vertices_of(triangle).map(|vertex| {
-                let [x, y, z] = vertex.tangent;
-                [x, y, z, vertex.side()]
-            }),
-            Err(triangle) => self.instanced.tangents(triangle),
-        }
+        let (part, triangle, instance) = self.find(triangle);
+        let tangents = part.vertices_of(triangle).map(Vertex::tangent_and_side);
+        placed(tangents, instance, Placement::tangent)
     }
 
     /// The model with the triangles of its instances one by one, as the GPU has it.
@@ -338,7 +314,7 @@ impl Geometry {
         }
         if !self.instanced.is_empty() {
             let reach = nearest.map_or(t_max, |hit| hit.t);
-            if let Some(hit) = self.instanced.closest_hit(level, &frame, reach) {
+            if let Some(hit) = self.instanced.hit::<false>(level, &frame, reach) {
                 let triangle = hit.triangle + self.first_instanced() as u32;
                 nearest = Some(Hit { triangle, ..hit });
             }
@@ -358,18 +334,16 @@ impl Geometry {
         let frame = RayFrame::new(origin.into(), direction.into());
         self.model.is_hit(level, &frame, t_max)
             || self.around.is_hit(level, &frame, t_max)
-            || (!self.instanced.is_empty() && self.instanced.is_hit(level, &frame, t_max))
+            || (!self.instanced.is_empty() && self.instanced.hit::<true>(level, &frame, t_max).is_some())
     }
 
     /// The closest hit of each ray of a packet, the same as by [`Geometry::intersect`]. `level` is the instruction set.
-    #[inline(always)]
     pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
         self.intersect_from(level, packet, &[None; 2])
     }
 
     /// The same for several packets of coherent rays, as a camera's through a tile. Calls `report` with each packet's hits
     /// in order, or never if no ray hits anything.
-    #[inline(always)]
     pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut report: impl FnMut([Option<Hit>; PACKET])) {
         let entry_points = self.parts().map(|(part, _)| part.wide().entry_points(level, packets));
         let are_empty = entry_points
@@ -384,7 +358,6 @@ impl Geometry {
     }
 
     /// The closest hits of a packet, starting from the entry points of both parts where they are known.
-    #[inline(always)]
     fn intersect_from(
         &self,
         level: Level,
@@ -407,7 +380,6 @@ impl Geometry {
 
     /// Traces a packet through both parts by `trace`. Returns false if its rays are not in one octant, or there are
     /// instances: then rays are traced one by one.
-    #[inline(always)]
     fn trace_parts(
         &self,
         entry_points: &[Option<EntryPoints>; 2],
@@ -427,7 +399,6 @@ impl Geometry {
     }
 
     /// True for each ray of a packet that hits any triangle, the same as by [`Geometry::occluded`].
-    #[inline(always)]
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
         let mut is_occluded = [false; PACKET];
         let mut packet_hits = PacketHits::none(packet);
@@ -446,9 +417,10 @@ impl Geometry {
     /// Prefetches the data that shading a triangle reads.
     #[inline(always)]
     pub fn prefetch(&self, triangle: u32) {
-        let Ok((part, triangle)) = self.part_of(triangle as usize) else {
+        if triangle as usize >= self.first_instanced() {
             return;
-        };
+        }
+        let (part, triangle, _) = self.find(triangle as usize);
         prefetch(&part.slots, triangle);
         for vertex in part.triangles[triangle] {
             prefetch(&part.vertices, vertex as usize);
@@ -475,11 +447,7 @@ impl Geometry {
     /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` without triangles.
     pub fn sphere_around(&self, is_chosen: impl Fn(usize) -> bool) -> Option<([f32; 3], f64)> {
         let chosen = || (0..self.triangle_count()).filter(|&triangle| is_chosen(triangle));
-        let places = || {
-            chosen()
-                .flat_map(|triangle| self.corners(triangle))
-                .map(|corner| DVec3::from_array(corner.map(f64::from)))
-        };
+        let places = || chosen().flat_map(|triangle| exact(self.corners(triangle)));
         let (low, high) = (places().reduce(DVec3::min)?, places().reduce(DVec3::max)?);
         let center = low.midpoint(high);
         let radius = places().map(|place| place.distance(center)).fold(0.0, f64::max);
@@ -495,6 +463,21 @@ impl Geometry {
     pub fn units_from_world(&self, place: DVec3) -> DVec3 {
         (place - self.center_world) / self.world_units_per_unit
     }
+}
+
+/// What a triangle's corners have, as it is in a part or as an instance of the part has it.
+#[inline(always)]
+fn placed<T>(corners: [T; 3], instance: Option<&Instance>, place: impl Fn(&Placement, T) -> T) -> [T; 3] {
+    match instance {
+        None => corners,
+        Some(instance) => in_place(corners, &instance.placement, place),
+    }
+}
+
+/// Kept out of the code that traces scenes without instances.
+#[inline(never)]
+fn in_place<T>(corners: [T; 3], placement: &Placement, place: impl Fn(&Placement, T) -> T) -> [T; 3] {
+    placement.in_order(corners.map(|corner| place(placement, corner)))
 }
 
 /// The traceable triangles of a mesh and their bounding sphere.

@@ -10,7 +10,7 @@ use super::hierarchy::{Bottom, Hierarchy, Placement, Wide, triangle_of_box};
 use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::mesh::{Mesh, MeshInstance};
-use super::part::{NO_OBJECT, Part, Vertex, is_finite, is_traceable};
+use super::part::{NO_OBJECT, Part, is_finite, is_traceable};
 use crate::parallel;
 
 /// Instances of repeated meshes. Their triangles are numbered instance by instance.
@@ -28,12 +28,12 @@ pub(super) struct Instanced {
 
 /// A mesh at its place, in the geometry's units.
 #[derive(Clone, Debug)]
-struct Instance {
+pub(super) struct Instance {
     mesh: usize,
-    object: u32,
+    pub object: u32,
     /// The first of its triangles.
     first: u32,
-    placement: Placement,
+    pub placement: Placement,
     /// Lowest and highest corner.
     bounds: [[f32; 3]; 2],
 }
@@ -181,13 +181,11 @@ impl Instanced {
     }
 
     /// True without instances.
-    #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.instances.is_empty()
     }
 
     /// Number of triangles of all instances.
-    #[inline(always)]
     pub fn triangle_count(&self) -> usize {
         self.triangle_count
     }
@@ -217,13 +215,11 @@ impl Instanced {
         placed.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
     }
 
-    #[inline(always)]
     fn top(&self) -> &Wide {
         self.top
             .wide(|instance| triangle_of_box(self.instances[instance as usize].bounds))
     }
 
-    #[inline(always)]
     fn bottom(&self, instance: u32) -> Bottom<'_> {
         let instance = &self.instances[instance as usize];
         Bottom {
@@ -233,85 +229,28 @@ impl Instanced {
         }
     }
 
-    /// The closest hit with 0 < t < `t_max`.
+    /// The closest hit with 0 < t < `t_max`, or any.
     #[inline(never)]
-    pub fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
-        self.hit::<false>(level, frame, t_max)
-    }
-
-    /// True if any triangle is hit with 0 < t < `t_max`.
-    #[inline(never)]
-    pub fn is_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
-        self.hit::<true>(level, frame, t_max).is_some()
-    }
-
-    #[inline(always)]
-    fn hit<const ANY: bool>(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
+    pub fn hit<const ANY: bool>(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         self.top()
             .hit_below::<ANY>(level, frame, t_max, |instance| self.bottom(instance))
     }
 
-    /// The instance of a triangle, its mesh, and the triangle's number there.
-    fn part_of(&self, triangle: usize) -> (&Instance, &Part, usize) {
+    /// The mesh of a triangle, its number there, and its instance.
+    #[inline(never)]
+    pub fn find(&self, triangle: usize) -> (&Part, usize, Option<&Instance>) {
         let after = self
             .instances
             .partition_point(|instance| instance.first as usize <= triangle);
         let instance = &self.instances[after - 1];
-        (
-            instance,
-            &self.meshes[instance.mesh],
-            triangle - instance.first as usize,
-        )
-    }
-
-    /// The material slot of a triangle.
-    #[inline(never)]
-    pub fn slot(&self, triangle: usize) -> u32 {
-        let (_, part, triangle) = self.part_of(triangle);
-        part.slots[triangle]
+        let part = &self.meshes[instance.mesh];
+        (part, triangle - instance.first as usize, Some(instance))
     }
 
     /// The slots of all triangles in order.
     pub fn slots(&self) -> impl Iterator<Item = u32> {
         let instances = self.instances.iter();
         instances.flat_map(|instance| self.meshes[instance.mesh].slots.iter().copied())
-    }
-
-    /// The object of a triangle.
-    pub fn object(&self, triangle: usize) -> u32 {
-        self.part_of(triangle).0.object
-    }
-
-    /// The places of a triangle's corners.
-    #[inline(never)]
-    pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
-        let (instance, part, triangle) = self.part_of(triangle);
-        let placement = &instance.placement;
-        placement.in_order(part.corners(triangle).map(|corner| placement.point(corner)))
-    }
-
-    /// Shading attributes of a triangle's vertices, with normals and tangents in the mesh's space.
-    #[inline(never)]
-    pub fn vertices(&self, triangle: usize) -> [&Vertex; 3] {
-        let (instance, part, triangle) = self.part_of(triangle);
-        instance.placement.in_order(part.vertices_of(triangle))
-    }
-
-    /// Normals at a triangle's corners.
-    #[inline(never)]
-    pub fn normals(&self, triangle: usize) -> [[f32; 3]; 3] {
-        let (instance, part, triangle) = self.part_of(triangle);
-        let placement = &instance.placement;
-        placement.in_order(part.vertices_of(triangle).map(|vertex| placement.normal(vertex.normal)))
-    }
-
-    /// Tangents at a triangle's corners, with the signs of their bitangents.
-    #[inline(never)]
-    pub fn tangents(&self, triangle: usize) -> [[f32; 4]; 3] {
-        let (instance, part, triangle) = self.part_of(triangle);
-        let placement = &instance.placement;
-        let tangent = |vertex: &Vertex| placement.tangent(vertex.tangent, vertex.side());
-        placement.in_order(part.vertices_of(triangle).map(tangent))
     }
 
     /// The model's own triangles and those of all instances, made on first use: as the GPU has them.
@@ -338,8 +277,8 @@ impl Instanced {
         to.positions
             .extend(mesh.positions.iter().map(|&place| placement.point(place)));
         to.vertices.extend(mesh.vertices.iter().map(|vertex| {
-            let [x, y, z, side] = placement.tangent(vertex.tangent, vertex.side());
-            vertex.turned(placement.normal(vertex.normal), [x, y, z], side)
+            let tangent = placement.tangent(vertex.tangent_and_side());
+            vertex.turned(placement.normal(vertex.normal), tangent)
         }));
         let placed = |triangle: &[u32; 3]| placement.in_order(triangle.map(|vertex| vertex + base));
         to.triangles.extend(mesh.triangles.iter().map(placed));

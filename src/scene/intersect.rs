@@ -2,8 +2,7 @@
 
 use glam::{Vec3A, Vec3Swizzles};
 
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
 /// A hit of a ray on a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,7 +19,6 @@ pub struct Hit {
 
 impl Hit {
     /// The hit at distance `t` from the areas into which the ray divides the triangle, opposite to its corners.
-    #[inline(always)]
     pub(super) fn of(t: f32, triangle: u32, [u, v, w]: [f32; 3]) -> Self {
         let area = u + v + w;
         Self {
@@ -51,7 +49,6 @@ pub struct RayFrame {
 
 impl RayFrame {
     /// The frame of a ray; a direction that is zero or not finite gives a frame that hits nothing.
-    #[inline(always)]
     pub fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let (d, size) = (direction, direction.abs());
         let (axes, axis_x, axis_y) = if size.z >= size.x && size.z >= size.y {
@@ -75,7 +72,6 @@ impl RayFrame {
 
     /// Twice the signed areas into which the ray divides a projected triangle, opposite to its corners. A hit has equal
     /// signs.
-    #[inline(always)]
     fn areas(&self, [v0, v1, v2]: [Vec3A; 3]) -> Vec3A {
         // The projected corners, one a lane.
         let x = Vec3A::new(v0.x, v1.x, v2.x) - self.origin.x;
@@ -118,7 +114,6 @@ pub fn triangle_normal<T: Real>([p0, p1, p2]: [Vec3<T>; 3]) -> Vec3<T> {
 /// corners in an order of their own (by their projections), then given the triangle's sign. So the two triangles that
 /// share an edge get the same number with opposite signs however the products are rounded, also where a GPU's driver
 /// fuses them; a ray through a closed mesh always hits some triangle at each crossing, one exactly on an edge hits both.
-#[inline(always)]
 pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<(f32, f32, f32)> {
     let a = v0 - ray.origin;
     let areas = ray.areas([v0, v1, v2]);

@@ -61,25 +61,21 @@ pub fn shares(weights: &[f64]) -> Vec<Share> {
 }
 
 /// A number's slot is the number without so many of its last bits.
-#[inline(always)]
 fn slot_shift(count: u32) -> u32 {
     DRAW_BITS - count.ilog2()
 }
 
 /// The slot of a number among `count` entries.
-#[inline(always)]
 pub fn slot(count: u32, number: u32) -> u32 {
     number >> slot_shift(count)
 }
 
 /// A random number in [0, 1) as one of the 2²⁴.
-#[inline(always)]
 pub fn draw_number<T: Scalar>(xi: T) -> u32 {
     (xi.to_f64() * f64::from(DRAWS)) as u32
 }
 
 /// The entry out of `count` that a number selects.
-#[inline(always)]
 pub fn find(count: u32, number: u32, share: impl Fn(u32) -> Share) -> u32 {
     let slot = slot(count, number);
     let mut low = share(slot).guide;
@@ -99,7 +95,6 @@ pub fn find(count: u32, number: u32, share: impl Fn(u32) -> Share) -> u32 {
 }
 
 /// An entry with the numbers that draw it.
-#[inline(always)]
 pub fn drawn(index: u32, share: impl Fn(u32) -> Share) -> Drawn {
     Drawn {
         index,
@@ -110,9 +105,8 @@ pub fn drawn(index: u32, share: impl Fn(u32) -> Share) -> Drawn {
 
 /// Relative position in [0, 1] of a number within the range that selects an entry. `jitter` in [0, 1) is added to the
 /// number, because an entry of little weight has only few.
-#[inline(always)]
 pub fn place_in<T: Scalar>(drawn: Drawn, number: u32, jitter: T) -> T {
     let whole = |count: u32| T::from_f64(f64::from(count));
     let numbers = whole((drawn.upper - drawn.lower).max(1));
-    ((whole(number - drawn.lower) + jitter) / numbers).min(T::one())
+    ((whole(number - drawn.lower) + jitter) / numbers).min(T::ONE)
 }

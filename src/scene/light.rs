@@ -9,20 +9,19 @@
 use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
 
 use super::alias::{AliasEntry, alias_table, grid_place};
 use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
 use super::light_profile::profile_share;
+use super::part::exact;
 use super::surface::{POSITION_ERROR, position_error};
 use super::texture::{Textures, emission_at, put_coat, uvs_at, vertex_factors};
 use crate::optics::coat_medium::coat_over_emission;
 use crate::optics::material::{COAT_ABSORBS, HAS_BOX, HAS_PROFILE, Material};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::{Mask, Real, Scalar};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
 /// An entry of the alias table over the emitting triangles.
 #[repr(C)]
@@ -101,8 +100,7 @@ impl Lights {
 }
 
 fn area(geometry: &Geometry, triangle: u32) -> f64 {
-    let corners = geometry.corners(triangle as usize);
-    let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+    let [a, b, c] = exact(geometry.corners(triangle as usize));
     0.5 * (b - a).cross(c - a).length()
 }
 
@@ -210,11 +208,11 @@ pub fn light_sample<T: Scalar>(
     let [p0, p1, p2] = geometry.corners(triangle).map(Vec3::from_f32);
     // Uniform in area.
     let s = x.sqrt();
-    let weights = [T::one() - s, s * (T::one() - y), s * y];
+    let weights = [T::ONE - s, s * (T::ONE - y), s * y];
     let place = p0 * weights[0] + p1 * weights[1] + p2 * weights[2];
     let towards = place - origin;
     let distance = towards.length();
-    let direction = normalize_or(towards, vec3(T::zero(), T::one(), T::zero()));
+    let direction = normalize_or(towards, vec3(T::ZERO, T::ONE, T::ZERO));
     let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
     let material = &emitters.materials[geometry.slot(triangle) as usize];
     let mut radiance = material.emission;
@@ -230,7 +228,7 @@ pub fn light_sample<T: Scalar>(
     }
     if material.has_flag(COAT_ABSORBS) {
         let facing = -normal.dot(direction);
-        radiance = radiance * coat_over_emission(&coated, facing, facing.less(T::zero()));
+        radiance = radiance * coat_over_emission(&coated, facing, facing.below_zero());
     }
     if material.has_flag(HAS_PROFILE) {
         let table = &emitters.tables[material.lobe_table as usize..];
@@ -255,7 +253,7 @@ pub fn light_sample<T: Scalar>(
 /// True if a material's emission depends on the direction.
 #[inline(always)]
 pub fn is_spot<T: Real>(material: &Material<T>) -> bool {
-    material.spot_scale.differs(T::zero()).any()
+    material.spot_scale.differs(T::ZERO).any()
 }
 
 /// Share in [0, 1] of its radiance that a spot emits at this cosine to its axis: 1 within the inner cone, 0 outside the
@@ -263,8 +261,8 @@ pub fn is_spot<T: Real>(material: &Material<T>) -> bool {
 #[inline(always)]
 pub fn spot_share<T: Real>(material: &Material<T>, cosine: T) -> T {
     let ramp = (cosine * material.spot_scale + material.spot_offset)
-        .max(T::zero())
-        .min(T::one());
+        .max(T::ZERO)
+        .min(T::ONE);
     ramp * ramp
 }
 

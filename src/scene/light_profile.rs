@@ -9,8 +9,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::area_shape::AreaFrame;
-use crate::optics::real::Scalar;
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 
 /// Angles of one kind at most.
 pub const ANGLES_MAX: usize = 2048;
@@ -168,18 +167,18 @@ pub fn profile_share<T: Scalar>(table: &[f32], direction: Vec3<T>) -> T {
     let shares = &angles[rows + columns..];
     let bound = |angle: f32| T::from_f64(f64::from(angle));
     if vertical < bound(verticals[0]) || vertical > bound(verticals[rows - 1]) {
-        return T::zero();
+        return T::ZERO;
     }
     let (row, beyond) = angle_cell(verticals, vertical);
     let of_column = |column: usize| {
         let [low, high] = [row, row + 1].map(|row| bound(shares[column * rows + row]));
         low + (high - low) * beyond
     };
-    if columns == 1 || aside <= T::zero() {
+    if columns == 1 || aside <= T::ZERO {
         return of_column(0);
     }
     let turned = up.atan2(across) * degrees;
-    let turned = if turned < T::zero() {
+    let turned = if turned < T::ZERO {
         turned + T::from_f64(360.0)
     } else {
         turned
@@ -202,5 +201,5 @@ fn angle_cell<T: Scalar>(angles: &[f32], angle: T) -> (usize, T) {
         }
     }
     let beyond = (angle - at(low)) / (at(high) - at(low));
-    (low, beyond.max(T::zero()).min(T::one()))
+    (low, beyond.max(T::ZERO).min(T::ONE))
 }

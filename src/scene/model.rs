@@ -10,7 +10,9 @@ use super::mesh::{Mesh, MeshInstance};
 use super::path_text::path_of_text;
 use super::report::ImportReport;
 use super::stage::{ModelCamera, ModelLight};
+use super::texture::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
 use super::{shapes, still_life, teapot};
+use crate::named::with_defaults;
 use crate::optics::target::TextureTarget;
 
 /// Source of a model. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a path; a file of
@@ -201,179 +203,74 @@ impl Model {
     }
 }
 
-/// Options for files with more than one scene, variant or pose.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct ModelOptions {
-    /// Scene index; `None` is the file's default.
-    pub scene: Option<usize>,
-    /// Material variant (KHR_materials_variants); `None` is the file's own materials.
-    pub variant: Option<String>,
-    /// Time in the first animation, in seconds; `None` is the rest pose.
-    pub time_s: Option<f32>,
-    /// The longest side of a texture; larger ones are halved until they fit.
-    pub texture_side_max: u32,
-    /// Other files given with it. Models are joined with it; files that it names and that are missing beside it are searched
-    /// among the others.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub beside: Vec<PathBuf>,
-}
-
-impl Default for ModelOptions {
-    fn default() -> Self {
-        Self {
-            scene: None,
-            variant: None,
-            time_s: None,
-            texture_side_max: 8192,
-            beside: Vec::new(),
-        }
+with_defaults! {
+    /// Options for files with more than one scene, variant or pose.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default)]
+    pub struct ModelOptions {
+        /// Scene index; `None` is the file's default.
+        pub scene: Option<usize>,
+        /// Material variant (KHR_materials_variants); `None` is the file's own materials.
+        pub variant: Option<String>,
+        /// Time in the first animation, in seconds; `None` is the rest pose.
+        pub time_s: Option<f32>,
+        /// The longest side of a texture; larger ones are halved until they fit.
+        pub texture_side_max: u32 = 8192,
+        /// Other files given with it. Models are joined with it; files that it names and that are missing beside it are searched
+        /// among the others.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub beside: Vec<PathBuf>,
     }
 }
 
-/// The parameters of one material as the file gives them (glTF's metallic-roughness model).
-#[derive(Clone, Debug, PartialEq)]
-pub struct Slot {
-    pub name: String,
-    /// The number of the material in a glTF file.
-    pub file_material: Option<usize>,
-    /// Linear Rec. 709, each in [0, 1]; multiplies the texture.
-    pub base_color: [f32; 3],
-    /// Metalness in [0, 1]; multiplies the blue channel of the metallic-roughness texture.
-    pub metalness: f32,
-    /// Roughness in [0, 1], α = roughness²; multiplies the green channel of the metallic-roughness texture.
-    pub roughness: f32,
-    /// Emitted radiance, linear, at least 0, KHR_materials_emissive_strength included; multiplies the texture.
-    pub emission: [f32; 3],
-    /// Opacity in [0, 1]; multiplies the alpha of the base colour texture.
-    pub opacity: f32,
-    pub alpha_mode: AlphaMode,
-    /// Opacity cutoff of [`AlphaMode::Mask`].
-    pub alpha_cutoff: f32,
-    /// Whether the back of a triangle is seen.
-    pub double_sided: bool,
-    /// Roughness of the diffuse base in [0, 1] (the draft KHR_materials_diffuse_roughness).
-    pub diffuse_roughness: f32,
-    /// Index of refraction, at least 1 (KHR_materials_ior).
-    pub ior: f32,
-    /// Fraction of light that is refracted instead of scattered, in [0, 1] (KHR_materials_transmission).
-    pub transmission: f32,
-    /// Share of the surface that has a coat, in [0, 1] (KHR_materials_clearcoat).
-    pub coat: f32,
-    /// Roughness of the coat in [0, 1], α = roughness².
-    pub coat_roughness: f32,
-    /// Index of refraction of the coat, at least 1.
-    pub coat_ior: f32,
-    /// What the coat leaves of light that crosses it twice, linear RGB in [0, 1] (the draft KHR_materials_coat).
-    pub coat_color: [f32; 3],
-    /// Stretch of the coat's reflection along the tangent, as `anisotropy`.
-    pub coat_anisotropy: f32,
-    /// Whether the coat changes what lies below it.
-    pub coat_on_base: bool,
-    /// Share of its darkening that shows, in [0, 1].
-    pub coat_darkening: f32,
-    /// Share of the surface that has fuzz, in [0, 1] (KHR_materials_sheen, the draft KHR_materials_fuzz).
-    pub fuzz: f32,
-    /// Tint of the fuzz, linear RGB in [0, 1].
-    pub fuzz_color: [f32; 3],
-    /// Roughness of the fuzz in [0, 1].
-    pub fuzz_roughness: f32,
-    /// Share of the surface that has a thin film, in [0, 1] (KHR_materials_iridescence).
-    pub film: f32,
-    /// Index of refraction of the thin film, at least 1.
-    pub film_ior: f32,
-    /// Thickness of the thin film in µm, where its texture is 1.
-    pub film_thickness: f32,
-    /// Thickness of the thin film in µm, where its texture is 0.
-    pub film_thickness_min: f32,
-    /// Transmittance over `attenuation_distance` inside, linear RGB (KHR_materials_volume).
-    pub attenuation_color: [f32; 3],
-    /// Attenuation distance in bounding radii of the model, above 0; infinite without absorption.
-    pub attenuation_distance: f32,
-    /// Textures by target, colours in sRGB, normals with green upwards; [`Slot::texture`] knows those that share one.
-    pub textures: [Option<TextureRef>; TextureTarget::ALL.len()],
-    /// Largest roughness in the texture, in [0, 1]; 1 without one.
-    pub roughest_texel: f32,
-    /// Scales x and y of the normal texture's vectors.
-    pub normal_scale: f32,
-    /// Scales x and y of the coat's normals.
-    pub coat_normal_scale: f32,
-    /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
-    pub specular: f32,
-    /// Tint of a dielectric's reflection at normal incidence, linear RGB, not negative; may exceed 1.
-    pub specular_color: [f32; 3],
-    /// Stretch of the reflection along the tangent, in [0, 1], as lobes have it (KHR_materials_anisotropy).
-    pub anisotropy: f32,
-    /// Turn of the stretch from the tangent towards the bitangent, radians.
-    pub anisotropy_rotation_rad: f32,
-    /// Whether vertex colours multiply the base colour, or the emission if unlit.
-    pub has_vertex_colors: bool,
-    /// Some of these colours have an alpha below 1.
-    pub has_vertex_alpha: bool,
-    /// Whether it ignores light (KHR_materials_unlit).
-    pub is_unlit: bool,
-    /// Unsupported parameters, under the keys of a material file.
-    pub kept: serde_json::Map<String, serde_json::Value>,
-}
-
-impl Default for Slot {
-    fn default() -> Self {
-        Self {
-            name: "default".to_owned(),
-            file_material: None,
-            base_color: [1.0; 3],
-            metalness: 1.0,
-            roughness: 1.0,
-            emission: [0.0; 3],
-            opacity: 1.0,
-            alpha_mode: AlphaMode::Opaque,
-            alpha_cutoff: 0.5,
-            double_sided: false,
-            diffuse_roughness: 0.0,
-            ior: 1.5,
-            transmission: 0.0,
-            coat: 0.0,
-            coat_roughness: 0.0,
-            coat_ior: 1.5,
-            coat_color: [1.0; 3],
-            coat_anisotropy: 0.0,
-            coat_on_base: false,
-            coat_darkening: 0.0,
-            fuzz: 0.0,
-            fuzz_color: [1.0; 3],
-            fuzz_roughness: 0.5,
-            film: 0.0,
-            film_ior: 1.3,
-            film_thickness: 0.4,
-            film_thickness_min: 0.1,
-            attenuation_color: [1.0; 3],
-            attenuation_distance: f32::INFINITY,
-            textures: [None; TextureTarget::ALL.len()],
-            roughest_texel: 1.0,
-            normal_scale: 1.0,
-            coat_normal_scale: 1.0,
-            specular: 1.0,
-            specular_color: [1.0; 3],
-            anisotropy: 0.0,
-            anisotropy_rotation_rad: 0.0,
-            has_vertex_colors: false,
-            has_vertex_alpha: false,
-            is_unlit: false,
-            kept: serde_json::Map::new(),
-        }
+with_defaults! {
+    /// One material as the file gives it: its numbers by the keys of a material's parameters, with GGX's roughness.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Slot {
+        pub name: String = "default".to_owned(),
+        /// The number of the material in a glTF file.
+        pub file_material: Option<usize>,
+        /// What the file says, each key once; a number stands three times. Colours are linear, lengths inside are in bounding radii.
+        pub values: Vec<(&'static str, [f32; 3])> = vec![
+                    ("base.color", [1.0; 3]),
+                    ("base.metalness", [1.0; 3]),
+                    ("specular.weight", [1.0; 3]),
+                    ("specular.roughness", [1.0; 3]),
+                    ("specular.ior", [1.5; 3]),
+                    ("emission.color", [0.0; 3]),
+                    ("emission.strength", [1.0; 3]),
+                ],
+        pub alpha_mode: AlphaMode = AlphaMode::Opaque,
+        /// Opacity cutoff of [`AlphaMode::Mask`].
+        pub alpha_cutoff: f32 = 0.5,
+        /// Whether the back of a triangle is seen.
+        pub double_sided: bool,
+        /// Textures by target, colours in sRGB, normals with green upwards; [`Slot::texture`] knows those that share one.
+        pub textures: [Option<TextureRef>; TextureTarget::ALL.len()],
+        /// Largest roughness in the texture, in [0, 1]; 1 without one.
+        pub roughest_texel: f32 = 1.0,
+        /// The thin film's thickness where its texture is 0, over that where it is 1.
+        pub thinnest: f32,
+        /// Whether vertex colours multiply the base colour, or the emission if unlit.
+        pub has_vertex_colors: bool,
+        /// Some of these colours have an alpha below 1.
+        pub has_vertex_alpha: bool,
+        /// Whether it ignores light (KHR_materials_unlit).
+        pub is_unlit: bool,
+        /// Unsupported parameters, under the keys of a material file.
+        pub kept: serde_json::Map<String, serde_json::Value>,
     }
 }
 
 impl Slot {
     /// The neutral grey plastic of the built-in models and the ground.
     pub fn neutral(name: &str) -> Self {
-        Self {
+        let mut slot = Self {
             name: name.to_owned(),
-            base_color: [0.6; 3],
-            metalness: 0.0,
-            roughness: 0.5,
             ..Self::default()
-        }
+        };
+        slot.set_color("base.color", [0.6; 3]);
+        slot.with(&[("base.metalness", 0.0), ("specular.roughness", 0.5)])
     }
 
     /// The clay of surfaces to which a file gives no material.
@@ -384,9 +281,45 @@ impl Slot {
     /// Has the surface coloured by its vertices. Clay has no other colour then.
     pub fn color_by_vertices(&mut self) {
         if *self == Self::clay() {
-            self.base_color = [1.0; 3];
+            self.set("base.color", 1.0);
         }
         self.has_vertex_colors = true;
+    }
+
+    /// A colour of the file; black where it says none.
+    pub fn color(&self, key: &str) -> [f32; 3] {
+        let found = self.values.iter().find(|(known, _)| *known == key);
+        found.map_or([0.0; 3], |(_, value)| *value)
+    }
+
+    /// A number of the file; 0 where it says none.
+    pub fn number(&self, key: &str) -> f32 {
+        self.color(key)[0]
+    }
+
+    pub fn set_color(&mut self, key: &'static str, value: [f32; 3]) {
+        match self.values.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, known)) => *known = value,
+            None => self.values.push((key, value)),
+        }
+    }
+
+    pub fn set(&mut self, key: &'static str, value: f32) {
+        self.set_color(key, [value; 3]);
+    }
+
+    /// The same with these numbers.
+    #[must_use]
+    pub fn with(mut self, numbers: &[(&'static str, f32)]) -> Self {
+        numbers.iter().for_each(|(key, value)| self.set(key, *value));
+        self
+    }
+
+    /// Multiplies what the file says of a parameter.
+    pub fn multiply(&mut self, key: &str, by: [f32; 3]) {
+        if let Some((_, value)) = self.values.iter_mut().find(|(known, _)| *known == key) {
+            *value = [0, 1, 2].map(|i| value[i] * by[i]);
+        }
     }
 
     /// The texture that a target looks up.
@@ -442,10 +375,10 @@ pub enum Filter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wrap {
     #[default]
-    Repeat,
-    MirroredRepeat,
+    Repeat = WRAP_REPEAT as isize,
+    MirroredRepeat = WRAP_MIRRORED as isize,
     /// Clamp to the texel at the edge.
-    ClampToEdge,
+    ClampToEdge = WRAP_CLAMP as isize,
 }
 
 /// A texture map, encoded as in the file: whether the values are sRGB or linear depends on its use.

@@ -56,11 +56,11 @@ impl Vertex {
     }
 
     /// The vertex with another normal, tangent, and sign of the bitangent.
-    pub(super) fn turned(&self, normal: [f32; 3], tangent: [f32; 3], side: f32) -> Self {
+    pub(super) fn turned(&self, normal: [f32; 3], [x, y, z, side]: [f32; 4]) -> Self {
         const SIDE: u32 = 1 << 31;
         Self {
             normal,
-            tangent,
+            tangent: [x, y, z],
             blue_side: self.blue_side & !SIDE | if side < 0.0 { 0 } else { SIDE },
             ..*self
         }
@@ -81,9 +81,11 @@ impl Vertex {
         (self.blue_side >> 16 & 0x7fff) as f32 / ALPHA_MAX
     }
 
-    /// The sign of the bitangent: 1 or −1.
-    pub fn side(&self) -> f32 {
-        if self.blue_side >> 31 == 0 { -1.0 } else { 1.0 }
+    /// The tangent, and the sign of the bitangent: 1 or −1.
+    #[inline(always)]
+    pub fn tangent_and_side(&self) -> [f32; 4] {
+        let [x, y, z] = self.tangent;
+        [x, y, z, if self.blue_side >> 31 == 0 { -1.0 } else { 1.0 }]
     }
 }
 
@@ -128,7 +130,6 @@ impl Part {
     }
 
     /// True without triangles.
-    #[inline(always)]
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
@@ -139,7 +140,6 @@ impl Part {
     }
 
     /// The CPU's hierarchy, built on first use.
-    #[inline(always)]
     pub(super) fn wide(&self) -> &Wide {
         self.hierarchy.wide(|triangle| self.corners(triangle as usize))
     }
@@ -155,24 +155,20 @@ impl Part {
     }
 
     /// The corners of a triangle.
-    #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
         self.corners_of(&self.triangles[triangle])
     }
 
     /// Shading attributes of a triangle's vertices.
-    #[inline(always)]
     pub(super) fn vertices_of(&self, triangle: usize) -> [&Vertex; 3] {
         self.triangles[triangle].map(|vertex| &self.vertices[vertex as usize])
     }
 
-    #[inline(always)]
     fn corners_of(&self, triangle: &[u32; 3]) -> [[f32; 3]; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
     /// The closest hit with 0 < t < `t_max`.
-    #[inline(always)]
     pub(super) fn closest_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         match self.is_empty() {
             true => None,
@@ -181,7 +177,6 @@ impl Part {
     }
 
     /// True if any triangle is hit with 0 < t < `t_max`.
-    #[inline(always)]
     pub(super) fn is_hit(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
         !self.is_empty() && self.wide().any_hit(level, frame, t_max).is_some()
     }
@@ -205,10 +200,7 @@ impl Part {
         for index in chosen {
             let triangle = mesh.triangles[index].map(|vertex| vertex + base);
             // Rounding to f32 may have closed a sliver; corners and their products are exact in f64.
-            if has_area(
-                self.corners_of(&triangle)
-                    .map(|corner| DVec3::from_array(corner.map(f64::from))),
-            ) {
+            if has_area(exact(self.corners_of(&triangle))) {
                 self.triangles.push(triangle);
                 self.slots.push(mesh.slots[index]);
                 self.objects.push(object_of(index));
@@ -244,6 +236,11 @@ impl Part {
         self.positions = in_large_pages(positions);
         self.vertices = in_large_pages(vertices);
     }
+}
+
+/// Corners in double precision, in which their products are exact.
+pub(super) fn exact(corners: [[f32; 3]; 3]) -> [DVec3; 3] {
+    corners.map(|corner| DVec3::from_array(corner.map(f64::from)))
 }
 
 /// Whether a triangle's corners are finite.

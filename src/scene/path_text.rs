@@ -16,6 +16,14 @@ const ENCODED: &AsciiSet = &NON_ALPHANUMERIC
     .remove(b'_')
     .remove(b'~');
 
+/// The name of a file without its folder.
+pub fn file_name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
 /// The path as text: itself if it is Unicode, otherwise the address of its absolute path.
 pub fn path_text(path: &Path) -> Cow<'_, str> {
     match path.to_str() {

@@ -61,48 +61,38 @@ impl ImportReport {
 
     /// Counts several things of one kind; none leave no entry.
     pub fn count(&mut self, fate: Fate, what: impl Into<String>, name: &str, count: usize) {
-        if count == 0 {
-            return;
-        }
+        let names = [name]
+            .into_iter()
+            .filter(|name| !name.is_empty())
+            .map(str::to_owned)
+            .collect();
         let what = what.into();
-        let known = self
-            .entries
-            .iter()
-            .position(|entry| entry.fate == fate && entry.what == what);
-        let place = known.unwrap_or_else(|| {
-            self.entries.push(Entry {
-                fate,
-                what,
-                count: 0,
-                names: Vec::new(),
-            });
-            self.entries.len() - 1
+        self.add(Entry {
+            fate,
+            what,
+            count,
+            names,
         });
-        let entry = &mut self.entries[place];
-        entry.count += count;
-        let is_new = !name.is_empty() && !entry.names.iter().any(|known| known == name);
-        if is_new && entry.names.len() < NAMES_MAX {
-            entry.names.push(name.to_owned());
-        }
     }
 
     /// Appends another report's entries.
     pub fn append(&mut self, other: Self) {
-        for entry in other.entries {
-            self.count(entry.fate, entry.what.as_str(), "", entry.count);
-            for name in &entry.names {
-                self.name(entry.fate, &entry.what, name);
-            }
-        }
+        other.entries.into_iter().for_each(|entry| self.add(entry));
     }
 
-    fn name(&mut self, fate: Fate, what: &str, name: &str) {
+    fn add(&mut self, more: Entry) {
+        if more.count == 0 {
+            return;
+        }
         let mut entries = self.entries.iter_mut();
-        if let Some(entry) = entries.find(|entry| entry.fate == fate && entry.what == what)
-            && entry.names.len() < NAMES_MAX
-            && !entry.names.iter().any(|known| known == name)
-        {
-            entry.names.push(name.to_owned());
+        let Some(known) = entries.find(|entry| entry.fate == more.fate && entry.what == more.what) else {
+            return self.entries.push(more);
+        };
+        known.count += more.count;
+        for name in more.names {
+            if known.names.len() < NAMES_MAX && !known.names.contains(&name) {
+                known.names.push(name);
+            }
         }
     }
 

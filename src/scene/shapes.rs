@@ -25,18 +25,41 @@ pub(super) fn square(center: DVec3, half_side: f64, uv_half_side: f32, slot: u32
     rectangle(center, half_side * DVec3::X, half_side * DVec3::Z, uv_half_side, slot)
 }
 
-/// A triangle in the rectangle around `center` with half sides as vectors: its base is at the end of `half_v`. It faces
-/// `half_v` × `half_u`.
+/// A flat shape around a place, with half its sides as vectors. It faces `half_v` × `half_u`.
+struct Flat {
+    center: DVec3,
+    half_u: DVec3,
+    half_v: DVec3,
+    mesh: Mesh,
+}
+
+impl Flat {
+    fn new(center: DVec3, half_u: DVec3, half_v: DVec3) -> Self {
+        let mesh = Mesh::default();
+        Self {
+            center,
+            half_u,
+            half_v,
+            mesh,
+        }
+    }
+
+    /// Adds a vertex at a place in half sides; its texture coordinates run from −`uv_half_side` to `uv_half_side` about ½.
+    fn push(&mut self, at: DVec2, uv_half_side: f32) -> u32 {
+        let normal = self.half_v.cross(self.half_u).normalize_or(DVec3::Y).as_vec3();
+        let tangent = self.half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
+        let uv = (at.as_vec2() * uv_half_side + 1.0) * 0.5;
+        let place = self.center + at.x * self.half_u + at.y * self.half_v;
+        self.mesh.push_vertex(place, normal, uv, tangent)
+    }
+}
+
+/// A triangle in the rectangle around `center`, as [`rectangle`] has it: its base is at the end of `half_v`.
 pub(super) fn triangle(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
-    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
-    let corners = [(0.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(u, v)| {
-        let uv = (Vec2::new(u as f32, v as f32) + 1.0) * 0.5;
-        mesh.push_vertex(center + u * half_u + v * half_v, normal, uv, tangent)
-    });
-    mesh.push_triangle(corners, slot);
-    mesh
+    let mut flat = Flat::new(center, half_u, half_v);
+    let corners = [(0.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(u, v)| flat.push(dvec2(u, v), 1.0));
+    flat.mesh.push_triangle(corners, slot);
+    flat.mesh
 }
 
 /// Corners of the polygon that approximates an ellipse.
@@ -44,23 +67,19 @@ const ELLIPSE_CORNERS: u32 = 64;
 
 /// An ellipse around `center` with half its axes as vectors, as a polygon of the same area. It faces `half_v` × `half_u`.
 pub(super) fn ellipse(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
-    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
+    let mut flat = Flat::new(center, half_u, half_v);
     let step_rad = TAU / f64::from(ELLIPSE_CORNERS);
     let grown = (step_rad / step_rad.sin()).sqrt();
-    let middle = mesh.push_vertex(center, normal, Vec2::splat(0.5), tangent);
+    let middle = flat.push(DVec2::ZERO, 1.0);
+    let place = |corner: u32| grown * DVec2::from_angle(step_rad * f64::from(corner));
     let rim: Vec<u32> = (0..ELLIPSE_CORNERS)
-        .map(|corner| {
-            let at = grown * DVec2::from_angle(step_rad * f64::from(corner));
-            let uv = (at.as_vec2() + 1.0) * 0.5;
-            mesh.push_vertex(center + at.x * half_u + at.y * half_v, normal, uv, tangent)
-        })
+        .map(|corner| flat.push(place(corner), 1.0))
         .collect();
     for (index, corner) in rim.iter().enumerate() {
-        mesh.push_triangle([middle, rim[(index + 1) % rim.len()], *corner], slot);
+        flat.mesh
+            .push_triangle([middle, rim[(index + 1) % rim.len()], *corner], slot);
     }
-    mesh
+    flat.mesh
 }
 
 /// Times that each face of an icosahedron is cut into four: seen from anywhere the ball is the same to 0.3 %.
@@ -119,17 +138,12 @@ fn cut_on_sphere(&[a, b, c]: &[DVec3; 3]) -> [[DVec3; 3]; 4] {
 /// A rectangle around `center` of two triangles, with half its sides as vectors: u runs along `half_u`, v along
 /// `half_v`, both from −`uv_half_side` to `uv_half_side` about ½. It faces `half_v` × `half_u`.
 pub(super) fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {
-    let mut mesh = Mesh::default();
-    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
-    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
-    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(u, v)| {
-        let uv = (Vec2::new(u as f32, v as f32) * uv_half_side + 1.0) * 0.5;
-        mesh.push_vertex(center + u * half_u + v * half_v, normal, uv, tangent)
-    });
-    let [a, b, c, d] = corners;
-    mesh.push_triangle([a, b, c], slot);
-    mesh.push_triangle([a, c, d], slot);
-    mesh
+    let mut flat = Flat::new(center, half_u, half_v);
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    let [a, b, c, d] = corners.map(|(u, v)| flat.push(dvec2(u, v), uv_half_side));
+    flat.mesh.push_triangle([a, b, c], slot);
+    flat.mesh.push_triangle([a, c, d], slot);
+    flat.mesh
 }
 
 /// Cells around each part of the shader ball.

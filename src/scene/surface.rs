@@ -3,9 +3,8 @@
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::material::{HAS_BOX, Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::prelude::*;
 use crate::optics::target::TextureTarget;
-use crate::optics::vector::Vec3;
 
 use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors};
 use super::{Geometry, Hit, Vertex, triangle_normal};
@@ -60,7 +59,7 @@ impl<T: Real> SurfacePoint<T> {
     #[inline(always)]
     pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
         let flat = self.flat_normal();
-        let is_below = flat.dot(wi).less(T::zero());
+        let is_below = flat.dot(wi).below_zero();
         let origin = self.position + flat * T::select(transmits & is_below, -self.error, self.error);
         match self.rounded {
             None => origin,
@@ -77,12 +76,12 @@ impl<T: Real> SurfacePoint<T> {
         let corners = at_corners(hits, |triangle| geometry.corners(triangle));
         let normals = at_corners(hits, |triangle| geometry.normals(triangle));
         let flat = self.surface.normal;
-        let is_turned = between(&normals, &weights).dot(flat).less(T::zero());
+        let is_turned = between(&normals, &weights).dot(flat).below_zero();
         let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
         let rise = part(0) + part(1) + part(2);
         let is_round = self.error.less(rise.dot(flat));
         self.surface.normal = Vec3::select(is_round, self.smooth, flat);
-        let rise = Vec3::select(is_round, rise, Vec3::zero());
+        let rise = rise.masked(is_round);
         self.rounded = Some(Rounded { flat, rise });
     }
 }
@@ -98,7 +97,7 @@ pub fn rise_to_plane<T: Real>(
     is_turned: T::Mask,
 ) -> Vec3<T> {
     let depth = (corner - position).dot(normal);
-    let depth = T::select(is_turned, depth.min(T::zero()), depth.max(T::zero()));
+    let depth = T::select(is_turned, depth.min(T::ZERO), depth.max(T::ZERO));
     normal * (depth * weight)
 }
 
@@ -143,15 +142,15 @@ pub type Hits<T> = <T as Real>::Each<Hit>;
 #[inline(always)]
 fn hit_weights<T: Real>(hits: &Hits<T>) -> [T; 3] {
     let number = |weight: f32| T::Scalar::from_f64(f64::from(weight));
-    let u = T::from_lanes(|lane| number(hits.as_ref()[lane].u));
-    let v = T::from_lanes(|lane| number(hits.as_ref()[lane].v));
-    [T::one() - u - v, u, v]
+    let u = T::from_lanes(|lane| number(hits[lane].u));
+    let v = T::from_lanes(|lane| number(hits[lane].v));
+    [T::ONE - u - v, u, v]
 }
 
 /// Three vectors a triangle, one of each corner.
 #[inline(always)]
 fn at_corners<T: Real>(hits: &Hits<T>, vectors: impl Fn(usize) -> [[f32; 3]; 3]) -> [Vec3<T>; 3] {
-    let vectors = T::each(|lane| vectors(hits.as_ref()[lane].triangle as usize));
+    let vectors = T::each(|lane| vectors(hits[lane].triangle as usize));
     let vectors = vectors.as_ref();
     [
         Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][0])),
@@ -172,7 +171,7 @@ pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T
     let corners = at_corners(hits, |triangle| geometry.corners(triangle));
     let weights = hit_weights::<T>(hits);
     let out = normalize_or(triangle_normal(corners), -direction);
-    let is_back = out.dot(-direction).less(T::zero());
+    let is_back = out.dot(-direction).below_zero();
     let normal = Vec3::select(is_back, -out, out);
     HitPlace {
         position: between(&corners, &weights),
@@ -183,14 +182,12 @@ pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T
 }
 
 /// Origin of a ray that continues through a surface.
-#[inline(always)]
 pub fn passed_origin<T: Scalar>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
     let place = hit_place(geometry, &T::each(|_| *hit), direction);
     place.position - place.normal * place.error
 }
 
 /// Surface point of a hit; `direction` is the ray's unit direction.
-#[inline(always)]
 pub fn surface_at<T: Scalar>(
     geometry: &Geometry,
     materials: &[Material<T>],
@@ -232,26 +229,26 @@ pub fn surfaces_at<T: Real>(
     let normals = at_corners(hits, |triangle| geometry.normals(triangle));
     let interpolated = between(&normals, &weights);
     let smoothed = normalize_or(interpolated, normal);
-    let is_turned = smoothed.dot(normal).less(T::zero());
-    let triangle = |lane: usize| hits.as_ref()[lane].triangle as usize;
+    let is_turned = smoothed.dot(normal).below_zero();
+    let triangle = |lane: usize| hits[lane].triangle as usize;
     let weights_of_lanes = [weights[0].to_each(), weights[1].to_each(), weights[2].to_each()];
     let mut uvs = T::each(|_| Uvs::default());
     if of_lane.is_textured() {
         uvs = T::each(|lane| {
-            let weights = [0, 1, 2].map(|i| weights_of_lanes[i].as_ref()[lane]);
+            let weights = [0, 1, 2].map(|i| weights_of_lanes[i][lane]);
             uvs_at(geometry, triangle(lane), weights, of_lane.has_flag(HAS_BOX))
         });
     }
-    let mut vertex_color = Vec3::splat(T::one());
+    let mut vertex_color = Vec3::ONE;
     if of_lane.has_flag(VERTEX_BASE | VERTEX_EMISSION) {
         let colors = at_corners(hits, |triangle| geometry.vertices(triangle).map(Vertex::rgb));
         vertex_color = between(&colors, &weights);
     }
     let has_map = of_lane.has_texture(&[TextureTarget::Normal, TextureTarget::CoatNormal]);
     let stretches = [material.anisotropy, material.coat_anisotropy];
-    let is_stretched = stretches.iter().any(|stretch| stretch.differs(T::zero()).any());
-    let mut tangent = Vec3::zero();
-    let mut side = T::one();
+    let is_stretched = stretches.iter().any(|stretch| stretch.differs(T::ZERO).any());
+    let mut tangent = Vec3::ZERO;
+    let mut side = T::ONE;
     if has_map || is_stretched {
         tangent = between(
             &at_corners(hits, |triangle| {
@@ -261,7 +258,7 @@ pub fn surfaces_at<T: Real>(
         );
         side = T::from_lanes(|lane| {
             let sides = geometry.tangents(triangle(lane)).map(|[_, _, _, side]| side);
-            let part = |i: usize| T::Scalar::from_f64(f64::from(sides[i])) * weights_of_lanes[i].as_ref()[lane];
+            let part = |i: usize| T::Scalar::from_f64(f64::from(sides[i])) * weights_of_lanes[i][lane];
             part(0) + part(1) + part(2)
         });
     }
@@ -276,8 +273,8 @@ pub fn surfaces_at<T: Real>(
                 return smooth;
             }
             let mapped = Vec3::from_lanes(|lane| {
-                let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
-                let (uvs, side) = (uvs.as_ref()[lane], sides.as_ref()[lane]);
+                let normals = [0, 1, 2].map(|i| normals[i][lane]);
+                let (uvs, side) = (uvs[lane], sides[lane]);
                 mapped_normal(textures, (texture, strength), uvs, normals, side)
             });
             let bent = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
@@ -288,7 +285,7 @@ pub fn surfaces_at<T: Real>(
     }
     let frame = if is_stretched {
         // The rotation is towards the bitangent; `shading` is on the viewer's side, the bitangent is defined from outside.
-        let is_mirrored = T::select(is_turned, -side, side).less(T::zero());
+        let is_mirrored = T::select(is_turned, -side, side).below_zero();
         let rotation_rad = T::select(is_mirrored, -material.rotation_rad, material.rotation_rad);
         frame_from_tangent(shading, tangent, rotation_rad)
     } else {
@@ -313,11 +310,10 @@ pub fn surfaces_at<T: Real>(
 }
 
 /// Opacity at a hit, in [0, 1].
-#[inline(always)]
 pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
     let material = &materials[geometry.slot(hit.triangle as usize) as usize];
     if !material.has_holes() {
-        return T::one();
+        return T::ONE;
     }
     let has_box = material.has_flag(HAS_BOX);
     let (triangle, weights) = (hit.triangle as usize, hit_weights::<T>(&T::each(|_| *hit)));

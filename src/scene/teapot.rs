@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use glam::{DVec3, Vec2, Vec3Swizzles};
+use glam::{DVec3, Vec2};
 
 use super::mesh::Mesh;
 use crate::parallel;
@@ -21,49 +21,7 @@ const SMOOTH_COSINE: f64 = 0.9;
 
 type Patch = [[DVec3; 4]; 4];
 
-static PATCHES: LazyLock<Vec<Patch>> = LazyLock::new(|| {
-    let mut patches = parse(include_str!("../../assets/teapot-patches.txt"));
-    patches.extend(seat(&patches));
-    patches.push(spout_stop(&patches));
-    patches
-});
-
-/// Radius of the lid's edge and of the rim's inner edge; both lie at y = 2.4.
-const SEAT_RADII: [f64; 2] = [1.3, 1.4];
-
-/// Four flat patches that close the slit between lid and rim. Newell's data leave it open, and light that enters through it
-/// is practically lost after any number of bounces.
-fn seat(patches: &[Patch]) -> Vec<Patch> {
-    // The borders of a radius: the patches' first or last rows, all of whose points lie at the rim's height.
-    let borders = |radius: f64, row: usize| {
-        let is_border = move |points: &[DVec3; 4]| {
-            points.iter().all(|point| (point.y - 2.4).abs() < 1e-9) && (points[0].xz().length() - radius).abs() < 1e-9
-        };
-        patches
-            .iter()
-            .map(move |patch| patch[row])
-            .filter(is_border)
-            .collect::<Vec<_>>()
-    };
-    let (lid, rim) = (borders(SEAT_RADII[0], 3), borders(SEAT_RADII[1], 0));
-    let across = |inner: [DVec3; 4]| {
-        let is_opposite = |outer: &&[DVec3; 4]| (outer[0].normalize() - inner[0].normalize()).xz().length() < 0.1;
-        let outer = *rim.iter().find(is_opposite)?;
-        Some([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|t| std::array::from_fn(|i| inner[i].lerp(outer[i], t))))
-    };
-    lid.into_iter().filter_map(across).collect()
-}
-
-/// The spout's two lip patches in Newell's list.
-const LIP: [usize; 2] = [18, 19];
-
-/// A flat patch that closes the mouth of the spout at the inner edge of its lip: a light trap like the slit at the lid.
-fn spout_stop(patches: &[Patch]) -> Patch {
-    let near = patches[LIP[0]][3];
-    let mut far = patches[LIP[1]][3];
-    far.reverse();
-    [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|t| std::array::from_fn(|i| near[i].lerp(far[i], t)))
-}
+static PATCHES: LazyLock<Vec<Patch>> = LazyLock::new(|| parse(include_str!("../../assets/teapot-patches.txt")));
 
 /// The patches of a list of control points and indices; +Y is made up.
 fn parse(text: &str) -> Vec<Patch> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value as Json};
 
 use super::error::{FileError, SIZE_MAX};
-use crate::import::resource;
+use crate::import::limits;
 use crate::scene::path_text::{path_of_text, path_text};
 
 /// What was read from a file, and what was odd about it.
@@ -21,7 +21,7 @@ pub struct Loaded<T> {
 /// A whole file, unless it is far too large.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    let result = resource::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
+    let result = limits::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
     match result {
         Err(source) => Err(FileError::Read {
             path: path.to_owned(),
@@ -101,11 +101,11 @@ pub(super) fn version(path: &Path, object: &Map<String, Json>, mark: &str) -> Re
     let Some(number) = object.get(mark) else {
         return Ok(None);
     };
-    let error = || FileError::Content {
-        path: path.to_owned(),
-        reason: format!("\"{mark}\" must be the version of the format, a whole number such as 1"),
-    };
-    number.as_u64().map(Some).ok_or_else(error)
+    let error = || format!("\"{mark}\" must be the version of the format, a whole number such as 1");
+    number
+        .as_u64()
+        .map(Some)
+        .ok_or_else(|| FileError::content(path, error()))
 }
 
 /// JSON to be read by people: a key a line, lists of numbers on one.

@@ -12,7 +12,7 @@ use serde_json::Value as Json;
 use siphasher::sip128::{Hasher128 as _, SipHasher24};
 
 use super::{FileError, Loaded, file};
-use crate::import::resource::Reach;
+use crate::import::limits::Reach;
 
 /// The key under which the mark is kept.
 pub(super) const KEY: &str = "saved-by";

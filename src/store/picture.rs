@@ -11,7 +11,7 @@ use super::error::SIZE_MAX;
 use super::project;
 use super::{FileError, Loaded};
 use crate::document::Document;
-use crate::import::resource;
+use crate::import::limits;
 
 /// The keyword of the chunk.
 pub const KEYWORD: &str = "glossmith";
@@ -24,7 +24,7 @@ pub fn is_png(path: &Path) -> bool {
         let mut start = [0; SIGNATURE.len()];
         std::io::Read::read_exact(&mut file, &mut start).is_ok() && start == SIGNATURE
     };
-    resource::open(path).is_ok_and(begins)
+    limits::open(path).is_ok_and(begins)
 }
 
 /// A PNG file's bytes: 8 bits of red, green, blue and alpha (not premultiplied) a pixel, row by row from the top, with a
@@ -58,7 +58,7 @@ pub fn load_picture_document(path: &Path) -> Result<Loaded<Document>, FileError>
 
 /// The text of the document in an image.
 pub(super) fn document_text_in(path: &Path) -> Result<String, FileError> {
-    let file = resource::open(path).map_err(FileError::reading(path))?;
+    let file = limits::open(path).map_err(FileError::reading(path))?;
     text_in(path, BufReader::new(file))
 }
 
@@ -68,9 +68,11 @@ pub fn parse_picture_document(path: &Path, contents: impl BufRead + Seek) -> Res
 }
 
 fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileError> {
-    let damaged = |error: png::DecodingError| FileError::Content {
-        path: path.to_owned(),
-        reason: format!("not a whole PNG image ({error}); save it again where it came from"),
+    let damaged = |error: png::DecodingError| {
+        FileError::content(
+            path,
+            format!("not a whole PNG image ({error}); save it again where it came from"),
+        )
     };
     let mut reader = png::Decoder::new(contents).read_info().map_err(damaged)?;
     let chunk = |info: &png::Info<'_>| info.utf8_text.iter().find(|chunk| chunk.keyword == KEYWORD).cloned();
@@ -84,8 +86,8 @@ fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileErr
     found
         .decompress_text_with_limit(SIZE_MAX as usize)
         .and_then(|()| found.get_text())
-        .map_err(|error| FileError::Content {
-            path: path.to_owned(),
-            reason: format!("the document in the image is damaged ({error}); open its project instead"),
+        .map_err(|error| {
+            let reason = format!("the document in the image is damaged ({error}); open its project instead");
+            FileError::content(path, reason)
         })
 }

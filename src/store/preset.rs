@@ -14,9 +14,7 @@ use super::replace::save_atomically;
 use super::{FileError, Loaded, file};
 use crate::document::material::FILM_THICKNESS_MAX;
 use crate::document::parameter::nearest_key;
-use crate::document::{
-    MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
-};
+use crate::document::{MaterialSettings, PARAMETERS, ParameterError, TextureError, texture_from_json, texture_to_json};
 use crate::import::kept_keys;
 use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::scene::path_text::path_of_text;
@@ -318,7 +316,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             }
         }
         for &target in TextureTarget::ALL {
-            if let Some(json) = values.shift_remove(map_key(target)) {
+            if let Some(json) = values.shift_remove(target.map_key()) {
                 material.user_textures.set(target, Some(texture_from_json(json)?));
             }
         }
@@ -341,7 +339,7 @@ impl From<MaterialSettings> for Map<String, Json> {
             );
         }
         for (target, texture) in material.user_textures.iter() {
-            values.insert(map_key(target).to_owned(), texture_to_json(texture));
+            values.insert(target.map_key().to_owned(), texture_to_json(texture));
         }
         values.extend(material.extra);
         let mut object = Map::new();

@@ -43,53 +43,46 @@ pub struct Contents {
     pub has_more: bool,
 }
 
-/// Files that have been read, with when they were last changed and their lengths: only what has changed is read again.
+/// When a file was last changed, and its length.
+type Stamp = (Option<SystemTime>, u64);
+
+/// What files hold that have been read: only what has changed is read again.
 #[derive(Debug, Default)]
-pub struct Shelf {
-    known: HashMap<PathBuf, (Option<SystemTime>, u64, ItemKind)>,
-}
+pub struct Shelf(HashMap<PathBuf, (Stamp, Option<ItemKind>)>);
 
 impl Shelf {
     /// What folders hold now.
     pub fn list(&mut self, folders: &[PathBuf]) -> Vec<Contents> {
-        let mut known = std::mem::take(&mut self.known);
-        folders.iter().map(|folder| self.list_one(folder, &mut known)).collect()
-    }
-
-    fn list_one(
-        &mut self,
-        folder: &Path,
-        known: &mut HashMap<PathBuf, (Option<SystemTime>, u64, ItemKind)>,
-    ) -> Contents {
-        let mut paths = Vec::new();
-        let walked = walk(folder, 0, &mut paths);
-        paths.sort();
-        let has_more = paths.len() > FILES_MAX;
-        paths.truncate(FILES_MAX);
-        let items = walked.map(|()| {
+        let known = std::mem::take(&mut self.0);
+        let list_one = |folder: &PathBuf| {
+            let mut paths = Vec::new();
+            let walked = walk(folder, 0, &mut paths);
+            paths.sort();
+            let has_more = paths.len() > FILES_MAX;
+            paths.truncate(FILES_MAX);
             let item = |path: PathBuf| {
-                let metadata = fs::metadata(&path).ok()?;
-                let stamp = (metadata.modified().ok(), metadata.len());
-                let is_small = stamp.1 < ENVIRONMENT_BYTES_MIN;
-                let before = known
-                    .remove(&path)
-                    .filter(|(changed, length, _)| (*changed, *length) == stamp);
-                let kind = match before {
-                    Some((.., kind)) => kind,
-                    None if is_material(&path) => material(&path)?,
-                    None if is_small => return None,
-                    None => ItemKind::Environment,
-                };
-                self.known.insert(path.clone(), (stamp.0, stamp.1, kind.clone()));
+                let kind = self.kind(&path, &known)?;
                 Some(Item { path, kind })
             };
-            paths.into_iter().filter_map(item).collect()
-        });
-        Contents {
-            folder: folder.to_owned(),
-            items,
-            has_more,
-        }
+            Contents {
+                folder: folder.clone(),
+                items: walked.map(|()| paths.into_iter().filter_map(item).collect()),
+                has_more,
+            }
+        };
+        folders.iter().map(list_one).collect()
+    }
+
+    fn kind(&mut self, path: &Path, known: &HashMap<PathBuf, (Stamp, Option<ItemKind>)>) -> Option<ItemKind> {
+        let metadata = fs::metadata(path).ok()?;
+        let stamp = (metadata.modified().ok(), metadata.len());
+        let kind = match known.get(path) {
+            Some((before, kind)) if *before == stamp => kind.clone(),
+            _ if is_material(path) => material(path),
+            _ => (stamp.1 >= ENVIRONMENT_BYTES_MIN).then_some(ItemKind::Environment),
+        };
+        self.0.insert(path.to_owned(), (stamp, kind.clone()));
+        kind
     }
 }
 
@@ -102,15 +95,15 @@ fn walk(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), Str
     let mut folders = Vec::new();
     for entry in entries.flatten() {
         let path = entry.path();
-        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
-        // Links to folders could go round in circles.
-        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        if is_hidden || paths.len() > FILES_MAX {
+        if entry.file_name().to_string_lossy().starts_with('.') || paths.len() > FILES_MAX {
             continue;
         }
-        if is_folder {
+        // Images for screens are seldom environments; where a folder holds some, they are opened by hand.
+        let is_environment = FileKind::of(&path) == Some(FileKind::Light);
+        // Links to folders could go round in circles.
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             folders.push(path);
-        } else if is_material(&path) || is_environment(&path) {
+        } else if is_environment || is_material(&path) {
             paths.push(path);
         }
     }
@@ -124,11 +117,6 @@ fn walk(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), Str
 
 fn is_material(path: &Path) -> bool {
     FileKind::of(path).is_some_and(|kind| MATERIAL_KINDS.contains(&kind))
-}
-
-/// Images for screens are seldom environments; where a folder holds some, they are opened by hand.
-fn is_environment(path: &Path) -> bool {
-    FileKind::of(path) == Some(FileKind::Light)
 }
 
 /// A material in a file; `None` where the file holds something else, as scripts and tables without the exact parameters do.

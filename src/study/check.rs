@@ -6,7 +6,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
-use crate::document::{AreaLight, Background, CustomCurve, Document, PixelFilter, Strategy};
+use crate::document::{AreaLight, Background, CustomCurve, Document, Strategy};
 use crate::job::film::Film;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
@@ -19,6 +19,7 @@ use crate::parallel;
 use crate::render::{EngineChoice, Sampler, Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::study::small_document;
 
 /// Probability that a run fails by chance although everything is right, for each group of tests.
 const LEVEL: f64 = 1e-3;
@@ -27,7 +28,7 @@ const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
 
 /// Render time between two checks for a stop.
-const STEP: Duration = Duration::from_millis(200);
+pub(super) const STEP: Duration = Duration::from_millis(200);
 
 /// Cases of the χ² tests between two reports of progress, for each thread.
 const CASES_PER_THREAD: usize = 4;
@@ -81,6 +82,7 @@ impl Check {
         }
         let rounded = |digits: usize| both.map(|x| format!("{x:.digits$e}").parse().unwrap_or(x));
         let order = |[value, limit]: [f64; 2]| value.partial_cmp(&limit);
+        // Enough digits that the comparison can be seen.
         let digits = (2..16)
             .find(|digits| order(rounded(*digits)) == order(both))
             .unwrap_or(16);
@@ -161,7 +163,11 @@ pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
                             horizon,
                             anisotropy: f64::from(anisotropy),
                             eta: f64::from(eta),
-                            table: table(curve),
+                            table: if curve.has_table() {
+                                CustomCurve::default().table()
+                            } else {
+                                Vec::new()
+                            },
                             ..LobeModel::new(lobe, f64::from(roughness), curve)
                         },
                         view_angle_deg,
@@ -187,15 +193,6 @@ pub(super) fn shapes() -> Vec<(Lobe, Curve, f32)> {
     shapes
 }
 
-/// The table of the curve that is drawn by hand.
-fn table(curve: Curve) -> Vec<f32> {
-    if curve.has_table() {
-        CustomCurve::default().table()
-    } else {
-        Vec::new()
-    }
-}
-
 /// The p-value of a cloud of samples under the density of the f64 twin, times `density_factor` (1, but for tests of the
 /// test itself).
 pub fn chi_square(
@@ -207,11 +204,7 @@ pub fn chi_square(
     let frame = ScatterRequest::frame::<f64>();
     let wo = request.wo::<f64>();
     // The rings follow the lobe: equal shares of a pilot drawn by the twin.
-    let pilot = (0..4000).map(|i| {
-        let state = random_state(1, 0, request.seed, i, Sequence::Independent);
-        let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
-        lobe_sample(&shape, &frame, frame.normal, wo, [a, b, c]).wi
-    });
+    let pilot = twin_samples(request, 4000, Sequence::Independent).map(|drawn| drawn.wi);
     let grid = PolarGrid::following(frame_from_normal(request.middle()), 12, 12, pilot);
     let mut samples: Vec<_> = cloud
         .samples
@@ -295,29 +288,19 @@ fn samples(options: CheckOptions, stop: &AtomicBool, told: &dyn Fn(f64)) -> Resu
 
 /// The name of a case.
 fn describe(case: &ScatterRequest) -> String {
-    let curve = if case.model.lobe.has_curves() {
-        format!("/{}", case.model.curve.name())
-    } else {
-        String::new()
-    };
-    // In the precision of the input.
-    let [roughness, anisotropy] = [case.model.roughness, case.model.anisotropy].map(|x| x as f32);
-    let stretch = if anisotropy == 0.0 {
-        String::new()
-    } else {
-        format!(" stretched {anisotropy}")
-    };
-    let index = if case.model.eta == 0.0 {
-        String::new()
-    } else {
-        format!(" refracted {:.3}", case.model.eta)
-    };
-    format!(
-        "{}{curve} {} roughness {roughness}{stretch}{index} view {}°",
-        case.model.lobe.name(),
-        case.model.horizon.name(),
-        case.view_angle_deg
-    )
+    let model = &case.model;
+    let mut text = model.lobe.name().to_owned();
+    if model.lobe.has_curves() {
+        text += &format!("/{}", model.curve.name());
+    }
+    text += &format!(" {} roughness {}", model.horizon.name(), model.roughness as f32);
+    if model.anisotropy != 0.0 {
+        text += &format!(" stretched {}", model.anisotropy as f32);
+    }
+    if model.eta != 0.0 {
+        text += &format!(" refracted {:.3}", model.eta);
+    }
+    format!("{text} view {}°", case.view_angle_deg)
 }
 
 /// Checks of a group by their worst: only failures are listed one by one, the rest is summed up.
@@ -331,10 +314,10 @@ fn summed_up(group: &'static str, what: &str, all: Vec<Check>) -> Vec<Check> {
 }
 
 /// Samples of the f64 twin of a case.
-fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeSample<f64>> + '_ {
+fn twin_samples(case: &ScatterRequest, count: u32, sequence: Sequence) -> impl Iterator<Item = LobeSample<f64>> + '_ {
     let frame = ScatterRequest::frame::<f64>();
     (0..count).map(move |i| {
-        let state = random_state(2, 0, case.seed, i, Sequence::Sobol);
+        let state = random_state(1, 0, case.seed, i, sequence);
         let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
         lobe_sample(&case.model.shape(), &frame, frame.normal, case.wo(), [a, b, c])
     })
@@ -343,7 +326,10 @@ fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeS
 /// The mean weight of the samples: 1 for lobes that weigh 1 under the mirror policy, never above 1.
 fn energy(stop: &AtomicBool) -> Vec<Check> {
     let check = |case: &ScatterRequest| {
-        let mean = twin_samples(case, 4096).map(|drawn| drawn.weight).sum::<f64>() / 4096.0;
+        let mean = twin_samples(case, 4096, Sequence::Sobol)
+            .map(|drawn| drawn.weight)
+            .sum::<f64>()
+            / 4096.0;
         let is_conserving = case.model.lobe.traits().weighs_one && case.model.horizon == Horizon::Mirror;
         let value = if is_conserving {
             (mean - 1.0).abs()
@@ -381,7 +367,7 @@ fn weights(stop: &AtomicBool) -> Vec<Check> {
             let [value, density] = lobe_evaluate(&case.model.shape(), &frame, frame.normal, case.wo(), drawn.wi);
             (value - drawn.weight * density).abs() / value.max(f64::MIN_POSITIVE)
         };
-        let value = twin_samples(case, 256).map(error).fold(0.0, f64::max);
+        let value = twin_samples(case, 256, Sequence::Sobol).map(error).fold(0.0, f64::max);
         Check::new("weights", describe(case), "error", value, WEIGHT_ERROR)
     };
     summed_up(
@@ -389,20 +375,6 @@ fn weights(stop: &AtomicBool) -> Vec<Check> {
         "weight against evaluate / density",
         of_all_cases(stop, check),
     )
-}
-
-/// A small document under a light, with honest variances: box filter, independent samples.
-fn document(model: ModelSource, light: EnvironmentSource, samples: u32) -> Document {
-    let mut document = Document {
-        model,
-        ..Document::default()
-    };
-    document.lighting.environment = light;
-    (document.render.width, document.render.height) = (48, 48);
-    document.render.samples = samples;
-    document.render.filter = PixelFilter::Box;
-    document.render.sequence = Sequence::Independent;
-    document
 }
 
 /// The finished render's film; `None` if the checks are stopped.
@@ -415,7 +387,7 @@ fn film(engine: EngineChoice, document: &Document, stop: &AtomicBool) -> Result<
 
 fn furnace(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
     let check = |roughness: f32| {
-        let mut document = document(ModelSource::Teapot, EnvironmentSource::Furnace, 4);
+        let mut document = small_document(ModelSource::Teapot, EnvironmentSource::Furnace, 48, 4);
         document.materials[0].roughness = roughness;
         document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
         let image = film(options.engine, &document, stop)?.image();
@@ -429,7 +401,7 @@ fn furnace(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sessi
 
 fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
     let samples = if options.thorough { 1024 } else { 128 };
-    let mut subject = document(ModelSource::Teapot, EnvironmentSource::Studio, samples);
+    let mut subject = small_document(ModelSource::Teapot, EnvironmentSource::Studio, 48, samples);
     subject.materials[0].roughness = 0.5;
     subject.lighting.background = Background::Transparent;
     // Large enough for the lobe alone to find it often.

@@ -87,20 +87,32 @@ impl Evaluator {
         };
         let questions: Vec<_> = pairs.iter().map(question).collect();
         let scene = self.scene();
-        let joined = |(value, density): ([f64; 3], f64)| Evaluation { value, density };
-        Ok(match &self.functions {
-            Functions::Single(prober) => {
-                let values = prober.materials(&scene, &questions)?.into_iter().map(|v| v.to_f64());
-                let densities = prober.densities(&scene, &questions)?.into_iter().map(f64::from);
-                values.zip(densities).map(joined).collect()
-            }
-            Functions::Double => {
-                let values = cpu::probe_materials::<f64>(&scene, &questions);
-                let values = values.into_iter().map(|v| v.to_f64());
-                let densities = cpu::probe_density::<f64>(&scene, &questions);
-                values.zip(densities).map(joined).collect()
-            }
-        })
+        let (values, densities): (Vec<_>, Vec<_>) = match &self.functions {
+            Functions::Single(prober) => (
+                prober
+                    .materials(&scene, &questions)?
+                    .into_iter()
+                    .map(|value| value.to_f64())
+                    .collect(),
+                prober
+                    .densities(&scene, &questions)?
+                    .into_iter()
+                    .map(f64::from)
+                    .collect(),
+            ),
+            Functions::Double => (
+                cpu::probe_materials::<f64>(&scene, &questions)
+                    .into_iter()
+                    .map(|value| value.to_f64())
+                    .collect(),
+                cpu::probe_density::<f64>(&scene, &questions),
+            ),
+        };
+        Ok(values
+            .into_iter()
+            .zip(densities)
+            .map(|(value, density)| Evaluation { value, density })
+            .collect())
     }
 
     /// Albedo for a view in the plane of normal and tangent, from about `count` samples; a negative cosine is a view from

@@ -17,8 +17,9 @@ use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
+use crate::plot::short;
 use crate::render::{EngineChoice, Session, StepDenoiser};
-use crate::study::technique::{Setting, Technique, converged};
+use crate::study::technique::{Technique, converged};
 
 /// Minimum samples per pixel of each render by default: two in either half.
 const SAMPLES_MIN: f64 = 4.0;
@@ -106,7 +107,7 @@ impl Entry {
             return "no measurable cost".to_owned();
         }
         let sign = if share > 0.0 { "+" } else { "−" };
-        format!("{sign}{} % time", digits(100.0 * share.abs()))
+        format!("{sign}{} % time", short(100.0 * share.abs()))
     }
 
     /// Half of the turns agree on whether it costs or saves time.
@@ -204,89 +205,116 @@ fn rivals(document: &Document, plan: &Plan) -> Vec<Rival> {
     rivals
 }
 
-/// For each setting in force the value that it is usually held against.
+/// What each setting in force is measured against.
 fn setting_rivals(document: &Document) -> Vec<Rival> {
     let render = &document.render;
-    let rival = |name, label: String, instead: String, document| Rival {
-        name,
-        label,
-        instead,
-        kind: EntryKind::Setting,
-        document,
-    };
-    let try_out = |name, label: &str, instead: &str, setting: Setting| {
-        let changed = Technique::of(setting).apply(document);
-        rival(name, label.to_owned(), instead.to_owned(), changed)
-    };
-    let changed = |change: &dyn Fn(&mut Document)| {
-        let mut changed = document.clone();
-        change(&mut changed);
-        changed
-    };
-    let mut rivals = Vec::new();
     let is_exact = |fresnel| matches!(fresnel, Fresnel::Dielectric | Fresnel::Conductor);
     let has_exact = document.materials.iter().any(|material| is_exact(material.fresnel));
-    rivals.push(if has_exact {
-        try_out("fresnel", "Exact Fresnel", "Schlick's", Setting::ExactFresnel(false))
-    } else {
-        try_out("fresnel", "Schlick's Fresnel", "exact", Setting::ExactFresnel(true))
-    });
+    let [fresnel, rough_fresnel, approximation] = match has_exact {
+        true => ["Exact Fresnel", "Schlick's", "schlick"],
+        false => ["Schlick's Fresnel", "exact", "exact"],
+    };
     let lobe = document
         .materials
         .first()
         .map_or(Lobe::Geometric, |material| material.lobe);
-    let other = if lobe == Lobe::Ggx { Lobe::Geometric } else { Lobe::Ggx };
-    let label = format!("{} lobe", lobe.label());
-    rivals.push(try_out(
-        "lobe",
-        &label,
-        &format!("{} of the same look", other.label()),
-        Setting::Lobe(other),
-    ));
-    let other = if render.strategy == Strategy::Lobe {
+    let other_lobe = if lobe == Lobe::Ggx { Lobe::Geometric } else { Lobe::Ggx };
+    let strategy = if render.strategy == Strategy::Lobe {
         Strategy::Mis
     } else {
         Strategy::Lobe
     };
-    let label = format!("Light by {}", render.strategy.label().to_lowercase());
-    rivals.push(try_out(
-        "strategy",
-        &label,
-        &other.label().to_lowercase(),
-        Setting::Strategy(other),
-    ));
-    let (label, other) = match render.sequence {
+    let (sequence, other_sequence) = match render.sequence {
         Sequence::Sobol => ("Sobol sequence", Sequence::Independent),
         Sequence::Independent => ("Uniform random numbers", Sequence::Sobol),
     };
-    rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
-    let fewer = if render.bounces > 4 { 4 } else { 1 };
-    if render.bounces > fewer {
-        let label = format!("{} bounces", render.bounces);
-        rivals.push(try_out("bounces", &label, &fewer.to_string(), Setting::Bounces(fewer)));
-    }
+    let fewer = if render.bounces > 4 { "4" } else { "1" };
+    let rows = [
+        ("fresnel", fresnel.to_owned(), rough_fresnel.to_owned(), approximation),
+        (
+            "lobe",
+            format!("{} lobe", lobe.label()),
+            format!("{} of the same look", other_lobe.label()),
+            other_lobe.name(),
+        ),
+        (
+            "strategy",
+            format!("Light by {}", render.strategy.label().to_lowercase()),
+            strategy.label().to_lowercase(),
+            strategy.name(),
+        ),
+        (
+            "sequence",
+            sequence.to_owned(),
+            other_sequence.name().to_owned(),
+            other_sequence.name(),
+        ),
+        (
+            "bounces",
+            format!("{} bounces", render.bounces),
+            fewer.to_owned(),
+            fewer,
+        ),
+    ];
+    let kind = EntryKind::Setting;
+    let rival = |(name, label, instead, value): (&'static str, String, String, &str)| {
+        let document = Technique::of(name, value).apply(document);
+        Rival {
+            name,
+            label,
+            instead,
+            kind,
+            document,
+        }
+    };
+    let mut rivals: Vec<Rival> = rows.into_iter().map(rival).collect();
+    let changed = |name, label: &str, instead: &str, change: fn(&mut Document)| {
+        let mut document = document.clone();
+        change(&mut document);
+        Rival {
+            name,
+            label: label.to_owned(),
+            instead: instead.to_owned(),
+            kind,
+            document,
+        }
+    };
     if render.filter == PixelFilter::Gaussian {
-        let boxed = changed(&|document| document.render.filter = PixelFilter::Box);
-        rivals.push(rival(
-            "filter",
-            "Gaussian pixel filter".to_owned(),
-            "box".to_owned(),
-            boxed,
-        ));
+        let boxed = |document: &mut Document| document.render.filter = PixelFilter::Box;
+        rivals.push(changed("filter", "Gaussian pixel filter", "box", boxed));
     }
-    let general = changed(&|document| {
+    rivals.push(changed(KERNEL, "Specialised kernel", "the general one", |document| {
         let switches = &mut document.render.effects;
         for &effect in EffectId::ALL {
             if switches.get(effect) == Switch::Auto {
                 switches.set(effect, Switch::On);
             }
         }
-    });
-    let label = "Specialised kernel".to_owned();
-    rivals.push(rival(KERNEL, label, "the general one".to_owned(), general));
-    // Settings without effect on this scene have no entry.
+    }));
     rivals.retain(|rival| rival.document != *document);
     rivals
+}
+
+impl Rival {
+    /// Its line; with no words yet.
+    fn entry(self, [ms_with, ms_without]: [f64; 2], differences: &[f64], noise_share: f64) -> Entry {
+        let ms = median(differences);
+        Entry {
+            name: self.name,
+            label: self.label,
+            instead: self.instead,
+            kind: self.kind,
+            ms_with,
+            ms_without,
+            ms,
+            ms_quartiles: [quantile(differences, 0.25), quantile(differences, 0.75)],
+            share_of_frame: ms / ms_with,
+            noise_share,
+            picture_change: Distance::default(),
+            is_picture_kept: false,
+            words: String::new(),
+        }
+    }
 }
 
 fn entry(
@@ -315,31 +343,18 @@ fn entry(
         steps.report(rival.label.clone(), turn as f64 / options.turns as f64)?;
     }
     let differences: Vec<f64> = std::iter::zip(&times[0], &times[1]).map(|(a, b)| a - b).collect();
-    let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
-    let ms = median(&differences);
-    let variances = [variance_of_a_sample(with)?, variance_of_a_sample(without)?];
-    let halves = [Halves::of(with.film()?), Halves::of(without.film()?)];
-    let is_picture_kept = converged(document) == converged(&rival.document);
-    let picture_change = if is_picture_kept {
-        Distance::default()
+    let [noise_with, noise_without] = [variance_of_a_sample(with)?, variance_of_a_sample(without)?];
+    let noise_share = if noise_without > 0.0 {
+        noise_with / noise_without - 1.0
     } else {
-        halves[1].distance(&halves[0])
+        0.0
     };
-    let mut entry = Entry {
-        name: rival.name,
-        label: rival.label,
-        instead: rival.instead,
-        kind: rival.kind,
-        ms_with,
-        ms_without,
-        ms,
-        ms_quartiles: [quantile(&differences, 0.25), quantile(&differences, 0.75)],
-        share_of_frame: ms / ms_with,
-        noise_share: share_of_noise(variances),
-        picture_change,
-        is_picture_kept,
-        words: String::new(),
-    };
+    let is_picture_kept = converged(document) == converged(&rival.document);
+    let mut entry = rival.entry([median(&times[0]), median(&times[1])], &differences, noise_share);
+    entry.is_picture_kept = is_picture_kept;
+    if !is_picture_kept {
+        entry.picture_change = Halves::of(without.film()?).distance(&Halves::of(with.film()?));
+    }
     entry.words = words(&entry);
     Ok(entry)
 }
@@ -366,27 +381,15 @@ fn denoising(
     }
     let estimate = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
     let share = (estimate.value / noise).powi(2) - 1.0;
-    let mut entry = Entry {
-        name: rival.name,
-        label: rival.label,
-        instead: rival.instead,
-        kind: rival.kind,
-        ms_with: median(&times),
-        ms_without: 0.0,
-        ms: median(&times),
-        ms_quartiles: [quantile(&times, 0.25), quantile(&times, 0.75)],
-        share_of_frame: 1.0,
-        noise_share: if share.is_finite() { share } else { 0.0 },
-        picture_change: last.and_then(|denoised| denoised.bias).unwrap_or_default(),
-        is_picture_kept: false,
-        words: String::new(),
-    };
+    let noise_share = if share.is_finite() { share } else { 0.0 };
+    let mut entry = rival.entry([median(&times), 0.0], &times, noise_share);
+    entry.picture_change = last.and_then(|denoised| denoised.bias).unwrap_or_default();
     entry.words = format!(
         "{} ms per image; of the squared error of {:.0} spp {} % is left; bias {} %",
-        digits(entry.ms),
+        short(entry.ms),
         session.progress().mean_samples,
-        digits(100.0 * (1.0 + entry.noise_share)),
-        digits(100.0 * entry.picture_change.value),
+        short(100.0 * (1.0 + entry.noise_share)),
+        short(100.0 * entry.picture_change.value),
     );
     Ok(entry)
 }
@@ -406,49 +409,30 @@ fn variance_of_a_sample(session: &mut Session) -> Result<f64, StudyError> {
     Ok(found.map_or(0.0, |noise| samples * (noise.relative * noise.mean_luminance).powi(2)))
 }
 
-/// Relative increase of the first over the second; 0 if the second is 0.
-fn share_of_noise([with, without]: [f64; 2]) -> f64 {
-    if without > 0.0 { with / without - 1.0 } else { 0.0 }
-}
-
 /// An entry in words: "Exact Fresnel: +2 % time, changes the image by 0.3 %".
 fn words(entry: &Entry) -> String {
     let mut parts = vec![entry.time_words()];
     if entry.noise_share.abs() >= NOISE_RESOLVED {
         let share = entry.noise_share;
         parts.push(if share > 1.0 {
-            format!("{} × the noise", digits(share + 1.0))
+            format!("{} × the noise", short(share + 1.0))
         } else if share > 0.0 {
-            format!("adds {} % to the noise", digits(100.0 * share))
+            format!("adds {} % to the noise", short(100.0 * share))
         } else {
-            format!("removes {} % of the noise", digits(-100.0 * share))
+            format!("removes {} % of the noise", short(-100.0 * share))
         });
     }
     let change = &entry.picture_change;
     parts.push(if entry.is_picture_kept {
         "leaves the image as it is".to_owned()
     } else if change.is_resolved() {
-        format!("changes the image by {} %", digits(100.0 * change.value))
+        format!("changes the image by {} %", short(100.0 * change.value))
     } else {
-        format!("changes the image by less than {} %", digits(100.0 * change.high))
+        format!("changes the image by less than {} %", short(100.0 * change.high))
     });
     let against = match entry.kind {
         EntryKind::Effect => String::new(),
         EntryKind::Setting => format!(" (instead of {})", entry.instead),
     };
     format!("{}{against}: {}", entry.label, parts.join(", "))
-}
-
-/// A number with two digits.
-fn digits(value: f64) -> String {
-    if value <= 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }

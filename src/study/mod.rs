@@ -14,12 +14,17 @@ pub mod race;
 mod references;
 pub mod technique;
 
+use std::io;
 use std::time::Duration;
 
 use serde::Serialize;
 
-use crate::document::Document;
+use crate::document::{Document, PixelFilter};
+use crate::optics::random::Sequence;
+use crate::render::output::OutputError;
 use crate::render::{EngineInfo, Session, SessionError};
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
 use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
@@ -41,7 +46,10 @@ pub enum StudyError {
     Black,
     /// The system's temporary folder cannot be written to.
     #[error("the temporary folder cannot be written to: {0}; make room in it, or name another one by TMPDIR")]
-    Folder(String),
+    Folder(#[from] io::Error),
+    /// An image can't be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
     /// The study was stopped.
     #[error("the study was stopped")]
     Stopped,
@@ -131,6 +139,20 @@ fn without_target(document: &Document) -> Document {
     render.adaptive = Some(render.is_adaptive());
     (render.samples, render.time_s, render.noise) = (UNLIMITED, None, None);
     render.region = None;
+    document
+}
+
+/// A small document with honest variances: box filter, independent samples.
+fn small_document(model: ModelSource, light: EnvironmentSource, side: u32, samples: u32) -> Document {
+    let mut document = Document {
+        model,
+        ..Document::default()
+    };
+    document.lighting.environment = light;
+    (document.render.width, document.render.height) = (side, side);
+    document.render.samples = samples;
+    document.render.filter = PixelFilter::Box;
+    document.render.sequence = Sequence::Independent;
     document
 }
 

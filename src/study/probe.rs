@@ -27,57 +27,9 @@ impl Prober {
         })
     }
 
-    /// Samples, values and densities of lobes.
-    ///
-    /// # Errors
-    ///
-    /// If the GPU fails; so do all later calls.
-    pub fn lobes(&self, scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Result<Vec<LobeAnswer>, GpuError> {
-        self.answers(scene, questions, cpu::probe_lobe, "probe_lobe")
-    }
-
-    /// The shares that boundaries reflect.
-    pub fn fresnel(&self, questions: &[FresnelQuestion]) -> Result<Vec<f32>, GpuError> {
-        self.answers(
-            &ProbeScene::default(),
-            questions,
-            |_, questions| cpu::probe_fresnel(questions),
-            "probe_fresnel",
-        )
-    }
-
-    /// The bits of pairs of random numbers.
-    pub fn random(&self, questions: &[RandomQuestion]) -> Result<Vec<[u32; 2]>, GpuError> {
-        self.answers(
-            &ProbeScene::default(),
-            questions,
-            |_, questions| cpu::probe_random(questions),
-            "probe_random",
-        )
-    }
-
-    /// Materials' values, linear RGB.
-    pub fn materials(
-        &self,
-        scene: &ProbeScene<'_>,
-        questions: &[MaterialQuestion],
-    ) -> Result<Vec<Vec3<f32>>, GpuError> {
-        self.answers(scene, questions, cpu::probe_materials, "probe_material")
-    }
-
-    /// Densities with which materials draw directions, per steradian.
-    pub fn densities(&self, scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Result<Vec<f32>, GpuError> {
-        self.answers(scene, questions, cpu::probe_density, "probe_density")
-    }
-
-    /// Directions drawn from materials.
-    pub fn draws(&self, scene: &ProbeScene<'_>, questions: &[DrawQuestion]) -> Result<Vec<DrawAnswer>, GpuError> {
-        self.answers(scene, questions, cpu::probe_draw::<f32>, "probe_draw")
-    }
-
-    /// Hits of rays.
+    /// Hits of rays; triangles are numbered as in the geometry.
     pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
-        let mut answers = self.answers(scene, questions, cpu::probe_ray, "probe_ray")?;
+        let mut answers = self.hits(scene, questions)?;
         if let (Self::Gpu(_), Some(geometry)) = (self, scene.geometry) {
             for answer in answers.iter_mut().filter(|answer| answer.triangle != NO_HIT) {
                 answer.triangle = geometry.triangle_at(answer.triangle);
@@ -99,4 +51,28 @@ impl Prober {
             Self::Gpu(probe) => probe.ask(entry_point, scene, questions),
         }
     }
+}
+
+macro_rules! functions {
+    ($($visibility:vis $name:ident: $question:ty => $answer:ty = $of_cpu:expr, $entry_point:literal;)*) => {
+        impl Prober {
+            $($visibility fn $name(
+                &self,
+                scene: &ProbeScene<'_>,
+                questions: &[$question],
+            ) -> Result<Vec<$answer>, GpuError> {
+                self.answers(scene, questions, $of_cpu, $entry_point)
+            })*
+        }
+    };
+}
+
+functions! {
+    pub lobes: LobeQuestion => LobeAnswer = cpu::probe_lobe, "probe_lobe";
+    pub fresnel: FresnelQuestion => f32 = |_, questions| cpu::probe_fresnel(questions), "probe_fresnel";
+    pub random: RandomQuestion => [u32; 2] = |_, questions| cpu::probe_random(questions), "probe_random";
+    pub materials: MaterialQuestion => Vec3<f32> = cpu::probe_materials, "probe_material";
+    pub densities: MaterialQuestion => f32 = cpu::probe_density, "probe_density";
+    pub draws: DrawQuestion => DrawAnswer = cpu::probe_draw::<f32>, "probe_draw";
+    hits: RayQuestion => RayAnswer = cpu::probe_ray, "probe_ray";
 }

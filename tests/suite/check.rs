@@ -4,17 +4,17 @@ use std::sync::atomic::AtomicBool;
 
 use glossmith::cpu;
 use glossmith::job::scatter::ScatterRequest;
+use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::study::check::{Check, CheckOptions, chi_square, run, sample_cases};
-
-use crate::lobe_cases::lobes_and_curves;
 
 /// The quick grid holds every lobe and curve as a reflecting, a refracting and, where it can be, a stretched one.
 #[test]
 fn the_quick_cases_miss_no_kind_of_lobe() {
     for thorough in [false, true] {
         let cases = sample_cases(thorough);
-        for (lobe, curve) in lobes_and_curves() {
+        let lobes = Lobe::ALL.iter();
+        for (&lobe, curve) in lobes.flat_map(|lobe| lobe.curves().iter().map(move |&curve| (lobe, curve))) {
             let of_lobe = || {
                 cases
                     .iter()

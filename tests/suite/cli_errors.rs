@@ -1,11 +1,7 @@
 //! What a user can get wrong, from the command line: one clear line, the right exit code, no panic.
 
-use crate::cli_support::{Workplace, write_exr, write_hdr};
+use crate::cli_support::Workplace;
 use crate::gltf_builder::{glb, square};
-
-fn grey(_: usize, _: usize) -> [f32; 3] {
-    [0.5; 3]
-}
 
 const QUICK: &str = "render --engine cpu --size 4x4 --samples 1 --output p.png";
 
@@ -33,39 +29,6 @@ fn bad_models_are_refused() {
         place.refused(1, &format!("--engine cpu {file}"), &[file, words[0], words[1]]);
     }
     assert!(!place.path("p.png").exists(), "a picture of nothing was written");
-}
-
-#[test]
-fn bad_environments_are_refused() {
-    let place = Workplace::new();
-    write_hdr(&place.path("whole.hdr"), 32, 16, grey);
-    let hdr = std::fs::read(place.path("whole.hdr")).unwrap();
-    place.write("cut.hdr", &hdr[..hdr.len() / 2]);
-    place.write("text.hdr", b"not a picture at all\n");
-    write_exr(&place.path("whole.exr"), 32, 16, grey);
-    place.done(&format!("{QUICK} --environment whole.exr"));
-    let mut exr = std::fs::read(place.path("whole.exr")).unwrap();
-    place.write("cut.exr", &exr[..exr.len() / 2]);
-    // Both compressions put these 16 rows in one chunk. The attribute's name, its type and its length of 1 come before its value: HTJ2K is 10.
-    let name = b"compression\0compression\0\x01\0\0\0";
-    let value = exr.windows(name.len()).position(|window| window == name).unwrap() + name.len();
-    exr[value] = 10;
-    place.write("htj2k.exr", &exr);
-    for (file, words) in [
-        ("cut.hdr", ["cut short", "again"]),
-        ("text.hdr", ["not a", "check where it came from"]),
-        ("cut.exr", ["cut short", "again"]),
-        ("htj2k.exr", ["not supported", "re-save it"]),
-        ("missing.hdr", ["cannot read", "check the path"]),
-        ("picture.jpg", ["cannot read", "check the path"]),
-        ("picture.svg", ["neither a .hdr nor an .exr", "convert"]),
-    ] {
-        place.refused(
-            1,
-            &format!("{QUICK} --model sphere --environment {file}"),
-            &[file, words[0], words[1]],
-        );
-    }
 }
 
 #[test]

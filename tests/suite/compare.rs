@@ -1,7 +1,7 @@
 //! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
 use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
-use super::ui_hands::press;
+use super::ui_hands::{Hands as _, press};
 use super::worker::small_document;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
@@ -33,7 +33,7 @@ fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> boo
 #[test]
 fn a_and_b_have_the_same_random_numbers() {
     let mut harness = editor();
-    let same = harness.state().document().materials[0].clone();
+    let same = harness.document().materials[0].clone();
     request(
         &mut harness,
         Action::CompareWith(Rival::Material(Box::new(same.clone()))),
@@ -82,16 +82,11 @@ fn every_view_shows_what_it_says() {
     harness.step();
     harness.drop_at(divider - Vec2::new(200.0, 0.0));
     harness.run_steps(2);
-    assert_eq!(
-        harness.state().document().camera,
-        small_document().camera,
-        "the camera stays"
-    );
+    assert_eq!(harness.document().camera, small_document().camera, "the camera stays");
     let wiped = colors(&mut harness, left);
     assert_ne!(wiped, a, "B is wiped over A");
 
-    harness.get_by_role_and_label(Role::Button, "Difference").click();
-    harness.run_steps(3);
+    harness.click(Role::Button, "Difference");
     let [r, _, blue, _] = colors(&mut harness, right);
     assert!(r > blue, "B is brighter: orange");
     assert!(
@@ -110,11 +105,8 @@ fn every_view_shows_what_it_says() {
     let [a, b] = [colors(&mut harness, [0.25, 0.5]), colors(&mut harness, [0.75, 0.5])];
     assert_ne!(a, b);
 
-    harness.get_by_role_and_label(Role::Button, "Flicker").click();
-    harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Flicker rate")
-        .set_value_accesskit(2.0);
+    harness.click(Role::Button, "Flicker");
+    harness.set("Flicker rate", 2.0);
     let mut seen = std::collections::HashSet::new();
     for _ in 0..20 {
         seen.insert(colors(&mut harness, [0.5, 0.5]));
@@ -126,7 +118,7 @@ fn every_view_shows_what_it_says() {
 #[test]
 fn swapping_and_taking_b_are_one_step_each() {
     let mut harness = editor();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     let gold = PRESETS.iter().find(|preset| preset.name == "Gold").expect("shipped");
     request(
         &mut harness,
@@ -135,19 +127,18 @@ fn swapping_and_taking_b_are_one_step_each() {
     settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
     harness.key_press(Key::X);
     harness.run_steps(2);
-    assert_eq!(harness.state().document().materials[0], *gold);
+    assert_eq!(harness.document().materials[0], *gold);
     settle_both(&mut harness, "the old A", |b| b.materials == before.materials);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     request(
         &mut harness,
         Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
     );
     settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
-    harness.get_by_role_and_label(Role::Button, "Replace A with B").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().document().materials[0], *gold);
+    harness.click(Role::Button, "Replace A with B");
+    assert_eq!(harness.document().materials[0], *gold);
     assert!(
         harness
             .query_by_role_and_label(Role::Button, "Replace A with B")
@@ -156,7 +147,7 @@ fn swapping_and_taking_b_are_one_step_each() {
     );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
 }
 
 fn has_button(harness: &Editor, label: &str) -> bool {
@@ -174,7 +165,7 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     };
     let mut harness = with_data();
     settle(&mut harness);
-    let mut pinned = harness.state().document().clone();
+    let mut pinned = harness.document().clone();
     pinned.materials[0].name = "Zebra".to_owned();
     pinned.materials[0].roughness = 0.77;
     request(&mut harness, Action::UseMaterial(Box::new(pinned.materials[0].clone())));
@@ -189,22 +180,19 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     settle(&mut harness);
     harness.state_mut().reveal(Pane::Snapshots);
     see(&mut harness, "the snapshot", |harness| has_button(harness, "Zebra"));
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     press(&mut harness, "Zebra");
-    assert_eq!(*harness.state().document(), pinned);
+    assert_eq!(*harness.document(), pinned);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     press(&mut harness, "More of Zebra");
     press(&mut harness, "Compare as B");
     settle_both(&mut harness, "B", |b| b.materials == pinned.materials);
     press(&mut harness, "Stop comparing");
     press(&mut harness, "More of Zebra");
     press(&mut harness, "Rename");
-    harness
-        .get_by_role_and_label(Role::TextInput, "New name")
-        .set_text_value_accesskit("Quagga");
-    harness.run_steps(2);
+    harness.write("New name", "Quagga");
     harness.key_press(Key::Enter);
     see(&mut harness, "its new name", |harness| has_button(harness, "Quagga"));
     assert!(!has_button(&harness, "Zebra") && folder.path().join("snapshots/Quagga.png").is_file());

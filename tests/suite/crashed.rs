@@ -6,11 +6,12 @@ use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::actions::{Action, Command as Choice};
+use glossmith::app::actions::Command as Choice;
 use glossmith::app::{Options, report_panics};
 
 use super::nothing_lost::{edit, keeping_editor};
-use super::ui::{Editor, editor_of, options, request, see, wait};
+use super::ui::{Editor, editor_of, options, see, wait};
+use super::ui_hands::Hands as _;
 
 /// The data folder of the child.
 const DATA: &str = "GLOSSMITH_TEST_DATA";
@@ -30,7 +31,7 @@ fn edits_and_panics() {
         ..options()
     });
     wait(&mut harness, "an engine", |app| app.snapshot().engine.is_some());
-    request(&mut harness, Action::Do(Choice::ToggleTheme));
+    harness.command(Choice::ToggleTheme);
     // The first edit is put aside at once, the second one an hour later.
     edit(&mut harness, 0.9);
     wait(&mut harness, "the first copy", |_| holds_a_copy(&data));
@@ -84,9 +85,8 @@ fn a_panic_leaves_the_document_and_a_report_and_the_next_start_says_so() {
         let mut harness = keeping_editor(folder.path());
         see(&mut harness, "the offer", |harness| offers(harness, message));
         harness.check_accessibility();
-        harness.get_by_role_and_label(Role::Button, "Restore untitled").click();
-        harness.run_steps(3);
-        assert_eq!(harness.state().document().materials[0].roughness, LOST, "{place}");
+        harness.click(Role::Button, "Restore untitled");
+        assert_eq!(harness.document().materials[0].roughness, LOST, "{place}");
         let report = report(folder.path());
         for words in [
             message,

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::Document;
+use glossmith::document::{Document, MaterialSettings};
 use glossmith::gpu::{AdapterKind, GpuAdapter, Moment, Traversal};
 use glossmith::job::film::Image;
 use glossmith::render::worker::{Event, Level, Pace, Worker};
@@ -19,9 +19,16 @@ const MOMENTS: &[Moment] = if cfg!(feature = "thorough") {
 /// On a machine that has other things to do.
 const PATIENCE: Duration = Duration::from_secs(600);
 
+/// Whose kernel is quickly compiled.
+fn matt_document(albedo: f32) -> Document {
+    let mut document = small_document();
+    document.materials = vec![MaterialSettings::diffuse("matt", [albedo; 3])];
+    document
+}
+
 /// More than the processor has rendered when the kernel is ready.
 fn long_document() -> Document {
-    let mut document = small_document();
+    let mut document = matt_document(0.5);
     document.render.samples = 1_000_000;
     document
 }
@@ -44,8 +51,7 @@ fn warnings_until(worker: &Worker, last: &str) -> Vec<String> {
 
 /// What is submitted then is rendered as if nothing had been.
 fn renders_as_ever(worker: &Worker, kind: EngineKind) {
-    let mut document = small_document();
-    document.materials[0].roughness = 0.9;
+    let document = matt_document(0.9);
     let picture = finished(worker, worker.submit(&document, Pace::Still));
     let alone = Worker::spawn(EngineChoice::Cpu, || {}).expect("a thread");
     let expected = finished(&alone, alone.submit(&document, Pace::Still));
@@ -112,7 +118,7 @@ fn what_is_lost_again_and_again_is_left_to_the_processor() {
 /// What the GPU had handed over is not rendered again.
 #[test]
 fn what_was_read_back_counts() {
-    let mut document = small_document();
+    let mut document = matt_document(0.5);
     document.render.samples = 64;
     let mut session = Session::open(EngineChoice::Gpu).expect("a Vulkan driver: apt install mesa-vulkan-drivers");
     session.submit(&document).expect("a sphere");

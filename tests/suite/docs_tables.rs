@@ -151,8 +151,8 @@ fn formats() -> String {
         vec![
             format!("`{}`", format.name),
             endings.join(" "),
-            mark(format.is_read),
-            mark(format.is_written),
+            mark(format.is_read()),
+            mark(true),
             format.help.to_owned(),
         ]
     };

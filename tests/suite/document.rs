@@ -8,14 +8,13 @@ use glossmith::document::turntable::{Turn, turned};
 use glossmith::document::{
     AreaLight, Background, Change, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter, Strategy,
 };
-use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
+use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{ModelSource, Slot};
-use glossmith::store::preset;
 
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 
@@ -23,12 +22,8 @@ use crate::parameters::{is_in_range, valid_values};
 
 #[test]
 fn slots_of_a_model_become_materials_in_range() {
-    let slot = Slot {
-        emission: [10.0, 5.0, 0.0],
-        ior: 9.0,
-        roughness: 0.4,
-        ..Slot::neutral("lamp")
-    };
+    let mut slot = Slot::neutral("lamp").with(&[("specular.ior", 9.0), ("specular.roughness", 0.4)]);
+    slot.set_color("emission.color", [10.0, 5.0, 0.0]);
     let material = MaterialSettings::from_slot(&slot, ImportLobe::Ggx);
     assert!(is_in_range(&material));
     assert_eq!(
@@ -122,39 +117,6 @@ fn a_curve_drawn_like_a_named_one_samples_like_it() {
         let (a, b): (f64, f64) = (curve_distance(Curve::Custom, &drawn, xi), xi.sqrt());
         assert!((a - b).abs() < 2e-3, "{xi}: {a} {b}");
     }
-}
-
-#[test]
-fn compiled_materials_refer_to_their_tables() {
-    let (materials, tables) = compile(&[]);
-    assert!(materials.is_empty() && tables.is_empty());
-    let (_, tables) = compile(&[MaterialSettings::default(), MaterialSettings::diffuse("x", [0.5; 3])]);
-    assert!(
-        tables.is_empty(),
-        "neither a metal nor a Lambertian surface needs a table"
-    );
-
-    let custom = MaterialSettings {
-        curve: Curve::Custom,
-        metalness: 0.25,
-        ..MaterialSettings::default()
-    };
-    let glazed = preset::material_by_name("porcelain").expect("shipped").clone();
-    let (materials, tables) = compile(&[custom.clone(), MaterialSettings::default(), glazed]);
-    assert_eq!(materials.len(), 3);
-    let [in_part, after] = [CUSTOM_LENGTH, CUSTOM_LENGTH + ROUGH_ALBEDO_LENGTH];
-    assert_eq!(tables.len(), after + ALBEDO_LENGTH);
-    let places = [&materials[0], &materials[2]].map(|material| material.albedo_table as usize);
-    assert_eq!(places, [in_part, after]);
-    assert_eq!(tables[..in_part], custom.custom_curve.table());
-    let [custom, glazed] = [&materials[0], &materials[2]].map(|material| material.cast::<f64>());
-    let why = "the remembered table is the right one";
-    assert_eq!(
-        tables[in_part..after],
-        rough_albedo_table(&custom, &tables, 256, false),
-        "{why}"
-    );
-    assert_eq!(tables[after..], albedo_table(&glazed, &tables, 1024, false), "{why}");
 }
 
 #[test]

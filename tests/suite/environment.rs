@@ -206,7 +206,7 @@ fn disc_integral(environment: &Environment, centre: Vec3<f64>, radius_rad: f64) 
     };
     let right = helper.cross(centre).normalize();
     let up = centre.cross(right);
-    let (mut sum, mut middle) = ([0.0; 3], Vec3::zero());
+    let (mut sum, mut middle) = ([0.0; 3], Vec3::ZERO);
     let step = 2.0 * radius_rad.tan() / f64::from(POINTS);
     for point in 0..POINTS * POINTS {
         let x = (f64::from(point % POINTS) + 0.5) * step - radius_rad.tan();

@@ -143,31 +143,6 @@ fn densities_add_up_to_one_and_values_to_the_albedo() {
     }
 }
 
-#[test]
-fn the_engines_agree_with_f64() {
-    let place = Workplace::new();
-    for (material, side) in [
-        ("Glass --set specular.lobe=ggx --set specular.roughness=0.4", "below"),
-        (
-            "Gold --set specular.roughness=0.3 --set specular.anisotropy=0.6 --set specular.rotation=30 --set specular.lobe=ggx",
-            "above",
-        ),
-    ] {
-        let table = |engine: &str| {
-            let table = evaluate(
-                &place,
-                &format!("--material {material} --grid 5 --side {side} {engine}"),
-            );
-            ["r", "b", "density"].map(|column| table.column(column))
-        };
-        let [cpu, gpu, exact] = ENGINES.map(table);
-        for (column, exact) in exact.iter().enumerate() {
-            assert_near(&cpu[column], exact, 1e-3, &format!("{material}, {side}, CPU"));
-            assert_near(&gpu[column], exact, 1e-3, &format!("{material}, {side}, GPU"));
-        }
-    }
-}
-
 /// A file's angles count from the normal on the side that is named; above 90 degrees they are on the other one.
 #[test]
 fn the_side_turns_the_angles_over() {

@@ -20,7 +20,7 @@ fn text(material: &MaterialSettings) -> String {
 
 /// Formats that hold the exact parameters, and can be opened again.
 fn both_ways() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let ways = FORMATS.iter().filter(|format| format.is_read && format.is_written);
+    let ways = FORMATS.iter().filter(|format| format.is_read());
     ways.map(|format| (format.name, format.extensions[0]))
 }
 

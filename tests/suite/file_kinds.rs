@@ -74,7 +74,7 @@ fn what_is_written_is_of_a_kind_that_is_opened() {
     let pictures = output::FORMATS.map(|(ending, _)| ending);
     let materials = FORMATS
         .iter()
-        .filter(|format| format.is_read)
+        .filter(|format| format.is_read())
         .flat_map(|format| format.extensions);
     for ending in pictures.iter().chain(materials) {
         let kind = FileKind::of(&PathBuf::from(format!("a.{ending}")));

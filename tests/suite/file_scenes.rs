@@ -195,7 +195,11 @@ fn thin_walls_bend_nothing() {
     let (mut document, model) = opened(&folder, &(buffer, file));
     let pane = &model.slots[0];
     assert_eq!(
-        (pane.ior, pane.coat, pane.coat_ior),
+        (
+            pane.number("specular.ior"),
+            pane.number("coat.weight"),
+            pane.number("coat.ior")
+        ),
         (1.0, 1.0, 1.5),
         "it mirrors as a coat"
     );

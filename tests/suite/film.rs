@@ -126,7 +126,7 @@ fn tiles_cover_the_picture_once() {
 
 #[test]
 fn every_tile_gets_what_it_lacks_and_nothing_twice() {
-    let mut schedule = Schedule::new(20, 10);
+    let mut schedule = Schedule::new(20, 10, 0);
     let goals = [5, 0, 3, 5, 5, 1];
     schedule.set_goals(&goals);
     let mut had = [0_u32; 6];

@@ -316,37 +316,3 @@ fn model_sources_are_written_as_they_are_read() {
     }
     assert_eq!(ModelSource::File("teapot".into()).to_string(), "./teapot");
 }
-
-/// Every part stands on the ground, has a slot of its own, and touches no other.
-#[test]
-fn the_parts_of_the_still_life_stand_beside_each_other() {
-    let model = built_in(&ModelSource::StillLife);
-    let names: Vec<&str> = model.slots.iter().map(|slot| slot.name.as_str()).collect();
-    assert_eq!(names, ["teapot", "bowl", "ball", "bead"]);
-    let places = |part: usize| -> Vec<DVec3> {
-        let slots = model
-            .mesh
-            .slots
-            .iter()
-            .enumerate()
-            .filter(|(_, slot)| **slot as usize == part);
-        slots.flat_map(|(triangle, _)| model.mesh.corners(triangle)).collect()
-    };
-    let parts = [0, 1, 2, 3].map(places);
-    for (small, around) in parts.iter().enumerate() {
-        let lowest = around.iter().map(|place| place.y).fold(f64::MAX, f64::min);
-        assert!(lowest.abs() < 0.01, "{} begins at {lowest}", names[small]);
-        let center = around.iter().sum::<DVec3>() / around.len() as f64;
-        let away = |places: &[DVec3]| places.iter().map(|place| place.distance(center)).collect::<Vec<_>>();
-        let radius = away(around).into_iter().fold(0.0, f64::max);
-        for (other, places) in parts[..small].iter().enumerate() {
-            let nearest = away(places).into_iter().fold(f64::MAX, f64::min);
-            assert!(
-                nearest > radius,
-                "{} in {}: {nearest} of {radius}",
-                names[small],
-                names[other]
-            );
-        }
-    }
-}

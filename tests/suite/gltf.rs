@@ -28,7 +28,11 @@ fn a_square_is_read_as_it_is() {
         model.mesh.tangents
     );
     assert_eq!(
-        (model.slots.len(), model.slots[0].metalness, model.slots[0].roughness),
+        (
+            model.slots.len(),
+            model.slots[0].number("base.metalness"),
+            model.slots[0].number("specular.roughness")
+        ),
         (1, 0.0, 0.5)
     );
     assert!(model.report.is_clean(), "{:?}", model.report);
@@ -201,26 +205,35 @@ fn materials_and_textures_become_slots() {
     };
     assert_eq!((lamp.name.as_str(), default.name.as_str()), ("Lamp", "Clay"));
     assert_eq!(
-        (lamp.base_color, lamp.metalness, lamp.roughness),
+        (
+            lamp.color("base.color"),
+            lamp.number("base.metalness"),
+            lamp.number("specular.roughness")
+        ),
         ([0.5, 0.25, 1.0], 0.125, 0.375)
     );
     assert_eq!(
-        (lamp.opacity, lamp.alpha_mode, lamp.alpha_cutoff),
+        (lamp.number("geometry.opacity"), lamp.alpha_mode, lamp.alpha_cutoff),
         (0.75, AlphaMode::Mask, 0.25)
     );
     assert_eq!(
-        (lamp.emission, lamp.ior, lamp.transmission),
+        (
+            lamp.color("emission.color")
+                .map(|x| x * lamp.number("emission.strength")),
+            lamp.number("specular.ior"),
+            lamp.number("transmission.weight")
+        ),
         ([20.0, 10.0, 0.0], 1.75, 0.875)
     );
     // In bounding radii: the square of side 1 has one of half its diagonal.
     let distance = 3.0 / std::f32::consts::FRAC_1_SQRT_2;
     assert!(
-        (lamp.attenuation_distance - distance).abs() < 1e-5,
+        (lamp.number("transmission.depth") - distance).abs() < 1e-5,
         "{}",
-        lamp.attenuation_distance
+        lamp.number("transmission.depth")
     );
-    assert_eq!(lamp.attenuation_color, [0.25, 0.5, 0.75]);
-    assert!(default.attenuation_distance.is_infinite());
+    assert_eq!(lamp.color("transmission.color"), [0.25, 0.5, 0.75]);
+    assert_eq!(default.number("transmission.depth"), 0.0);
     assert_eq!(model.report.lines().len(), 1, "{:?}", model.report);
     assert!(lamp.double_sided && !default.double_sided);
     let color = lamp.texture(TextureTarget::BaseColor).expect("a colour texture");
@@ -235,7 +248,11 @@ fn materials_and_textures_become_slots() {
     let (sin, cos) = 0.5f32.sin_cos();
     let expected = [2.0 * cos, 3.0 * sin, 0.25, -2.0 * sin, 3.0 * cos, 0.5];
     assert_eq!(
-        (normal.wrap, normal.texture_from_mesh_uv, lamp.normal_scale),
+        (
+            normal.wrap,
+            normal.texture_from_mesh_uv,
+            lamp.number("geometry.normal_strength")
+        ),
         ([Wrap::Repeat; 2], expected, 0.5)
     );
     assert_eq!(
@@ -280,7 +297,10 @@ fn buffers_and_pictures_may_be_beside_the_file_or_in_its_text() {
         (1, "picture.png"),
         "{missing:?}"
     );
-    assert_eq!((grey.textures.len(), grey.slots[0].emission), (0, [0.0; 3]));
+    assert_eq!(
+        (grey.textures.len(), grey.slots[0].color("emission.color")),
+        (0, [0.0; 3])
+    );
 
     // Three vertices at 0, +X and +Y in base 64.
     document = json!({

@@ -74,7 +74,7 @@ fn damaged_documents_are_refused_with_a_reason() {
     };
     check(
         &|d| d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(77),
-        &["model.glb", "beyond the 4"],
+        &["model.glb", "accessor 77", "does not exist"],
     );
     check(
         &|d| d["accessors"][0]["count"] = json!(4_000_000_000u64),
@@ -133,10 +133,10 @@ fn nothing_stops_for_a_detail() {
         &["optional", "ACME_other"],
     );
     shown(
-        &|d| d["accessors"][0]["count"] = json!(3),
-        1,
+        &|d| d["accessors"][1]["count"] = json!(3),
+        2,
         Fate::Ignored,
-        &["NORMAL", "4 values for 3", "Part"],
+        &["NORMAL", "3 values for 4", "Part"],
     );
     shown_whole(
         &|d| d["buffers"][0]["byteLength"] = json!(1_000_000),
@@ -189,7 +189,7 @@ fn what_no_exporter_writes_is_refused() {
     let text = document.to_string();
     folder.load("whole.gltf", text.as_bytes()).expect("loads");
     let words = ["damaged: its JSON", "export the model again"];
-    for number in ["1e999", "-1e999", "1e39", "NaN", "Infinity", "1.2.3", ".5", "wide"] {
+    for number in ["1e999", "-1e999", "NaN", "Infinity", "1.2.3", ".5", "wide"] {
         refused(
             folder.load("number.gltf", text.replace("0.75", number).as_bytes()),
             &words,
@@ -199,7 +199,6 @@ fn what_no_exporter_writes_is_refused() {
         "/scene",
         "/textures",
         "/extensionsUsed",
-        "/asset/generator",
         "/accessors/1/count",
         "/animations/0/channels/0",
         "/bufferViews/2/byteLength",

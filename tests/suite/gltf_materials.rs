@@ -42,15 +42,21 @@ fn material_extensions_reach_the_slots() {
         }}),
     );
     let slot = &model.slots[0];
-    assert_eq!((slot.specular, slot.specular_color), (0.5, [0.25, 2.0, 1.0]));
-    assert_eq!((slot.anisotropy_rotation_rad, slot.ior), (0.5, 4.0));
+    assert_eq!(
+        (slot.number("specular.weight"), slot.color("specular.color")),
+        (0.5, [0.25, 2.0, 1.0])
+    );
+    assert_eq!(
+        (slot.number("specular.rotation"), slot.number("specular.ior")),
+        (0.5_f32.to_degrees(), 4.0)
+    );
     has_widths(&materials_of(&model, ImportLobe::Ggx)[0], 0.5, 0.75);
     assert!(
-        slot.coat == 0.5 && slot.texture(TextureTarget::Coat).is_some(),
+        slot.number("coat.weight") == 0.5 && slot.texture(TextureTarget::Coat).is_some(),
         "its texture is looked up"
     );
-    assert!(slot.coat_roughness == 1.0 && slot.texture(TextureTarget::CoatRoughness).is_some());
-    assert!(slot.coat_normal_scale == 0.5 && slot.texture(TextureTarget::CoatNormal).is_some());
+    assert!(slot.number("coat.roughness") == 1.0 && slot.texture(TextureTarget::CoatRoughness).is_some());
+    assert!(slot.number("coat.normal_strength") == 0.5 && slot.texture(TextureTarget::CoatNormal).is_some());
     says(&model, Fate::Approximated, "an index of refraction of 6, taken as 4");
     let material = &materials_of(&model, ImportLobe::Ggx)[0];
     assert_eq!(
@@ -118,7 +124,11 @@ fn unlit_materials_shine_and_reflect_nothing() {
     }));
     let slot = &model.slots[0];
     assert_eq!(
-        (slot.emission, slot.base_color, slot.specular),
+        (
+            slot.color("emission.color"),
+            slot.color("base.color"),
+            slot.number("specular.weight")
+        ),
         ([0.25, 0.5, 0.75], [0.0; 3], 0.0)
     );
     assert!(slot.texture(TextureTarget::Emission).is_some());
@@ -133,16 +143,24 @@ fn specular_glossiness_becomes_metalness_and_roughness() {
     };
     let plastic = of([0.2, 0.4, 0.6], [0.04; 3]);
     assert_eq!(
-        (plastic.metalness, plastic.roughness, plastic.opacity),
+        (
+            plastic.number("base.metalness"),
+            plastic.number("specular.roughness"),
+            plastic.number("geometry.opacity")
+        ),
         (0.0, 0.25, 0.5)
     );
-    for (found, expected) in plastic.base_color.iter().zip([0.2, 0.4, 0.6]) {
-        assert!((found - expected).abs() < 1e-6, "{:?}", plastic.base_color);
+    for (found, expected) in plastic.color("base.color").iter().zip([0.2, 0.4, 0.6]) {
+        assert!((found - expected).abs() < 1e-6, "{:?}", plastic.color("base.color"));
     }
     let gold = of([0.0; 3], [1.0, 0.75, 0.25]);
-    assert!((gold.metalness - 1.0).abs() < 1e-6, "{}", gold.metalness);
-    for (found, expected) in gold.base_color.iter().zip([1.0, 0.75, 0.25]) {
-        assert!((found - expected).abs() < 1e-5, "{:?}", gold.base_color);
+    assert!(
+        (gold.number("base.metalness") - 1.0).abs() < 1e-6,
+        "{}",
+        gold.number("base.metalness")
+    );
+    for (found, expected) in gold.color("base.color").iter().zip([1.0, 0.75, 0.25]) {
+        assert!((found - expected).abs() < 1e-5, "{:?}", gold.color("base.color"));
     }
     // With textures, texel by texel: (10, 20, 30) is dark and reflects little.
     let texture = json!({"index": 0});

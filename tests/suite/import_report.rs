@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::cli_support::Workplace;
 use super::gltf_builder::{Buffer, Folder, glb, square};
 use super::ui::{editor, request, see_label, wait};
+use super::ui_hands::Hands as _;
 
 /// A square in two variants, one with a texture that is not there.
 fn variants() -> (Buffer, Value) {
@@ -75,21 +76,18 @@ fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
     wait(&mut harness, "the model", |app| {
         app.document().model == ModelSource::File(path.clone())
     });
-    request(&mut harness, Action::Do(Command::ModelFile));
+    harness.command(Command::ModelFile);
     see_label(&mut harness, "Missing");
     let named = harness.query_all_by_label_contains("bark").count();
     assert!(named > 0, "the texture is named");
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Variant")
-        .click_accesskit();
-    harness.run_steps(2);
+    harness.tap(Role::ComboBox, "Variant");
     harness.get_by_role_and_label(Role::Button, "night").click_accesskit();
     // Another material has other rows: nothing else is clicked meanwhile.
     let begun = Instant::now();
-    while harness.state().document().import.variant.as_deref() != Some("night") {
+    while harness.document().import.variant.as_deref() != Some("night") {
         assert!(begun.elapsed() < Duration::from_secs(120), "the variant does not come");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
     }
-    assert_eq!(harness.state().document().materials[0].name, "Night");
+    assert_eq!(harness.document().materials[0].name, "Night");
 }

@@ -157,12 +157,12 @@ fn instances_that_do_not_fit_a_gpu_are_refused_with_the_remedy() {
     (document.render.width, document.render.height, document.render.samples) = (16, 16, 1);
     let submitted = |engine: EngineChoice, mib: u64| {
         let mut session = Session::open(engine).expect("opens");
-        session.limit_memory(mib << 20);
+        session.memory_limit = Some(mib << 20);
         session.submit(&document).map(|_| ())
     };
     submitted(EngineChoice::Cpu, 60).expect("each mesh once");
     let refused = submitted(EngineChoice::Gpu, 60).expect_err("one by one");
-    assert!(matches!(refused, SessionError::Instances(_)), "{refused}");
+    assert!(matches!(refused, SessionError::TooLarge(_)), "{refused}");
     let text = refused.to_string();
     for words in ["triangles of the model's instances", "60 MiB are free", "--engine cpu"] {
         assert!(text.contains(words), "{text}");

@@ -13,7 +13,8 @@ use glossmith::scene::texture::{TextureTarget, UserTexture};
 use glossmith::store::{PRESETS, library, load_material};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
-use super::ui_hands::press;
+use super::ui_files::wait_for_words;
+use super::ui_hands::{Hands as _, press};
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
 fn editor_showing(data: &Path, name: &str) -> Editor {
@@ -35,6 +36,7 @@ fn has_button(harness: &Editor, label: &str) -> bool {
 fn files(folder: &Path) -> Vec<MaterialSettings> {
     let entries = std::fs::read_dir(folder).map(|entries| entries.flatten().collect::<Vec<_>>());
     let paths = entries.unwrap_or_default().into_iter().map(|entry| entry.path());
+    let paths = paths.filter(|path| path.is_file());
     paths.map(|path| load_material(&path).expect("whole").value).collect()
 }
 
@@ -46,7 +48,7 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     own.roughness = 0.77;
     let mut harness = editor_showing(folder.path(), "Zebra");
     request(&mut harness, Action::UseMaterial(Box::new(own.clone())));
-    request(&mut harness, Action::Do(Command::SaveToMyPresets));
+    harness.command(Command::SaveToMyPresets);
     // Its name is asked for, and begins as the material's.
     see(&mut harness, "the name", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "New name").is_some()
@@ -62,15 +64,13 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     let mut harness = editor_showing(folder.path(), "Z");
     see(&mut harness, "the preset", |harness| has_button(harness, "Zebra"));
     harness.check_accessibility();
-    assert_ne!(harness.state().document().materials[0], own);
+    assert_ne!(harness.document().materials[0], own);
     press(&mut harness, "Zebra");
-    assert_eq!(harness.state().document().materials[0], own);
+    assert_eq!(harness.document().materials[0], own);
 
     press(&mut harness, "Rename, export or delete Zebra");
     press(&mut harness, "Rename");
-    let field = harness.get_by_role_and_label(Role::TextInput, "New name");
-    field.set_text_value_accesskit("Zinc");
-    harness.run_steps(2);
+    harness.write("New name", "Zinc");
     harness.key_press(Key::Enter);
     see(&mut harness, "the new name", |harness| has_button(harness, "Zinc"));
     assert!(!has_button(&harness, "Zebra"));
@@ -101,18 +101,14 @@ fn a_folder_that_cannot_be_written_is_named() {
     let file = folder.path().join("file");
     std::fs::write(&file, "no folder").expect("a temporary file");
     let mut harness = editor_showing(&file, "");
-    request(&mut harness, Action::Do(Command::SaveToMyPresets));
+    harness.command(Command::SaveToMyPresets);
     wait(&mut harness, "the message", |app| {
         let is_named = |text: &String| text.contains("materials") && text.contains("permissions");
         app.messages().iter().any(is_named)
     });
     let mut harness = editor_of(options());
-    request(&mut harness, Action::Do(Command::SaveToMyPresets));
-    wait(&mut harness, "the message", |app| {
-        app.messages()
-            .iter()
-            .any(|text| text.contains("no folder for your materials"))
-    });
+    harness.command(Command::SaveToMyPresets);
+    wait_for_words(&mut harness, "no folder for your materials");
 }
 
 /// The colour in the corner of a preset's picture, beside where a dot would be.

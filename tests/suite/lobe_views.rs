@@ -4,7 +4,7 @@ use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::lobe::{Horizon, Lobe, lobe_sample};
 use glossmith::plot::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
-use glossmith::plot::lobe_view_file;
+use glossmith::plot::plot_file;
 
 use crate::support::Random;
 
@@ -141,7 +141,7 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         }
         let [png, svg] = ["png", "svg"].map(|ending| folder.path().join(format!("{}.{ending}", kind.name())));
         for path in [&png, &svg] {
-            std::fs::write(path, lobe_view_file(path, &view).unwrap()).unwrap();
+            std::fs::write(path, plot_file(path, &view).unwrap()).unwrap();
         }
         let picture = image::open(&png).unwrap().to_rgb8();
         let spread = |pixel: &image::Rgb<u8>| {

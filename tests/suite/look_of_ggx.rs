@@ -34,13 +34,12 @@ fn median_deg(shape: &LobeShape<'_, f64>) -> f64 {
 
 /// A slot of clear glass as a lobe shows it.
 fn glass(roughness: f32, ior: f32, lobe: ImportLobe) -> Material<f64> {
-    let slot = Slot {
-        roughness,
-        ior,
-        transmission: 1.0,
-        metalness: 0.0,
-        ..Slot::default()
-    };
+    let slot = Slot::default().with(&[
+        ("specular.roughness", roughness),
+        ("specular.ior", ior),
+        ("transmission.weight", 1.0),
+        ("base.metalness", 0.0),
+    ]);
     compile(&[MaterialSettings::from_slot(&slot, lobe)]).0[0].cast()
 }
 
@@ -152,23 +151,21 @@ fn the_report_says_where_the_lobe_is_another_one() {
         };
         import_report(&model, lobe).lines().join("\n")
     };
-    let rough = Slot {
-        roughness: 0.8,
-        coat: 1.0,
-        coat_roughness: 0.9,
-        ..Slot::default()
-    };
+    let rough = Slot::default().with(&[
+        ("specular.roughness", 0.8),
+        ("coat.weight", 1.0),
+        ("coat.roughness", 0.9),
+    ]);
     let told = report(rough.clone(), ImportLobe::Geometric);
     assert!(
         told.contains("approximated: a roughness above 0.7") && told.contains("a coat's roughness"),
         "{told}"
     );
     assert_eq!(report(rough, ImportLobe::Ggx), "");
-    let glass = Slot {
-        roughness: 0.4,
-        metalness: 0.0,
-        transmission: 1.0,
-        ..Slot::default()
-    };
+    let glass = Slot::default().with(&[
+        ("specular.roughness", 0.4),
+        ("base.metalness", 0.0),
+        ("transmission.weight", 1.0),
+    ]);
     assert!(report(glass, ImportLobe::Geometric).contains("approximated: a rough refraction"));
 }

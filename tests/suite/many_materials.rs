@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glossmith::document::Document;
-use glossmith::gpu::material_array::FEW_MATERIALS;
+use glossmith::gpu::scene_group::FEW_MATERIALS;
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::job::Job;
 use glossmith::optics::material::Material;

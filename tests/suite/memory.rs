@@ -22,7 +22,7 @@ fn of_size(side: u32) -> Document {
 fn what_does_not_fit_is_refused_and_the_old_picture_goes_on() {
     for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
         let mut session = Session::open(engine).unwrap();
-        session.limit_memory(30 * MIB);
+        session.memory_limit = Some(30 * MIB);
         let document = of_size(64);
         session.submit(&document).unwrap();
         while !session.step(std::time::Duration::from_secs(1)).unwrap().is_done {}

@@ -32,11 +32,19 @@ fn obj_files_come_with_their_materials() {
         panic!("{:?}", model.slots)
     };
     assert_eq!(
-        (paint.name.as_str(), paint.base_color, paint.opacity),
+        (
+            paint.name.as_str(),
+            paint.color("base.color"),
+            paint.number("geometry.opacity")
+        ),
         ("Paint", [0.5, 0.25, 1.0], 0.75)
     );
     assert_eq!(
-        (paint.emission, paint.metalness, paint.roughness),
+        (
+            paint.color("emission.color"),
+            paint.number("base.metalness"),
+            paint.number("specular.roughness")
+        ),
         ([1.0, 2.0, 3.0], 0.0, 0.5)
     );
     assert_eq!(
@@ -44,7 +52,11 @@ fn obj_files_come_with_their_materials() {
         2
     );
     assert_eq!(
-        (bare.metalness, bare.roughness, bare.texture(TextureTarget::BaseColor)),
+        (
+            bare.number("base.metalness"),
+            bare.number("specular.roughness"),
+            bare.texture(TextureTarget::BaseColor)
+        ),
         (1.0, 0.25, None)
     );
     let missing: Vec<_> = model.report.of(Fate::Missing).collect();
@@ -92,8 +104,8 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     let [clear, unnamed] = &model.slots[..] else {
         panic!("{:?}", model.slots)
     };
-    assert_eq!((clear.name.as_str(), clear.opacity), ("Clear", 0.25));
-    assert_eq!(unnamed.base_color, [1.0, 0.0, 0.0]);
+    assert_eq!((clear.name.as_str(), clear.number("geometry.opacity")), ("Clear", 0.25));
+    assert_eq!(unnamed.color("base.color"), [1.0, 0.0, 0.0]);
     let texture = clear.texture(TextureTarget::BaseColor).expect("a name with a space");
     assert_eq!(texture.texture_from_mesh_uv, [4.0, 0.0, 0.25, 0.0, 2.0, -1.0]);
     assert_eq!(texture.wrap, [Wrap::ClampToEdge; 2]);
@@ -105,8 +117,8 @@ fn odd_lines_of_obj_files_cost_themselves_alone() {
     let mtl = "newmtl Clear\nKd 1 1 0\nKe 1 1 1\nmap_Kd four columns.png\nmap_Ke gone.png\n";
     std::fs::write(folder.path("odd.mtl"), mtl).unwrap();
     let grey = folder.load("odd.obj", ODD.as_bytes()).expect("loads");
-    assert_eq!(grey.slots[0].base_color, [0.5, 0.5, 0.0]);
-    assert_eq!(grey.slots[0].emission, [0.0; 3]);
+    assert_eq!(grey.slots[0].color("base.color"), [0.5, 0.5, 0.0]);
+    assert_eq!(grey.slots[0].color("emission.color"), [0.0; 3]);
     says(&grey, Fate::Missing, "a texture, grey instead");
 }
 

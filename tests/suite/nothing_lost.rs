@@ -13,6 +13,7 @@ use glossmith::store::examples::still_life;
 use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
+use super::ui_hands::Hands as _;
 
 /// An editor that keeps unsaved edits in a folder.
 pub(super) fn keeping_editor(data: &Path) -> Editor {
@@ -25,11 +26,8 @@ pub(super) fn keeping_editor(data: &Path) -> Editor {
 
 pub(super) fn edit(harness: &mut Editor, roughness: f32) {
     harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(f64::from(roughness));
-    harness.run_steps(3);
-    assert_eq!(harness.state().document().materials[0].roughness, roughness);
+    harness.set("Specular roughness", f64::from(roughness));
+    assert_eq!(harness.document().materials[0].roughness, roughness);
 }
 
 /// Documents put aside in a data folder.
@@ -93,16 +91,16 @@ fn what_a_crash_left_is_offered_and_restored() {
     drop(crashed);
     let mut harness = keeping_editor(folder.path());
     see(&mut harness, "the offer", |harness| {
-        harness.query_by_label("Unsaved work was found").is_some()
+        harness.has("Unsaved work was found")
     });
     harness.check_accessibility();
-    assert_ne!(*harness.state().document(), document);
+    assert_ne!(*harness.document(), document);
     // The button has the focus.
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert!(harness.query_by_label("Unsaved work was found").is_none());
-    assert_eq!(*harness.state().document(), document);
+    assert!(!harness.has("Unsaved work was found"));
+    assert_eq!(*harness.document(), document);
     assert!(!closes(&mut harness), "it is still unsaved");
     see(&mut harness, "one file, of this window", |_| {
         kept(folder.path()).len() == 1
@@ -124,7 +122,7 @@ fn a_leftover_stays_until_it_is_decided_about() {
     let mut crashed = keeping_editor(folder.path());
     edit_until_kept(&mut crashed, folder.path(), 0.37);
     drop(crashed);
-    let offers = |harness: &Editor| harness.query_by_label("Unsaved work was found").is_some();
+    let offers = |harness: &Editor| harness.has("Unsaved work was found");
     for is_discarded in [false, true] {
         let mut harness = keeping_editor(folder.path());
         see(&mut harness, "the offer", offers);
@@ -166,14 +164,14 @@ fn closing_asks_about_unsaved_edits_and_cancel_means_cancel() {
     assert!(closes(&mut harness), "there is nothing to lose");
     let mut harness = editor_of(options());
     edit(&mut harness, 0.5);
-    let document = harness.state().document().clone();
+    let document = harness.document().clone();
     assert!(!closes(&mut harness));
     harness.run_steps(2);
     assert!(asks(&harness));
     harness.check_accessibility();
     harness.key_press(Key::Escape);
     harness.run_steps(2);
-    assert!(!asks(&harness) && *harness.state().document() == document);
+    assert!(!asks(&harness) && *harness.document() == document);
     assert!(!closes(&mut harness));
     press(&mut harness, "Cancel");
     assert!(!commands(&harness).contains(&ViewportCommand::Close));
@@ -208,7 +206,7 @@ fn closing_saves_first_where_that_was_chosen() {
     press(&mut harness, "Save");
     closes_by_itself(&mut harness);
     let saved = load_document(&project).expect("a project").value;
-    assert_eq!(saved, *harness.state().document());
+    assert_eq!(saved, *harness.document());
     assert_eq!(saved.materials[0].roughness, 0.5);
 }
 
@@ -223,29 +221,29 @@ fn new_and_open_ask_and_what_can_be_undone_does_not() {
     save_document(&project, &other).expect("a temporary file");
     let mut harness = editor_of(options());
     edit(&mut harness, 0.5);
-    let document = harness.state().document().clone();
-    request(&mut harness, Action::Do(Command::New));
+    let document = harness.document().clone();
+    harness.command(Command::New);
     see(&mut harness, "the question", asks);
     press(&mut harness, "Cancel");
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     request(&mut harness, Action::Open(project.clone()));
     see(&mut harness, "the question", asks);
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     press(&mut harness, "Discard");
     harness.run_steps(2);
-    assert_eq!(*harness.state().document(), other);
+    assert_eq!(*harness.document(), other);
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[2].clone())));
     harness.run_steps(3);
     assert!(!asks(&harness));
-    request(&mut harness, Action::Do(Command::New));
+    harness.command(Command::New);
     see(&mut harness, "the question", asks);
     press(&mut harness, "Discard");
     harness.run_steps(2);
     // The document of the start, whose noise is taken out as before.
     let mut first = still_life();
     first.view.denoise = other.view.denoise;
-    assert_eq!(*harness.state().document(), first);
-    request(&mut harness, Action::Do(Command::New));
+    assert_eq!(*harness.document(), first);
+    harness.command(Command::New);
     harness.run_steps(3);
     assert!(!asks(&harness), "a new document holds nothing to lose");
 }

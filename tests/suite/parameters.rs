@@ -1,6 +1,6 @@
 //! Parameters of materials and settings of documents: what they take, as text, in files and by their keys.
 
-use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
+use glossmith::document::parameter::{Kind, Parameter, Precision, Value, assign, parameter, parse_color};
 use glossmith::document::{Change, Conductor, Document, MaterialSettings, PARAMETERS, SETTINGS, Stage};
 use glossmith::render::EngineChoice;
 use glossmith::store::{PRESETS, preset};
@@ -11,15 +11,22 @@ use super::worker::small_document;
 /// Values of a kind: both ends and something between, every choice.
 fn values_of(kind: &Kind) -> Vec<Value> {
     match kind {
-        Kind::Number { range: [low, high], .. } => {
-            [*low, low + 0.317 * (high - low), *high].map(Value::Number).to_vec()
+        Kind::Number {
+            range: [low, high],
+            precision,
+            ..
+        } => {
+            let between = low + 0.317 * (high - low);
+            let between = match precision {
+                Precision::Single => f64::from(between as f32),
+                Precision::Double => between,
+                Precision::Whole => between.round(),
+            };
+            [*low, between, *high].map(Value::Number).to_vec()
         }
-        Kind::Real { range: [low, high], .. } => [*low, low + 0.317 * (high - low), *high].map(Value::Real).to_vec(),
-        Kind::Count { range: [low, high] } => [*low, low + (high - low) / 3, *high].map(Value::Count).to_vec(),
         Kind::Place { range: [low, high] } => vec![Value::Place([*low, *high, 0.1])],
         Kind::Optional { kind, .. } => values_of(kind).into_iter().chain([Value::Absent]).collect(),
-        Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
-        Kind::Tint { most } => vec![Value::Color([0.0, *most, 0.123_456_7]), Value::Color([0.9; 3])],
+        Kind::Color { most } => vec![Value::Color([0.0, *most, 0.123_456_7]), Value::Color([0.9; 3])],
         Kind::Triple { range: [low, high] } => {
             vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
         }
@@ -40,22 +47,21 @@ pub(crate) fn valid_values<T>(parameter: &Parameter<T>) -> Vec<Value> {
 /// Texts that a parameter refuses.
 fn invalid_texts(kind: &Kind) -> Vec<String> {
     let texts: &[&str] = match kind {
+        Kind::Number {
+            precision: Precision::Whole,
+            ..
+        } => &["-1", "1.5", "4294967296", "many", ""],
         Kind::Number { range: [low, high], .. } => {
             let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
             let odd = ["NaN", "inf", "1e99", "much", ""].map(str::to_owned);
             return beyond.chain(odd).collect();
         }
-        Kind::Real { range: [low, high], .. } => {
-            let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
-            return beyond.chain(["NaN", "inf", "much", ""].map(str::to_owned)).collect();
-        }
-        Kind::Count { .. } => &["-1", "1.5", "4294967296", "many", ""],
         Kind::Place { .. } => &["1", "1,2", "1,2,x", "1,2,3,4", "NaN,0,0", "1e10,0,0"],
         Kind::Optional { kind, .. } => return invalid_texts(kind),
-        Kind::Color => &[
+        Kind::Color { most: 1.0 } => &[
             "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
         ],
-        Kind::Tint { .. } => &["#12345", "1,1", "-0.1,0,0", "1e9,0,0", "red", "NaN,0,0", ""],
+        Kind::Color { .. } => &["#12345", "1,1", "-0.1,0,0", "1e9,0,0", "red", "NaN,0,0", ""],
         Kind::Triple { .. } => &["1", "1,2", "1,2,x", "-1,0,0", "21,0,0", "inf,0,0"],
         Kind::Choice(_) => &["", "no such", "Geometric"],
         Kind::Toggle => &["", "1", "yes"],
@@ -108,9 +114,7 @@ fn every_parameter_is_described_and_its_default_is_in_range() {
 /// The bar of a row spans a part of what its number may be.
 fn bar_lies_in_range<T>(parameter: &Parameter<T>) {
     let range = match &parameter.kind {
-        Kind::Number { range, .. } => range.map(f64::from),
-        Kind::Real { range, .. } => *range,
-        Kind::Count { range } => range.map(f64::from),
+        Kind::Number { range, .. } => *range,
         _ => return,
     };
     if let Some(bar) = parameter.row.bar {

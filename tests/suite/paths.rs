@@ -18,11 +18,10 @@ use glossmith::study::explain::explain;
 
 use crate::analytic_media::ball_with_inserts;
 use crate::analytic_scenes::room;
-use crate::lanes::sets;
 use crate::lights::lit_scenes;
 use crate::random_documents::random_document;
 use crate::renders::document;
-use crate::support::Random;
+use crate::support::{Random, sets};
 
 /// A document and the model that it names, where that is not built in.
 pub struct Scene {

@@ -58,20 +58,20 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
             let is_metal = material.metalness >= 1.0 && !material.has_texture(&[On::Metalness]);
             // A metal's colour is that of its reflection.
             if !is_metal && material.transmission_weight < 1.0 {
-                material.base_color = Vec3::zero();
+                material.base_color = Vec3::ZERO;
             }
         },
         "specular" => |material, _| {
             material.specular_weight = 0.0;
             material.flags &= !SPARES_METAL;
         },
-        "emission" => |material, _| material.emission = Vec3::zero(),
+        "emission" => |material, _| material.emission = Vec3::ZERO,
         "spot" => |material, _| {
             (material.spot_scale, material.spot_offset) = (0.0, 1.0);
             material.flags &= !HAS_PROFILE;
         },
         "transmission" => |material, _| material.transmission_weight = 0.0,
-        "absorption" => |material, _| material.absorption = Vec3::zero(),
+        "absorption" => |material, _| material.absorption = Vec3::ZERO,
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "multiple-scattering" => |material, _| material.flags &= !COMPENSATES,
         "fuzz" => |material, _| material.fuzz_weight = 0.0,

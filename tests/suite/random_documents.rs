@@ -64,10 +64,10 @@ fn color(random: &mut Random) -> [f32; 3] {
 fn value(random: &mut Random, parameter: &Parameter, present: &Value) -> Value {
     match &parameter.kind {
         Kind::Number { range, .. } => {
-            let [low, high] = parameter.row.bar.map_or(*range, |bar| bar.map(|end| end as f32));
-            Value::Number(number(random, low, high))
+            let [low, high] = parameter.row.bar.unwrap_or(*range).map(|end| end as f32);
+            Value::Number(number(random, low, high).into())
         }
-        Kind::Color | Kind::Tint { .. } => Value::Color(color(random)),
+        Kind::Color { .. } => Value::Color(color(random)),
         Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
         Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
         Kind::Toggle => Value::Toggle(random.below(2) == 0),

@@ -158,7 +158,7 @@ fn the_switch_holds_and_is_told() {
         assert!(told(switch).contains(words), "{switch}: {}", told(switch));
     }
     assert_eq!(place.report("--engine cpu --ray-queries on")["traversal"], "own");
-    place.refused(2, "render --ray-queries perhaps", &["ray queries are auto, on or off"]);
+    place.refused(2, "render --ray-queries perhaps", &["expected one of auto, on, off"]);
 }
 
 /// Rays along axes, at tiny triangles and needles, from afar. What is aimed at edges of a closed mesh is the adapter's: see

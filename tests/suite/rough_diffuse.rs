@@ -46,7 +46,7 @@ fn single_scattering_has_its_closed_albedo() {
     for roughness in [0.25, 1.0] {
         let wo = vec3(0.8, 0.0, 0.6);
         let albedo = integrate_hemisphere(200, |wi: Vec3<f64>| {
-            wi.z / PI * rough_diffuse(Vec3::zero(), roughness, [0.6, wi.z], wo.dot(wi)).x
+            wi.z / PI * rough_diffuse(Vec3::ZERO, roughness, [0.6, wi.z], wo.dot(wi)).x
         });
         assert!((albedo - single_albedo(0.6, roughness)).abs() < 1e-3, "{albedo}");
     }

@@ -37,28 +37,6 @@ fn assert_albedo(found: f64, expected: f64, tolerance: f64, what: &str) {
     assert!((found - expected).abs() < tolerance, "{what}: {found} for {expected}");
 }
 
-#[test]
-fn a_white_metal_reflects_all_light_at_every_roughness() {
-    let white = ["base.color=1,1,1", "base.metalness=1", "specular.fresnel=schlick"];
-    for engine in ENGINES {
-        for (roughness, kept) in KEPT {
-            let roughness = format!("specular.roughness={roughness}");
-            for lobe in ["ggx", "ggx-2018"] {
-                let lobe = format!("specular.lobe={lobe}");
-                let all = [&white[..], &[&roughness, &lobe]].concat();
-                let single = [&all[..], &["specular.multiple_scattering=off"]].concat();
-                let found = [single, all].map(|assignments| albedos(&material(&assignments), engine, 1.0));
-                for view in 0..COSINES.len() {
-                    let what = format!("{engine:?}, {lobe}, {roughness}, cosine {}", COSINES[view]);
-                    let [once, again] = [0, 1].map(|which| found[which][view].reflected[1]);
-                    assert_albedo(once, kept[view], 2e-3, &format!("{what}, single scattering"));
-                    assert_albedo(again, 1.0, 2e-3, &what);
-                }
-            }
-        }
-    }
-}
-
 /// Light that is lost between white facets comes back with another factor of the colour.
 #[test]
 fn a_coloured_metal_takes_its_colour_twice() {

@@ -1,8 +1,8 @@
 //! What several tests need.
 
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
-
+use fearless_simd::Level;
 use glam::Vec3;
+use glossmith::instructions::Instructions;
 
 /// Repeatable random numbers (SplitMix64: Steele, Lea and Flood 2014).
 pub struct Random(u64);
@@ -40,29 +40,8 @@ impl Random {
     }
 }
 
-/// What tests let panic on purpose says so.
-const ON_PURPOSE: &str = "on purpose";
-
-/// Panics of the program's own threads, which no test sees otherwise.
-static BROKEN: Mutex<Vec<String>> = Mutex::new(Vec::new());
-
-pub fn broken() -> MutexGuard<'static, Vec<String>> {
-    BROKEN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Takes note of panics in threads that have a name of the program's: tests are named after their path.
-pub fn listen() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
-        let usual = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |panic| {
-            let thread = std::thread::current();
-            let is_ours = thread.name().is_some_and(|name| name != "main" && !name.contains("::"));
-            let text = panic.to_string();
-            if is_ours && !text.contains(ON_PURPOSE) && !glossmith::panics::is_contained() {
-                broken().push(format!("{}: {text}", thread.name().unwrap_or_default()));
-            }
-            usual(panic);
-        }));
-    });
+/// The instruction sets of this processor, with their names.
+pub fn sets() -> Vec<(&'static str, Level)> {
+    let sets = Instructions::ALL.iter().filter(|set| **set != Instructions::Auto);
+    sets.filter_map(|set| Some((set.name(), set.level()?))).collect()
 }

@@ -1,15 +1,10 @@
 //! Glass: light cut at the last bounce, roulette behind clear panes, and glass that is not there.
 
-use std::sync::Arc;
-use std::time::Duration;
-
-use glossmith::cpu::CpuEngine;
 use glossmith::document::{Background, Document};
-use glossmith::job::Job;
 use glossmith::job::film::Film;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{Geometry, Model, ModelSource};
 
 use super::renders::{document, render};
 
@@ -77,43 +72,4 @@ fn no_albedo_is_gambled_for_behind_clear_glass() {
 /// The sum of the variances of a picture's pixels.
 fn spread(film: &Film) -> f64 {
     film.variance_of_mean().iter().sum()
-}
-
-/// With the index of the air around it and no roughness, the sphere is not there.
-#[test]
-fn glass_with_the_index_of_air_is_invisible() {
-    for (lobe, share) in [("geometric", 1e-3), ("ggx", 0.01)] {
-        let lobe = format!("specular.lobe={lobe}");
-        let mut document = glass(EnvironmentSource::Studio, &["specular.ior=1", &lobe]);
-        document.lighting.background = Background::Environment;
-        document.render.samples = 16;
-        let mut session = Session::open(EngineChoice::Cpu).unwrap();
-        session.submit(&document).unwrap();
-        let mut engine = CpuEngine::default();
-        engine.submit(Arc::new(Job {
-            geometry: Arc::new(Geometry::build(&Model::default(), false)),
-            ..Job::clone(session.job().unwrap())
-        }));
-        engine.step(Duration::from_secs(100), 16);
-        let empty = engine.film().image();
-        for choice in ENGINES {
-            let film = render(choice, &document);
-            // The sphere is there, and was met: a path through it has more than one ray.
-            assert!(
-                film.total_rays() > 16 * 64 * 64 * 2,
-                "{choice:?} {lobe}: {} rays",
-                film.total_rays()
-            );
-            for (i, (seen, expected)) in film.image().pixels.iter().zip(&empty.pixels).enumerate() {
-                for (a, b) in seen.iter().zip(expected) {
-                    // GGX's narrowest lobe shadows a little at the edge.
-                    let limit = share * (b.abs() + 1.0);
-                    assert!(
-                        (a - b).abs() < limit,
-                        "{choice:?} {lobe}: pixel {i}: {seen:?}, {expected:?}"
-                    );
-                }
-            }
-        }
-    }
 }

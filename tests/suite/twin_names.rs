@@ -18,8 +18,9 @@ const ALONE: &[(&str, &[&str])] = &[
             "slot_at",
             "table_number",
             "table_numbers",
-            "texel_place",
+            "texel_at",
             "texture_word",
+            "three_texels",
             "vertex_at",
         ],
     ),
@@ -56,18 +57,11 @@ const ALONE: &[(&str, &[&str])] = &[
     ),
     (
         "is a part of a layer whose share in Rust is a default of the layers' trait (src/optics/layer)",
-        &["cover_choose", "material_scatter", "material_steps", "no_lobe"],
+        &["cover_choose", "material_scatter", "material_steps"],
     ),
     (
         "finds layers by number; Rust walks over their types (src/optics/layer/mod.rs)",
-        &[
-            "is_layer",
-            "last_layer",
-            "layer_choice",
-            "layer_share",
-            "planned_layer",
-            "planned_layers",
-        ],
+        &["is_layer", "last_layer", "layer_choice", "planned_layer"],
     ),
 ];
 

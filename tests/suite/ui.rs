@@ -20,6 +20,8 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::{PRESETS, save_document, save_material};
 
 use super::manual::manual_pages;
+use super::ui_files::wait_for_words;
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// The window without a screen.
@@ -168,7 +170,7 @@ pub(super) fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> b
 
 /// Steps until a control or text is there.
 pub(super) fn see_label(harness: &mut Editor, label: &str) {
-    see(harness, label, |harness| harness.query_by_label(label).is_some());
+    see(harness, label, |harness| harness.has(label));
 }
 
 pub(super) fn wait(harness: &mut Editor, what: &str, until: impl Fn(&App) -> bool) {
@@ -215,23 +217,21 @@ fn the_editor_opens_and_renders() {
     assert_eq!((picture.width, picture.height, picture.samples_per_pixel), (40, 24, 3));
     let bright = picture.rgba.iter().filter(|byte| **byte > 40).count();
     assert!(bright > picture.rgba.len() / 3, "the picture is almost black");
-    assert!(harness.query_by_label("rendering").is_none());
-    assert!(harness.query_by_label("done").is_some());
+    assert!(!harness.has("rendering"));
+    assert!(harness.has("done"));
 }
 
 #[test]
 fn a_slider_changes_the_document_and_the_picture_and_undo_brings_both_back() {
     let mut harness = editor();
-    let (document, before) = (harness.state().document().clone(), picture(&harness));
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.85);
+    let (document, before) = (harness.document().clone(), picture(&harness));
+    harness.set("Specular roughness", 0.85);
     settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0].roughness, 0.85);
+    assert_eq!(harness.document().materials[0].roughness, 0.85);
     let rough = picture(&harness);
     assert_ne!(rough, before);
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     assert_eq!(picture(&harness), before);
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     settle(&mut harness);
@@ -248,7 +248,7 @@ fn undo_takes_back_what_was_edited_in_the_same_frame() {
             .set_value_accesskit(value);
     };
     let of = |harness: &Editor| {
-        let material = &harness.state().document().materials[0];
+        let material = &harness.document().materials[0];
         (material.roughness, material.metalness)
     };
     set(&harness, "Specular roughness", 0.85);
@@ -270,46 +270,25 @@ fn undo_takes_back_what_was_edited_in_the_same_frame() {
 }
 
 #[test]
-fn every_number_of_the_material_panel_can_be_set() {
-    let mut harness = editor();
-    for (label, value) in [
-        ("Base metalness", 0.25),
-        ("Specular weight", 0.5),
-        ("Specular anisotropy", -0.4),
-    ] {
-        harness
-            .get_by_role_and_label(Role::SpinButton, label)
-            .set_value_accesskit(value);
-        harness.run_steps(2);
-    }
-    let material = harness.state().document().materials[0].clone();
-    assert_eq!(
-        (material.metalness, material.specular_weight, material.anisotropy),
-        (0.25, 0.5, -0.4)
-    );
-}
-
-#[test]
 fn a_lobe_is_chosen_from_its_menu_and_what_does_not_apply_goes() {
     let mut harness = editor();
-    assert!(harness.query_by_label("Specular curve").is_some());
-    harness.get_by_role_and_label(Role::ComboBox, "Specular lobe").click();
-    harness.run_steps(2);
+    assert!(harness.has("Specular curve"));
+    harness.click(Role::ComboBox, "Specular lobe");
     let label = Lobe::Ggx.label();
     harness.get_by_role_and_label(Role::Button, label).click();
     settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0].lobe, Lobe::Ggx);
-    assert!(harness.query_by_label("Specular curve").is_none(), "GGX has no curve");
+    assert_eq!(harness.document().materials[0].lobe, Lobe::Ggx);
+    assert!(!harness.has("Specular curve"), "GGX has no curve");
 }
 
 #[test]
 fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
     let mut harness = editor();
-    let before = harness.state().document().camera;
+    let before = harness.document().camera;
     let center = harness.get_by_label("Viewport").rect().center();
     drag(&mut harness, center, Vec2::new(60.0, 20.0));
     settle(&mut harness);
-    let after = harness.state().document().camera;
+    let after = harness.document().camera;
     assert!(
         after.yaw_deg < before.yaw_deg - 5.0 && after.pitch_deg > before.pitch_deg + 2.0,
         "{after:?}"
@@ -320,7 +299,7 @@ fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
         "a turn leaves the framing alone"
     );
     undo(&mut harness);
-    assert_eq!(harness.state().document().camera, before);
+    assert_eq!(harness.document().camera, before);
 }
 
 pub(super) fn drag(harness: &mut Editor, from: Pos2, by: Vec2) {
@@ -343,8 +322,8 @@ fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
     harness.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
     drag(&mut harness, center, Vec2::new(50.0, 0.0));
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
-    assert!(harness.state().document().lighting.rotation_deg > 10.0);
-    assert_eq!(harness.state().document().camera, Document::default().camera);
+    assert!(harness.document().lighting.rotation_deg > 10.0);
+    assert_eq!(harness.document().camera, Document::default().camera);
     harness.hover_at(center);
     harness.event(egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
@@ -354,38 +333,30 @@ fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
         modifiers: Modifiers::NONE,
     });
     harness.run_steps(4);
-    let distance = harness
-        .state()
-        .document()
-        .camera
-        .distance
-        .expect("zooming sets a distance");
+    let distance = harness.document().camera.distance.expect("zooming sets a distance");
     harness.key_press(Key::F);
     harness.run_steps(2);
-    assert_eq!(harness.state().document().camera.distance, None, "it was {distance}");
+    assert_eq!(harness.document().camera.distance, None, "it was {distance}");
 }
 
 #[test]
 fn every_panel_and_sheet_has_named_inputs() {
     let mut harness = editor();
     request(&mut harness, Action::Open("not/there.glb".into()));
-    wait(&mut harness, "the message", |app| {
-        app.messages().iter().any(|text| text.contains("not/there.glb"))
-    });
+    wait_for_words(&mut harness, "not/there.glb");
     for pane in Pane::ALL {
-        harness.state_mut().reveal(pane);
-        harness.run_steps(3);
+        harness.reveal(pane);
         harness.check_accessibility();
     }
     for command in [Command::Palette, Command::Shortcuts, Command::About] {
-        request(&mut harness, Action::Do(command));
+        harness.command(command);
         harness.run_steps(2);
         harness.check_accessibility();
         harness.key_press(Key::Escape);
         harness.run_steps(2);
     }
     for theme in 0..2 {
-        request(&mut harness, Action::Do(Command::ToggleTheme));
+        harness.command(Command::ToggleTheme);
         harness.check_accessibility();
         assert_eq!(harness.ctx.theme() == egui::Theme::Dark, theme == 1);
     }
@@ -394,71 +365,45 @@ fn every_panel_and_sheet_has_named_inputs() {
 #[test]
 fn a_preset_is_one_click_and_one_undo() {
     let mut harness = editor();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     harness.get_by_role_and_label(Role::Button, "Rubber").click();
     settle(&mut harness);
     let rubber = PRESETS
         .iter()
         .find(|material| material.name == "Rubber")
         .expect("shipped");
-    assert_eq!(harness.state().document().materials[0], *rubber);
+    assert_eq!(harness.document().materials[0], *rubber);
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
-}
-
-#[test]
-fn the_palette_finds_and_does() {
-    let mut harness = editor();
-    assert_eq!(harness.ctx.theme(), egui::Theme::Dark);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::TextInput, "Find a command")
-        .type_text("light or dark");
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(2);
-    assert_eq!(harness.ctx.theme(), egui::Theme::Light);
-    assert!(
-        harness
-            .query_by_role_and_label(Role::TextInput, "Find a command")
-            .is_none()
-    );
+    assert_eq!(*harness.document(), before);
 }
 
 #[test]
 fn models_and_environments_are_changed_and_undone() {
     let mut harness = editor();
-    let mut document = harness.state().document().clone();
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.6);
-    harness.run_steps(2);
-    let before = harness.state().document().clone();
+    let mut document = harness.document().clone();
+    harness.set("Specular roughness", 0.6);
+    let before = harness.document().clone();
     request(&mut harness, Action::UseModel(ModelSource::Shaderball));
     wait(&mut harness, "the model", |app| {
         app.document().model == ModelSource::Shaderball
     });
     settle(&mut harness);
-    let materials = &harness.state().document().materials;
+    let materials = &harness.document().materials;
     assert_eq!(
         (materials.len(), materials[0].roughness),
         (2, 0.6),
         "the edited material stays"
     );
-    assert!(
-        harness.query_by_label("Slot 2: stand").is_some(),
-        "the slots are listed"
-    );
+    assert!(harness.has("Slot 2: stand"), "the slots are listed");
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     request(&mut harness, Action::UseEnvironment(EnvironmentSource::Sky));
     wait(&mut harness, "the sky", |app| {
         app.document().lighting.environment == EnvironmentSource::Sky
     });
     document.materials[0].roughness = 0.6;
     document.lighting.environment = EnvironmentSource::Sky;
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
 }
 
 #[test]
@@ -473,30 +418,25 @@ fn projects_and_materials_come_back_from_their_files() {
     save_material(&material, &PRESETS[3]).expect("a temporary file");
     let mut harness = editor_with(small_document(), vec![project]);
     settle(&mut harness);
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     request(&mut harness, Action::Open(material));
     wait(&mut harness, "the material", |app| app.document() != &document);
-    assert_eq!(harness.state().document().materials[0], PRESETS[3]);
+    assert_eq!(harness.document().materials[0], PRESETS[3]);
 }
 
 #[test]
 fn the_picture_is_saved_as_it_is_shown() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor();
-    request(&mut harness, Action::Do(Command::SavePicture));
+    harness.command(Command::SavePicture);
     see(&mut harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
     harness.check_accessibility();
     let path = folder.path().join("shown.png");
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(&path.display().to_string());
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "Save").click();
-    harness.run_steps(2);
-    wait(&mut harness, "the file", |app| {
-        app.messages().iter().any(|text| text.contains("shown.png"))
-    });
+    harness.write("Path", &path.display().to_string());
+    harness.click(Role::Button, "Save");
+    wait_for_words(&mut harness, "shown.png");
     let saved = image::open(&path).expect("a picture").to_rgba8();
     let snapshot = harness.state().snapshot();
     assert_eq!(saved.into_raw(), snapshot.picture.as_ref().expect("there is one").rgba);

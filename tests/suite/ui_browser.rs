@@ -14,6 +14,7 @@ use glossmith::store::{PRESETS, save_material};
 
 use super::cli_support::write_hdr;
 use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, settle, undo, wait};
+use super::ui_hands::Hands as _;
 
 fn has(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
@@ -25,9 +26,7 @@ fn click(harness: &mut Editor, label: &str) {
 }
 
 fn search(harness: &mut Editor, text: &str) {
-    let field = harness.get_by_role_and_label(Role::TextInput, "Search presets");
-    field.set_text_value_accesskit(text);
-    harness.run_steps(3);
+    harness.write("Search presets", text);
 }
 
 /// Where a thing is shown.
@@ -44,9 +43,7 @@ fn favourites_come_first_tags_are_found_and_both_are_kept() {
     assert!(place(&harness, "Amber").top() < place(&harness, "Rubber").top());
     click(&mut harness, "More of Gold");
     click(&mut harness, "Tags…");
-    let field = harness.get_by_role_and_label(Role::TextInput, "Tags of Gold");
-    field.set_text_value_accesskit("Jewel, warm");
-    harness.run_steps(2);
+    harness.write("Tags of Gold", "Jewel, warm");
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     search(&mut harness, "jewel");
@@ -67,10 +64,7 @@ fn favourites_come_first_tags_are_found_and_both_are_kept() {
     assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
     click(&mut harness, "More of Gold");
     click(&mut harness, "Tags…");
-    harness
-        .get_by_role_and_label(Role::TextInput, "Tags of Gold")
-        .set_text_value_accesskit("");
-    harness.run_steps(2);
+    harness.write("Tags of Gold", "");
     harness.key_press(Key::Enter);
     harness.run_steps(3);
     assert!(!has(&harness, "Gold"), "nothing is found by a tag that was taken away");
@@ -115,7 +109,7 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
     );
     click(&mut harness, &format!("Replace on all that use {name} (2)"));
     settle(&mut harness);
-    let materials = harness.state().document().materials.clone();
+    let materials = harness.document().materials.clone();
     for (slot, (now, before)) in std::iter::zip(&materials, &document.materials).enumerate() {
         match slot {
             0 | 2 => assert_eq!(now.name, "Ruby glass"),
@@ -123,7 +117,7 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
         }
     }
     undo(&mut harness);
-    assert_eq!(harness.state().document().materials, document.materials);
+    assert_eq!(harness.document().materials, document.materials);
     let redo = Action::Do(Command::Redo);
     request(&mut harness, redo);
     settle(&mut harness);
@@ -131,18 +125,16 @@ fn a_preset_shows_where_it_is_used_and_replaces_a_material_everywhere() {
     request(&mut harness, Action::SelectSlot(last));
     click(&mut harness, "More of Ruby glass");
     click(&mut harness, "Show where it is used (2)");
-    assert!(harness.query_by_label("2 materials are edited together.").is_some());
+    assert!(harness.has("2 materials are edited together."));
 }
 
 /// Chooses a folder by the path field.
 fn watch(harness: &mut Editor, folder: &Path) {
-    request(harness, Action::Do(Command::WatchFolder));
+    harness.command(Command::WatchFolder);
     see(harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(&folder.display().to_string());
-    harness.run_steps(2);
+    harness.write("Path", &folder.display().to_string());
     click(harness, "Watch");
 }
 
@@ -164,7 +156,7 @@ fn folders_are_watched_for_materials_and_environments() {
     let zinc = "Zinc (collected/metals/zinc.json)";
     see(&mut harness, "the material", |harness| has(harness, zinc));
     click(&mut harness, zinc);
-    assert_eq!(harness.state().document().materials[0], own);
+    assert_eq!(harness.document().materials[0], own);
     let dusk = "dusk.hdr (collected/dusk.hdr)";
     search(&mut harness, "dusk");
     assert!(has(&harness, dusk) && !has(&harness, zinc));

@@ -3,10 +3,11 @@
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
-use glossmith::app::actions::{Action, Command};
+use glossmith::app::actions::Command;
 use glossmith::app::layout::Pane;
 
-use super::ui::{Editor, editor, editor_of, options, request, see, see_label, settle, wait};
+use super::ui::{Editor, editor, editor_of, options, see, see_label, settle, wait};
+use super::ui_hands::Hands as _;
 
 /// Whether a text is shown anywhere.
 fn is_shown(harness: &Editor, part: &str) -> bool {
@@ -21,15 +22,12 @@ fn projects_are_saved_under_the_ending_of_their_kind() {
         ..options()
     });
     settle(&mut harness);
-    request(&mut harness, Action::Do(Command::SaveAs));
+    harness.command(Command::SaveAs);
     see(&mut harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
     let path = folder.path().join("proj").display().to_string();
-    harness
-        .get_by_role_and_label(Role::TextInput, "Path")
-        .set_text_value_accesskit(&path);
-    harness.run_steps(2);
+    harness.write("Path", &path);
     harness.get_by_role_and_label(Role::Button, "Save").click();
     let named = folder.path().join("proj.glossmith.json");
     wait(&mut harness, "the project", |_| named.is_file());
@@ -38,18 +36,15 @@ fn projects_are_saved_under_the_ending_of_their_kind() {
 #[test]
 fn hard_cases_stop_at_once_and_are_named_in_words() {
     let mut harness = editor();
-    harness.state_mut().reveal(Pane::Check);
-    harness.run_steps(4);
+    harness.reveal(Pane::Check);
     harness.get_by_label("Run the hard cases").click_accesskit();
     see_label(&mut harness, "roughness at its ends");
     assert!(!is_shown(&harness, "roughness-at-its-ends"));
-    harness.get_by_label("Stop").click_accesskit();
-    harness.run_steps(3);
+    harness.tap_label("Stop");
     // Whatever is being measured.
-    assert!(harness.query_by_label("Run the hard cases").is_some());
+    assert!(harness.has("Run the hard cases"));
     assert!(is_shown(&harness, "Stopped."));
     harness.get_by_label("Run the hard cases").click_accesskit();
     see_label(&mut harness, "Stop");
-    harness.get_by_label("Stop").click_accesskit();
-    harness.run_steps(2);
+    harness.tap_label("Stop");
 }

@@ -15,6 +15,7 @@ use serde_json::json;
 use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb, png, square};
 use super::ui::{Editor, editor, editor_with, picture, request, see, see_label, settle, undo, wait};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 #[derive(Debug)]
@@ -79,7 +80,7 @@ fn every_kind_of_file_can_be_dropped() {
         app.document().lighting.environment == of_light
     });
 
-    let mut material = harness.state().document().materials[0].clone();
+    let mut material = harness.document().materials[0].clone();
     (material.name, material.roughness) = ("Dropped".to_owned(), 0.77);
     let file = folder.path("dropped.json");
     save_material(&file, &material).unwrap();
@@ -136,7 +137,7 @@ fn what_another_program_saves_is_read_again_and_edits_stay() {
     (document.camera.yaw_deg, document.camera.pitch_deg) = (10.0, 5.0);
     let mut harness = editor_with(document, vec![path.clone()]);
     settle(&mut harness);
-    let (before, camera) = (picture(&harness), harness.state().document().camera);
+    let (before, camera) = (picture(&harness), harness.document().camera);
 
     // Another colour: nothing was edited, the material follows its file, the view stays.
     let mut green = red(0.9);
@@ -148,14 +149,12 @@ fn what_another_program_saves_is_read_again_and_edits_stay() {
     });
     settle(&mut harness);
     assert!(picture(&harness) != before);
-    assert_eq!(harness.state().document().camera, camera);
+    assert_eq!(harness.document().camera, camera);
 
     // What was edited here stays as it is.
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.123);
+    harness.set("Specular roughness", 0.123);
     settle(&mut harness);
-    let edited = harness.state().document().materials[0].clone();
+    let edited = harness.document().materials[0].clone();
     let model = |harness: &Editor| {
         let scene = harness.state().snapshot().scene.clone();
         scene.map(|scene| Arc::as_ptr(&scene.model).addr())
@@ -164,17 +163,17 @@ fn what_another_program_saves_is_read_again_and_edits_stay() {
     write_square(&path, &red(0.2));
     see(&mut harness, "the second time", |harness| model(harness) != before);
     settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0], edited);
+    assert_eq!(harness.document().materials[0], edited);
 
     // A file that is half written changes nothing but is told.
     let whole = std::fs::read(&path).unwrap();
-    let document = harness.state().document().clone();
+    let document = harness.document().clone();
     std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
     wait_for_words(&mut harness, "cut short");
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     settle(&mut harness);
     undo(&mut harness);
-    assert!(harness.state().document().materials[0] != edited);
+    assert!(harness.document().materials[0] != edited);
 }
 
 #[test]
@@ -195,15 +194,13 @@ fn damaged_files_are_named_and_change_nothing() {
         write("notes.txt", b"hello"),
     ];
     let mut harness = editor();
-    let (document, before) = (harness.state().document().clone(), picture(&harness));
+    let (document, before) = (harness.document().clone(), picture(&harness));
     for path in files {
         request(&mut harness, Action::Open(path.clone()));
         let name = path.display().to_string();
-        wait(&mut harness, "a message", |app| {
-            app.messages().iter().any(|text| text.contains(&name))
-        });
+        wait_for_words(&mut harness, &name);
     }
     settle(&mut harness);
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     assert_eq!(picture(&harness), before);
 }

@@ -1,16 +1,82 @@
-//! What hands do in many tests of the window.
+//! What hands do and eyes see in many tests of the window.
 
 use std::path::Path;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::document::Document;
 
-use super::ui::{Editor, see};
+use super::ui::{Editor, request, see};
+
+pub(super) trait Hands {
+    fn document(&self) -> &Document;
+    /// Whether a control or text has this label.
+    fn has(&self, label: &str) -> bool;
+    /// Brings a panel to the front.
+    fn reveal(&mut self, pane: Pane);
+    /// Clicks with the mouse.
+    fn click(&mut self, role: Role, label: &str);
+    /// Clicks as a screen reader does, also what is covered or scrolled away.
+    fn tap(&mut self, role: Role, label: &str);
+    fn tap_label(&mut self, label: &str);
+    /// Sets a number.
+    fn set(&mut self, label: &str, value: f64);
+    /// Writes into a field.
+    fn write(&mut self, label: &str, text: &str);
+    fn command(&mut self, command: Command);
+}
+
+impl Hands for Editor {
+    fn document(&self) -> &Document {
+        self.state().document()
+    }
+
+    fn has(&self, label: &str) -> bool {
+        self.query_by_label(label).is_some()
+    }
+
+    fn reveal(&mut self, pane: Pane) {
+        self.state_mut().reveal(pane);
+        self.run_steps(4);
+    }
+
+    fn click(&mut self, role: Role, label: &str) {
+        self.get_by_role_and_label(role, label).click();
+        self.run_steps(3);
+    }
+
+    fn tap(&mut self, role: Role, label: &str) {
+        self.get_by_role_and_label(role, label).click_accesskit();
+        self.run_steps(3);
+    }
+
+    fn tap_label(&mut self, label: &str) {
+        self.get_by_label(label).click_accesskit();
+        self.run_steps(3);
+    }
+
+    fn set(&mut self, label: &str, value: f64) {
+        self.get_by_role_and_label(Role::SpinButton, label)
+            .set_value_accesskit(value);
+        self.run_steps(2);
+    }
+
+    fn write(&mut self, label: &str, text: &str) {
+        let field = self.get_by_role_and_label(Role::TextInput, label);
+        field.set_text_value_accesskit(text);
+        self.run_steps(2);
+    }
+
+    fn command(&mut self, command: Command) {
+        request(self, Action::Do(command));
+    }
+}
 
 /// Presses a button.
 pub(super) fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
-    harness.run_steps(3);
+    harness.click(Role::Button, label);
 }
 
 /// Types a path where one is asked for, and presses the button behind it.
@@ -18,9 +84,7 @@ pub(super) fn type_path(harness: &mut Editor, path: &Path, button: &str) {
     see(harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(&path.display().to_string());
-    harness.run_steps(2);
+    harness.write("Path", &path.display().to_string());
     harness.get_by_role_and_label(Role::Button, button).click_accesskit();
     harness.run_steps(4);
 }

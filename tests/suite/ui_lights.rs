@@ -7,6 +7,7 @@ use glossmith::app::layout::Pane;
 use glossmith::document::{AreaLight, AreaLightShape, Document};
 
 use super::ui::{Editor, drag, editor_with, settle, undo};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// Lights in view of the camera, and the window with their list.
@@ -16,8 +17,7 @@ fn editor_lit_by(lights: &[AreaLight]) -> Editor {
     document.lighting.area_lights = lights.to_vec();
     let mut harness = editor_with(document, Vec::new());
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(4);
+    harness.reveal(Pane::Lighting);
     harness
 }
 
@@ -34,7 +34,7 @@ fn in_view() -> AreaLight {
 }
 
 fn document(harness: &Editor) -> &Document {
-    harness.state().document()
+    harness.document()
 }
 
 fn light(harness: &Editor) -> AreaLight {
@@ -46,8 +46,7 @@ fn place(harness: &Editor, label: &str) -> Pos2 {
 }
 
 fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_label(label).click_accesskit();
-    harness.run_steps(3);
+    harness.tap_label(label);
 }
 
 fn with_modifiers(harness: &mut Editor, modifiers: Modifiers, deed: impl FnOnce(&mut Editor)) {
@@ -103,10 +102,7 @@ fn each_handle_changes_its_number_in_one_step() {
         ..in_view()
     };
     let mut harness = editor_lit_by(&[spot]);
-    assert!(
-        harness.query_by_label("Turn handle of area light 1").is_none(),
-        "no light is chosen"
-    );
+    assert!(!harness.has("Turn handle of area light 1"), "no light is chosen");
     press(&mut harness, "Choose area light 1");
     let before = document(&harness).clone();
     let middle = place(&harness, "Move area light 1");
@@ -133,7 +129,7 @@ fn each_handle_changes_its_number_in_one_step() {
         assert_eq!(*document(&harness), before, "{handle}");
     }
     press(&mut harness, "Choose area light 1");
-    assert!(harness.query_by_label("Turn handle of area light 1").is_none());
+    assert!(!harness.has("Turn handle of area light 1"));
 }
 
 #[test]
@@ -178,9 +174,7 @@ fn power_is_the_strength_in_lumens_and_stays_as_it_was_set() {
     let before = document(&harness).clone();
     harness.run_steps(5);
     assert_eq!(*document(&harness), before, "showing it edits nothing");
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Scene unit")
-        .set_value_accesskit(0.01);
+    harness.set("Scene unit", 0.01);
     settle(&mut harness);
     assert_eq!(document(&harness).lighting, before.lighting);
     let shown = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");

@@ -9,6 +9,7 @@ use glossmith::render::shown::Shown;
 use glossmith::render::worker::Picture;
 
 use super::ui::{Editor, editor_with, picture, request, see, settle, wait};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// Where the picture is in the viewport, which it fits.
@@ -40,8 +41,7 @@ fn editor() -> Editor {
 
 fn inspecting() -> Editor {
     let mut harness = editor();
-    harness.state_mut().reveal(Pane::Inspector);
-    harness.run_steps(3);
+    harness.reveal(Pane::Inspector);
     wait(&mut harness, "what is known of pixels", |app| {
         app.snapshot()
             .picture
@@ -80,7 +80,7 @@ fn the_inspector_tells_of_the_pixel_under_the_pointer() {
     // The middle shows the model, the corner the background.
     assert!(says(&harness, "none: the background"));
     hover_pixel(&mut harness, [20, 12]);
-    let name = harness.state().document().materials[0].name.clone();
+    let name = harness.document().materials[0].name.clone();
     assert!(says(&harness, &name) && !says(&harness, "none: the background"));
     assert!(says(&harness, "Histogram of the image") && says(&harness, "Too bright for the screen"));
 }
@@ -95,8 +95,7 @@ fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
         .skip(1)
         .filter(|(map, ..)| *map != Shown::Precision)
     {
-        harness.get_by_role_and_label(Role::ComboBox, "Viewport shows").click();
-        harness.run_steps(2);
+        harness.click(Role::ComboBox, "Viewport shows");
         // Panels may have tabs of the same name, but not over the viewport.
         let over = harness.get_by_label("Viewport").rect().x_range();
         harness
@@ -141,12 +140,12 @@ fn wheel(harness: &mut Editor, at: Pos2, points: f32) {
 #[test]
 fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     let mut harness = inspecting();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     let whole = "Show the whole image";
     hover_pixel(&mut harness, [30, 16]);
     let at = place(&harness).min + Vec2::new(30.5, 16.5) * (place(&harness).width() / 40.0);
     wheel(&mut harness, at, 300.0);
-    assert!(harness.query_by_label(whole).is_some(), "it is not magnified");
+    assert!(harness.has(whole), "it is not magnified");
     assert!(
         says(&harness, "30, 16 of 40 × 24"),
         "what is under the pointer stays there"
@@ -169,10 +168,10 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     }
     button(&mut harness, to, false);
     assert!(says(&harness, "30, 16 of 40 × 24"), "it was not moved");
-    assert_eq!(*harness.state().document(), before, "the camera stays");
+    assert_eq!(*harness.document(), before, "the camera stays");
     harness.get_by_label(whole).click();
     harness.run_steps(3);
-    assert!(harness.query_by_label(whole).is_none());
+    assert!(!harness.has(whole));
     for (key, is_magnified) in [
         (Key::Plus, true),
         (Key::Plus, true),
@@ -181,12 +180,10 @@ fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
     ] {
         harness.key_press(key);
         harness.run_steps(3);
-        assert_eq!(harness.query_by_label(whole).is_some(), is_magnified, "{key:?}");
+        assert_eq!(harness.has(whole), is_magnified, "{key:?}");
     }
-    request(&mut harness, Action::Do(Command::ZoomIn));
+    harness.command(Command::ZoomIn);
     settle(&mut harness);
-    see(&mut harness, "the whole image's button", |harness| {
-        harness.query_by_label(whole).is_some()
-    });
-    assert_eq!(*harness.state().document(), before);
+    see(&mut harness, "the whole image's button", |harness| harness.has(whole));
+    assert_eq!(*harness.document(), before);
 }

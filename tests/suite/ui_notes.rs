@@ -10,7 +10,7 @@ use glossmith::app::library::Change;
 use glossmith::app::workspaces::LOOK;
 
 use super::ui::{Editor, editor_of, options, request, see, see_label, settle};
-use super::ui_hands::{press, type_path};
+use super::ui_hands::{Hands as _, press, type_path};
 use super::worker::small_document;
 
 /// A window of so many samples whose own files are in `folder`.
@@ -34,7 +34,7 @@ fn has(harness: &Editor, part: &str) -> bool {
 }
 
 fn save(harness: &mut Editor, command: Command, path: &Path, note: &str) {
-    request(harness, Action::Do(command));
+    harness.command(command);
     type_path(harness, path, "Save");
     see_label(harness, note);
 }
@@ -69,10 +69,10 @@ fn each_save_is_reported_over_the_viewport() {
         assert!(!has(&harness, note));
     }
     // Saved again without being asked for a name.
-    request(&mut harness, Action::Do(Command::Save));
+    harness.command(Command::Save);
     see_label(&mut harness, "Saved scene.json");
     close(&mut harness);
-    request(&mut harness, Action::Do(Command::CopyPicture));
+    harness.command(Command::CopyPicture);
     see_label(&mut harness, "Copied the image: 3 samples");
     close(&mut harness);
     request(&mut harness, Action::ChangeSnapshots(Change::Add));
@@ -83,14 +83,14 @@ fn each_save_is_reported_over_the_viewport() {
         has(harness, ".json: one of your presets")
     });
     close(&mut harness);
-    request(&mut harness, Action::Do(Command::Export));
+    harness.command(Command::Export);
     type_path(&mut harness, &path("out.mtlx"), "Save");
     see_label(&mut harness, "Write the file");
     harness.run_steps(3);
     press(&mut harness, "Write the file");
     see_label(&mut harness, "Exported out.mtlx");
     close(&mut harness);
-    request(&mut harness, Action::Do(Command::QueuePicture));
+    harness.command(Command::QueuePicture);
     type_path(&mut harness, &path("queued.png"), "Save");
     see(&mut harness, "the render", |harness| {
         has(harness, "queued.png: 3 samples")
@@ -117,7 +117,7 @@ fn a_screenshot_is_reported() {
 fn a_save_of_an_unfinished_image_offers_to_render_it() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut harness = editor(folder.path(), 60_000);
-    request(&mut harness, Action::Do(Command::Pause));
+    harness.command(Command::Pause);
     see(&mut harness, "the first image", |harness| {
         let snapshot = harness.state().snapshot();
         snapshot.activity == glossmith::render::worker::Activity::Paused && snapshot.picture.is_some()
@@ -138,7 +138,7 @@ fn a_save_of_an_unfinished_image_offers_to_render_it() {
         close(&mut harness);
         assert!(!has(&harness, RENDER));
     }
-    request(&mut harness, Action::Do(Command::CopyPicture));
+    harness.command(Command::CopyPicture);
     see(&mut harness, "the copy", |harness| has(harness, RENDER));
     harness.get_by_label_contains(RENDER).click();
     harness.run_steps(3);

@@ -12,6 +12,7 @@ use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::gltf_builder::Folder;
 use super::ui::{Editor, editor_with, picture, request, settle, undo};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// Two squares side by side, facing the camera, each an object with a material of its own.
@@ -56,8 +57,7 @@ fn two_squares(folder: &Folder) -> Document {
 fn opened(document: Document) -> Editor {
     let mut harness = editor_with(document, Vec::new());
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Scene);
-    harness.run_steps(3);
+    harness.reveal(Pane::Scene);
     harness
 }
 
@@ -66,8 +66,7 @@ fn button(harness: &Editor, label: &str) -> bool {
 }
 
 fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
-    harness.run_steps(3);
+    harness.tap(Role::Button, label);
 }
 
 /// Opens the menu of a line and presses an entry of it.
@@ -101,7 +100,7 @@ fn objects_are_hidden_isolated_and_shown_again() {
     let whole = picture(&harness);
     press(&mut harness, "Hide left");
     settle(&mut harness);
-    assert_eq!(harness.state().document().hidden_objects, [0]);
+    assert_eq!(harness.document().hidden_objects, [0]);
     let without = picture(&harness);
     // Only what was in the left half has changed.
     let differs = |half: usize| (0..whole.len()).any(|i| i % 40 / 20 == half && whole[i] != without[i]);
@@ -113,22 +112,22 @@ fn objects_are_hidden_isolated_and_shown_again() {
     assert_eq!(picture(&harness), whole);
     press_in_menu(&mut harness, "Object left", "Isolate");
     settle(&mut harness);
-    assert_eq!(harness.state().document().hidden_objects, [1]);
-    request(&mut harness, Action::Do(Command::ShowObjects));
+    assert_eq!(harness.document().hidden_objects, [1]);
+    harness.command(Command::ShowObjects);
     settle(&mut harness);
     assert_eq!(picture(&harness), whole);
     // Nothing at all is a picture, too.
     press(&mut harness, "Hide left");
     press(&mut harness, "Hide right");
     settle(&mut harness);
-    assert_eq!(harness.state().document().hidden_objects, [0, 1]);
+    assert_eq!(harness.document().hidden_objects, [0, 1]);
     for _ in 0..2 {
         undo(&mut harness);
     }
     assert_eq!(picture(&harness), whole);
     press(&mut harness, "Show ground");
     settle(&mut harness);
-    assert!(harness.state().document().ground);
+    assert!(harness.document().ground);
 }
 
 #[test]
@@ -141,7 +140,7 @@ fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    let document = harness.state().document().clone();
+    let document = harness.document().clone();
     let name = document.object_names.get(&0).expect("it was renamed").clone();
     assert!(name.contains("wing"), "{name}");
     assert!(button(&harness, &format!("Object {name}")) && button(&harness, &format!("Hide {name}")));
@@ -162,20 +161,17 @@ fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
 fn materials_chosen_together_are_edited_together() {
     let folder = Folder::new();
     let mut harness = opened(two_squares(&folder));
-    let before = harness.state().document().clone();
-    harness.get_by_role_and_label(Role::Button, "Material red").click();
-    harness.run_steps(2);
+    let before = harness.document().clone();
+    harness.click(Role::Button, "Material red");
     let green = harness
         .get_by_role_and_label(Role::Button, "Material green")
         .rect()
         .center();
     click_with(&mut harness, green, Modifiers::COMMAND);
-    assert!(harness.query_by_label("2 materials are edited together.").is_some());
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.77);
+    assert!(harness.has("2 materials are edited together."));
+    harness.set("Specular roughness", 0.77);
     settle(&mut harness);
-    let materials = harness.state().document().materials.clone();
+    let materials = harness.document().materials.clone();
     assert_eq!([materials[0].roughness, materials[1].roughness], [0.77; 2]);
     assert_eq!(
         [&materials[0].name, &materials[1].name],
@@ -183,15 +179,11 @@ fn materials_chosen_together_are_edited_together() {
         "names stay their own"
     );
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before, "in one step");
+    assert_eq!(*harness.document(), before, "in one step");
     // A preset goes to both as well.
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[3].clone())));
-    assert_eq!(
-        harness.state().document().materials,
-        [PRESETS[3].clone(), PRESETS[3].clone()]
-    );
+    assert_eq!(harness.document().materials, [PRESETS[3].clone(), PRESETS[3].clone()]);
     undo(&mut harness);
-    harness.get_by_role_and_label(Role::Button, "Material green").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("2 materials are edited together.").is_none());
+    harness.click(Role::Button, "Material green");
+    assert!(!harness.has("2 materials are edited together."));
 }

@@ -21,6 +21,7 @@ use super::textures::{four_texels, textured_square};
 use super::ui::{
     Editor, editor, editor_of, editor_with, options, picture, request, see, see_label, settle, undo, wait,
 };
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// A file with a square whose colour and roughness are pictures.
@@ -46,26 +47,23 @@ fn textures_have_rows_that_switch_them() {
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
     let mut harness = editor_with(document, vec![textured_file(&folder)]);
     settle(&mut harness);
-    assert!(
-        harness.query_by_label("Geometry normal texture").is_none(),
-        "it has no normals"
-    );
+    assert!(!harness.has("Geometry normal texture"), "it has no normals");
     let textured = picture(&harness);
     for label in ["Specular roughness texture", "Base colour texture"] {
         let switch = |harness: &mut Editor| {
             harness.get_by_role_and_label(Role::CheckBox, label).click_accesskit();
             settle(harness);
         };
-        let before = harness.state().document().clone();
+        let before = harness.document().clone();
         switch(&mut harness);
-        let uses = harness.state().document().materials[0].textures;
+        let uses = harness.document().materials[0].textures;
         assert_eq!(
             (uses[TextureTarget::BaseColor], uses[TextureTarget::Roughness]),
             (label != "Base colour texture", label == "Base colour texture")
         );
         assert!(picture(&harness) != textured, "{label}");
         undo(&mut harness);
-        assert_eq!(*harness.state().document(), before);
+        assert_eq!(*harness.document(), before);
         assert!(picture(&harness) == textured, "{label}: undo");
     }
 }
@@ -78,17 +76,15 @@ fn undo_stops_at_the_files_given_at_the_start() {
     write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
     let mut harness = editor_with(small_document(), vec![textured_file(&folder), light]);
     settle(&mut harness);
-    let start = harness.state().document().clone();
+    let start = harness.document().clone();
     assert!(matches!(start.model, ModelSource::File(_)), "{:?}", start.model);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.85);
+    harness.set("Specular roughness", 0.85);
     settle(&mut harness);
-    assert_ne!(*harness.state().document(), start);
+    assert_ne!(*harness.document(), start);
     for _ in 0..3 {
         undo(&mut harness);
     }
-    assert_eq!(*harness.state().document(), start);
+    assert_eq!(*harness.document(), start);
 }
 
 #[test]
@@ -101,12 +97,10 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
     std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
     let mut harness = editor();
     for (label, lobe) in [("GGX", Lobe::Ggx), ("Geometric", Lobe::Geometric)] {
-        harness.get_by_role_and_label(Role::Button, "File").click();
-        harness.run_steps(3);
+        harness.click(Role::Button, "File");
         harness.get_by_label_contains("Import glTF materials as").click();
         harness.run_steps(3);
-        harness.get_by_role_and_label(Role::RadioButton, label).click();
-        harness.run_steps(3);
+        harness.click(Role::RadioButton, label);
         harness.key_press(Key::Escape);
         harness.run_steps(2);
         request(&mut harness, Action::UseModel(ModelSource::Sphere));
@@ -117,24 +111,18 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
         wait(&mut harness, "the model", |app| {
             app.document().model == ModelSource::File(path.clone())
         });
-        assert_eq!(harness.state().document().materials[0].lobe, lobe);
+        assert_eq!(harness.document().materials[0].lobe, lobe);
     }
 }
 
 #[test]
 fn a_region_is_set_by_numbers() {
     let mut harness = editor();
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::CheckBox, "Render region")
-        .click_accesskit();
-    harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Region left")
-        .set_value_accesskit(40.0);
+    harness.reveal(Pane::Camera);
+    harness.tap(Role::CheckBox, "Render region");
+    harness.set("Region left", 40.0);
     settle(&mut harness);
-    assert_eq!(harness.state().document().render.region, Some([0.4, 0.25, 0.75, 0.75]));
+    assert_eq!(harness.document().render.region, Some([0.4, 0.25, 0.75, 0.75]));
 }
 
 #[test]
@@ -172,7 +160,7 @@ fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
     harness.run_steps(2);
     harness.check_accessibility();
     undo(&mut harness);
-    assert_eq!(harness.state().document().lighting.environment, EnvironmentSource::Sky);
+    assert_eq!(harness.document().lighting.environment, EnvironmentSource::Sky);
 }
 
 #[test]
@@ -191,40 +179,35 @@ fn the_palette_leads_to_parameters_and_panels() {
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0].roughness, 0.9);
+    assert_eq!(harness.document().materials[0].roughness, 0.9);
     for (words, key, value) in [
         ("specular lobe", Key::ArrowDown, Lobe::ALL[1]),
         ("specular lobe", Key::ArrowUp, Lobe::ALL[0]),
     ] {
-        request(&mut harness, Action::Do(Command::Palette));
+        harness.command(Command::Palette);
         harness.event(egui::Event::Text(words.to_owned()));
         harness.run_steps(2);
         harness.key_press(Key::Enter);
         harness.run_steps(4);
         harness.key_press(key);
         harness.run_steps(2);
-        assert_eq!(harness.state().document().materials[0].lobe, value);
+        assert_eq!(harness.document().materials[0].lobe, value);
     }
-    request(&mut harness, Action::Do(Command::Palette));
+    harness.command(Command::Palette);
     harness.event(egui::Event::Text("show samples".to_owned()));
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert!(
-        harness.query_by_label("Samples view angle").is_some(),
-        "the panel is in front"
-    );
+    assert!(harness.has("Samples view angle"), "the panel is in front");
 }
 
 /// Brings the curve's panel to the front and makes the curve a custom one, by the button or by the menu.
 fn make_custom(harness: &mut Editor, is_by_button: bool) {
-    harness.state_mut().reveal(Pane::Curve);
-    harness.run_steps(3);
+    harness.reveal(Pane::Curve);
     if is_by_button {
         harness.get_by_label("Edit as custom").click();
     } else {
-        harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
-        harness.run_steps(3);
+        harness.click(Role::ComboBox, "Curve shape");
         harness
             .get_by_role_and_label(Role::Button, Curve::Custom.label())
             .click();
@@ -236,13 +219,13 @@ fn make_custom(harness: &mut Editor, is_by_button: bool) {
 fn a_named_curve_becomes_a_custom_one_in_its_panel() {
     for is_by_button in [true, false] {
         let mut harness = editor();
-        let before = harness.state().document().clone();
+        let before = harness.document().clone();
         make_custom(&mut harness, is_by_button);
         settle(&mut harness);
-        assert_eq!(harness.state().document().materials[0].curve, Curve::Custom);
-        assert!(harness.query_by_label("Edit as custom").is_none());
+        assert_eq!(harness.document().materials[0].curve, Curve::Custom);
+        assert!(!harness.has("Edit as custom"));
         undo(&mut harness);
-        assert_eq!(*harness.state().document(), before);
+        assert_eq!(*harness.document(), before);
     }
 }
 
@@ -288,11 +271,10 @@ fn looking_at_a_panel_changes_nothing() {
     for is_high in [false, true] {
         let document = extreme_document(is_high);
         let mut harness = editor_with(document.clone(), Vec::new());
-        request(&mut harness, Action::Do(Command::Pause));
+        harness.command(Command::Pause);
         for pane in Pane::ALL {
-            harness.state_mut().reveal(pane);
-            harness.run_steps(3);
-            assert_eq!(*harness.state().document(), document, "{pane:?}, high: {is_high}");
+            harness.reveal(pane);
+            assert_eq!(*harness.document(), document, "{pane:?}, high: {is_high}");
         }
     }
 }
@@ -300,23 +282,18 @@ fn looking_at_a_panel_changes_nothing() {
 #[test]
 fn a_look_is_matched_used_and_undone() {
     let mut harness = editor();
-    harness.state_mut().reveal(Pane::Lobe);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Compare the lobe")
-        .click();
-    harness.run_steps(2);
-    harness.get_by_role_and_label(Role::Button, "GGX").click();
-    harness.run_steps(2);
+    harness.reveal(Pane::Lobe);
+    harness.click(Role::ComboBox, "Compare the lobe");
+    harness.click(Role::Button, "GGX");
     // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
     harness.get_by_label("Match look").click_accesskit();
     see_label(&mut harness, "Use it");
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     harness.get_by_label("Use it").click_accesskit();
     settle(&mut harness);
-    let material = &harness.state().document().materials[0];
+    let material = &harness.document().materials[0];
     assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
     assert_ne!(material.custom_curve, before.materials[0].custom_curve);
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
 }

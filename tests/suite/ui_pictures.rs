@@ -6,12 +6,13 @@ use std::path::Path;
 use egui::{Rect, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
-use glossmith::app::actions::{Action, Command};
+use glossmith::app::actions::Command;
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
 use glossmith::document::Document;
 
-use super::ui::{options, request, see_label, settle, wait};
+use super::ui::{options, see_label, settle, wait};
+use super::ui_hands::Hands as _;
 use super::ui_study::race_strategies;
 
 /// Drivers rasterise edges and blend text a little differently.
@@ -62,7 +63,7 @@ fn compare_but(harness: &mut Harness<'static, App>, name: &str, changing: &[Rect
             .threshold(COLOR_TOLERANCE)
             .max_failed_pixels(PIXELS_TOLERATED);
         image_snapshot_options(&window, format!("{name}-{theme}"), &options);
-        request(harness, Action::Do(Command::ToggleTheme));
+        harness.command(Command::ToggleTheme);
     }
 }
 
@@ -87,7 +88,7 @@ fn two_compared_beside_effects() {
     let mut harness = editor(options());
     harness.state_mut().reveal(Pane::Effects);
     harness.state_mut().reveal(Pane::Snapshots);
-    request(&mut harness, Action::Do(Command::Compare));
+    harness.command(Command::Compare);
     settle(&mut harness);
     // B's roughness is found, and then rendered with.
     let roughness = |document: &Document| document.materials[0].roughness;
@@ -115,8 +116,7 @@ fn the_race_beside_the_convergence() {
     let mut harness = editor(options());
     race_strategies(&mut harness, 0.02);
     see_label(&mut harness, "Run the race");
-    harness.state_mut().reveal(Pane::Convergence);
-    harness.run_steps(4);
+    harness.reveal(Pane::Convergence);
     let place = |label: &str| harness.get_by_label(label).rect();
     let (race, error) = (place("Time against bias"), place("Error against time"));
     let around = |chart: Rect| Rect::from_min_max(chart.min - Vec2::new(60.0, 0.0), chart.max + Vec2::new(10.0, 22.0));

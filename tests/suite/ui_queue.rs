@@ -8,9 +8,9 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 
-use super::ui::{Editor, editor, request, see, settle, wait};
-use super::ui_files::says;
-use super::ui_hands::{press, type_path};
+use super::ui::{Editor, editor, request, see, settle};
+use super::ui_files::{says, wait_for_words};
+use super::ui_hands::{Hands as _, press, type_path};
 
 fn set(harness: &mut Editor, label: &str, value: f64) {
     let field = harness.get_by_role_and_label(Role::SpinButton, label);
@@ -20,7 +20,7 @@ fn set(harness: &mut Editor, label: &str, value: f64) {
 
 /// Has a turn queued, of so many frames and samples, written as this.
 fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64; 2]) {
-    request(harness, Action::Do(Command::Turntable));
+    harness.command(Command::Turntable);
     // A sheet is first measured, then shown.
     harness.run_steps(2);
     harness.check_accessibility();
@@ -28,15 +28,9 @@ fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64
     set(harness, "Turntable samples", samples);
     set(harness, "Turntable width", 20.0);
     set(harness, "Turntable height", 16.0);
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Turntable form")
-        .click_accesskit();
-    harness.run_steps(2);
-    harness.get_by_label(form).click_accesskit();
-    harness.run_steps(2);
-    let field = harness.get_by_role_and_label(Role::TextInput, "Turntable output");
-    field.set_text_value_accesskit(&output.display().to_string());
-    harness.run_steps(2);
+    harness.tap(Role::ComboBox, "Turntable form");
+    harness.tap_label(form);
+    harness.write("Turntable output", &output.display().to_string());
     press(harness, "Add to the queue");
 }
 
@@ -46,17 +40,13 @@ fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
     let path = |name: &str| folder.path().join(name);
     let mut harness = editor();
     turn(&mut harness, "Images", &path("turn"), [3.0, 2.0]);
-    wait(&mut harness, "the frames", |app| {
-        app.messages().iter().any(|text| text.contains("turntable: 3 frames"))
-    });
+    wait_for_words(&mut harness, "turntable: 3 frames");
     assert_eq!(std::fs::read_dir(path("turn")).expect("made").count(), 3);
     let size = image::image_dimensions(path("turn/frame-0003.png")).expect("a picture");
     assert_eq!(size, (20, 16));
     // The ending follows what was chosen.
     turn(&mut harness, "Video (.mp4)", &path("film.gif"), [4.0, 2.0]);
-    wait(&mut harness, "the video", |app| {
-        app.messages().iter().any(|text| text.contains("film.mp4"))
-    });
+    wait_for_words(&mut harness, "film.mp4");
     let bytes = std::fs::read(path("film.mp4")).expect("the video");
     assert_eq!(&bytes[4..8], b"ftyp");
     harness.run_steps(2);
@@ -64,10 +54,10 @@ fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
     // What is below stays the control that it was.
     let below = harness.get_by_label("Remove film.mp4").accesskit_node().locate();
     press(&mut harness, "Remove turn");
-    assert!(harness.query_by_label("Remove turn").is_none());
+    assert!(!harness.has("Remove turn"));
     assert_eq!(harness.get_by_label("Remove film.mp4").accesskit_node().locate(), below);
     press(&mut harness, "Clear finished");
-    assert!(harness.query_by_label("Remove film.mp4").is_none());
+    assert!(!harness.has("Remove film.mp4"));
 }
 
 #[test]
@@ -77,11 +67,10 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     let mut harness = editor();
     request(&mut harness, Action::Reveal(Pane::Queue));
     harness.run_steps(2);
-    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
-    harness.run_steps(2);
+    harness.click(Role::CheckBox, "Pause the queue");
     turn(&mut harness, "Animation (.gif)", &path("long.gif"), [9000.0, 4000.0]);
     for name in ["first.png", "second.exr"] {
-        request(&mut harness, Action::Do(Command::QueuePicture));
+        harness.command(Command::QueuePicture);
         type_path(&mut harness, &path(name), "Save");
     }
     press(&mut harness, "Next second.exr");
@@ -90,14 +79,10 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     request(&mut harness, Action::LookFrom(90.0, 0.0));
     settle(&mut harness);
     harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
-    wait(&mut harness, "the picture", |app| {
-        app.messages()
-            .iter()
-            .any(|text| text.contains("second.exr: 3 samples per pixel"))
-    });
+    wait_for_words(&mut harness, "second.exr: 3 samples per pixel");
     assert!(!path("first.png").exists());
     see(&mut harness, "the turn under way", |harness| {
-        harness.query_by_label("Progress of long.gif").is_some()
+        harness.has("Progress of long.gif")
     });
     let close = |harness: &mut Editor| {
         let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
@@ -112,11 +97,9 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
     assert!(!close(&mut harness), "it asks first");
     harness.check_accessibility();
     press(&mut harness, "Keep rendering");
-    assert!(harness.query_by_label("Progress of long.gif").is_some());
+    assert!(harness.has("Progress of long.gif"));
     press(&mut harness, "Cancel long.gif");
-    wait(&mut harness, "its end", |app| {
-        app.messages().iter().any(|text| text.contains("turntable cancelled"))
-    });
+    wait_for_words(&mut harness, "turntable cancelled");
     assert!(!path("long.gif").exists(), "a video is whole or not there");
     assert!(!says(&harness, "internal error"));
 }
@@ -125,7 +108,7 @@ fn the_queue_is_paused_reordered_called_off_and_asked_about() {
 fn the_viewport_turns_until_escape_and_the_document_stays() {
     let mut harness = editor();
     settle(&mut harness);
-    let document = harness.state().document().clone();
+    let document = harness.document().clone();
     harness.key_press(Key::T);
     let yaw = |harness: &Editor| {
         let scene = harness.state().snapshot().scene.clone();
@@ -135,9 +118,9 @@ fn the_viewport_turns_until_escape_and_the_document_stays() {
         let before = yaw(&harness);
         see(&mut harness, "a turn", |harness| yaw(harness) != before);
     }
-    assert_eq!(*harness.state().document(), document);
+    assert_eq!(*harness.document(), document);
     // What is edited meanwhile is seen while it goes on.
-    request(&mut harness, Action::Do(Command::ResetMaterial));
+    harness.command(Command::ResetMaterial);
     let before = yaw(&harness);
     see(&mut harness, "a turn", |harness| yaw(harness) != before);
     harness.key_press_modifiers(Modifiers::NONE, Key::Escape);

@@ -10,11 +10,11 @@ use glossmith::job::effect::EffectId;
 use glossmith::scene::ModelSource;
 
 use super::ui::{Editor, editor, editor_of, options, picture, settle, undo};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
-    harness.get_by_role_and_label(Role::ComboBox, menu).click_accesskit();
-    harness.run_steps(2);
+    harness.tap(Role::ComboBox, menu);
     harness.get_by_role_and_label(Role::Button, item).click_accesskit();
     settle(harness);
 }
@@ -43,14 +43,10 @@ fn an_effect_is_switched_off_and_back() {
     });
     settle(&mut harness);
     let before = picture(&harness);
-    harness.state_mut().reveal(Pane::Effects);
-    harness.run_steps(2);
+    harness.reveal(Pane::Effects);
     choose(&mut harness, "Ground: auto, on or off", "off");
-    assert_eq!(
-        harness.state().document().render.effects.get(EffectId::Ground),
-        Switch::Off
-    );
-    assert!(harness.state().document().ground, "the document keeps its ground");
+    assert_eq!(harness.document().render.effects.get(EffectId::Ground), Switch::Off);
+    assert!(harness.document().ground, "the document keeps its ground");
     assert_ne!(picture(&harness), before);
     undo(&mut harness);
     assert_eq!(picture(&harness), before);
@@ -60,30 +56,26 @@ fn an_effect_is_switched_off_and_back() {
 fn a_click_says_what_is_sharp() {
     let mut harness = editor();
     let sharp = picture(&harness);
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Aperture")
-        .set_value_accesskit(0.3);
+    harness.reveal(Pane::Camera);
+    harness.set("Aperture", 0.3);
     settle(&mut harness);
     let at_target = picture(&harness);
     assert_ne!(at_target, sharp);
     let far = number(&harness, "Focus distance");
-    harness.get_by_label("Pick focus").click_accesskit();
-    harness.run_steps(2);
+    harness.tap_label("Pick focus");
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
     settle(&mut harness);
-    let near = harness.state().document().camera.focus_distance.expect("it was picked");
+    let near = harness.document().camera.focus_distance.expect("it was picked");
     assert!(near < far && near > 0.3 * far, "{near} of {far}");
     assert_ne!(picture(&harness), at_target);
     // Ctrl does the same without the button.
     undo(&mut harness);
-    assert_eq!(harness.state().document().camera.focus_distance, None);
+    assert_eq!(harness.document().camera.focus_distance, None);
     harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND));
     click_at(&mut harness, center);
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
-    assert_eq!(harness.state().document().camera.focus_distance, Some(near));
+    assert_eq!(harness.document().camera.focus_distance, Some(near));
 }
 
 /// A smooth dark ball in the dark, with two lights.
@@ -104,8 +96,7 @@ fn lit_ball() -> Editor {
         ..options()
     });
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(2);
+    harness.reveal(Pane::Lighting);
     harness
 }
 
@@ -114,17 +105,13 @@ fn a_click_puts_a_lights_highlight_there() {
     let mut harness = lit_ball();
     let brightness = |harness: &Editor| -> f32 { picture(harness).iter().map(|pixel| pixel[1]).sum() };
     let from_behind = brightness(&harness);
-    harness.get_by_label("Choose area light 2").click_accesskit();
-    harness.run_steps(2);
-    harness
-        .get_by_label("Place highlight of area light 2")
-        .click_accesskit();
-    harness.run_steps(2);
+    harness.tap_label("Choose area light 2");
+    harness.tap_label("Place highlight of area light 2");
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
     settle(&mut harness);
-    let lights = harness.state().document().lighting.area_lights.clone();
-    let camera = harness.state().document().camera;
+    let lights = harness.document().lighting.area_lights.clone();
+    let camera = harness.document().camera;
     assert_eq!(lights[0].yaw_deg, 150.0, "the other stays");
     // The middle of a ball mirrors the viewer.
     assert!(
@@ -138,22 +125,21 @@ fn a_click_puts_a_lights_highlight_there() {
     assert!(brightness(&harness) > from_behind, "it is seen");
     // The next click chooses again.
     click_at(&mut harness, center + Vec2::new(12.0, 0.0));
-    assert_eq!(harness.state().document().lighting.area_lights, lights);
+    assert_eq!(harness.document().lighting.area_lights, lights);
     undo(&mut harness);
-    assert_eq!(harness.state().document().lighting.area_lights[1].yaw_deg, 150.0);
+    assert_eq!(harness.document().lighting.area_lights[1].yaw_deg, 150.0);
 }
 
 #[test]
 fn lights_are_muted_soloed_and_warmed() {
     let mut harness = lit_ball();
     let muted = |harness: &Editor| -> Vec<bool> {
-        let lights = &harness.state().document().lighting.area_lights;
+        let lights = &harness.document().lighting.area_lights;
         lights.iter().map(|light| light.is_muted).collect()
     };
     let both = picture(&harness);
     let press = |harness: &mut Editor, label: &str| {
-        harness.get_by_label(label).click_accesskit();
-        harness.run_steps(2);
+        harness.tap_label(label);
         settle(harness);
         picture(harness)
     };
@@ -169,20 +155,17 @@ fn lights_are_muted_soloed_and_warmed() {
     let all = press(&mut harness, "Solo area light 1");
     assert_eq!(muted(&harness), [false, false]);
     assert_eq!(all, both);
-    harness.get_by_label("Choose area light 1").click_accesskit();
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Area light 1 temperature")
-        .set_value_accesskit(2700.0);
+    harness.tap_label("Choose area light 1");
+    harness.set("Area light 1 temperature", 2700.0);
     settle(&mut harness);
-    let [red, green, blue] = harness.state().document().lighting.area_lights[0].color;
+    let [red, green, blue] = harness.document().lighting.area_lights[0].color;
     assert!(
         red == 1.0 && green < 0.8 && blue < 0.4 && blue > 0.05,
         "{red} {green} {blue}"
     );
     assert!((number(&harness, "Area light 1 temperature") - 2700.0).abs() < 1.0);
     undo(&mut harness);
-    assert_eq!(harness.state().document().lighting.area_lights[0].color, [1.0; 3]);
+    assert_eq!(harness.document().lighting.area_lights[0].color, [1.0; 3]);
 }
 
 #[test]
@@ -194,8 +177,7 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
         ..options()
     });
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Samples);
-    harness.run_steps(2);
+    harness.reveal(Pane::Samples);
     let center = harness.get_by_label("Viewport").rect().center();
     click_at(&mut harness, center);
     assert!(
@@ -207,19 +189,18 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
 #[test]
 fn ctrl_shift_and_a_click_explain_the_pixel() {
     let mut harness = editor();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     let center = harness.get_by_label("Viewport").rect().center();
     harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND | Modifiers::SHIFT));
     click_at(&mut harness, center);
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     harness.run_steps(2);
-    assert!(harness.query_by_label("Path trace of this pixel").is_some());
+    assert!(harness.has("Path trace of this pixel"));
     let told = |text: &str| harness.query_by_label_contains(text).is_some();
     assert!(told("camera") && told("bounce 0") && told("contribution"));
-    assert_eq!(harness.state().document(), &before, "nothing is edited");
-    harness.get_by_label("Close").click_accesskit();
-    harness.run_steps(2);
-    assert!(harness.query_by_label("Path trace of this pixel").is_none());
+    assert_eq!(harness.document(), &before, "nothing is edited");
+    harness.tap_label("Close");
+    assert!(!harness.has("Path trace of this pixel"));
 }
 
 /// A panel is closed and opened by its tick in the menu *View*.
@@ -227,14 +208,11 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
 fn panels_are_closed_and_come_back() {
     let mut harness = editor();
     let toggle = |harness: &mut Editor| {
-        harness.get_by_role_and_label(Role::Button, "View").click();
-        harness.run_steps(2);
-        harness.get_by_role_and_label(Role::CheckBox, "Snapshots").click();
-        harness.run_steps(2);
+        harness.click(Role::Button, "View");
+        harness.click(Role::CheckBox, "Snapshots");
     };
     let is_there = |harness: &Editor| harness.query_by_label_contains("Pin a snapshot").is_some();
-    harness.state_mut().reveal(Pane::Snapshots);
-    harness.run_steps(2);
+    harness.reveal(Pane::Snapshots);
     assert!(is_there(&harness));
     toggle(&mut harness);
     assert!(!is_there(&harness));

@@ -13,18 +13,18 @@ use serde_json::Value as Json;
 use super::gltf_builder::Folder;
 use super::ui::{Editor, editor, request, see_label, wait};
 use super::ui_files::says;
+use super::ui_hands::Hands as _;
 
 const QUESTION: &str = "Read files from elsewhere?";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
-    harness.run_steps(3);
+    harness.tap(Role::Button, label);
 }
 
 fn asks(harness: &mut Editor) -> bool {
     harness.run_steps(3);
-    harness.query_by_label(QUESTION).is_some()
+    harness.has(QUESTION)
 }
 
 /// A model, and a folder two below it.
@@ -60,13 +60,13 @@ fn a_project_from_elsewhere_is_asked_about_once_and_ones_own_never() {
     let old = inner.join("old.json");
     std::fs::write(&old, text.to_string()).unwrap();
     let mut harness = editor();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     request(&mut harness, Action::Open(old.clone()));
     see_label(&mut harness, QUESTION);
     harness.check_accessibility();
     assert!(harness.query_all_by_label_contains("far.obj").count() > 0);
     press(&mut harness, "Deny");
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     assert!(says(&harness, "--allow-outside"));
     drop(harness);
     let mut harness = editor();
@@ -83,35 +83,4 @@ fn a_project_from_elsewhere_is_asked_about_once_and_ones_own_never() {
         app.document().model == document.model
     });
     assert!(!asks(&mut next) && !asks(&mut harness));
-}
-
-/// A window asks about what its own files name, and about nothing that others load beside it.
-#[test]
-fn a_window_asks_about_its_own_files_alone() {
-    let (folder, inner, _) = place();
-    std::fs::write(folder.path("far.mtl"), "newmtl m\n").unwrap();
-    let model = inner.join("m.obj");
-    std::fs::write(&model, format!("mtllib ../../far.mtl\n{TRIANGLE}")).unwrap();
-    let (mut harness, mut other) = (editor(), editor());
-    request(&mut harness, Action::Open(model.clone()));
-    let is_told = |app: &glossmith::app::App| app.messages().iter().any(|text| text.contains("far.mtl"));
-    // The frames of the other window come first.
-    for _ in 0..50 {
-        assert!(!asks(&mut other));
-    }
-    see_label(&mut harness, QUESTION);
-    assert!(is_told(harness.state()) && !is_told(other.state()));
-    press(&mut harness, "Deny");
-    // A graph that names a picture elsewhere is asked about as well.
-    std::fs::write(folder.path("far.png"), super::gltf_builder::png()).unwrap();
-    let graph = inner.join("m.mtlx");
-    let image = r#"<image name="i" type="color3"><input name="file" type="filename" value="../../far.png"/></image>"#;
-    let text = format!(
-        r#"<materialx version="1.39">{image}<standard_surface name="s" type="surfaceshader"><input name="base_color" type="color3" nodename="i"/></standard_surface></materialx>"#
-    );
-    std::fs::write(&graph, text).unwrap();
-    request(&mut harness, Action::Open(graph));
-    see_label(&mut harness, QUESTION);
-    assert!(harness.query_all_by_label_contains("far.png").count() > 0);
-    assert!(!asks(&mut other));
 }

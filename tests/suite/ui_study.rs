@@ -2,12 +2,13 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::actions::{Action, Command};
+use glossmith::app::actions::Command;
 use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
 use glossmith::scene::ModelSource;
 
-use super::ui::{Editor, editor_of, options, request, see, see_label, settle, undo, wait};
+use super::ui::{Editor, editor_of, options, see, see_label, settle, undo, wait};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 fn sphere() -> Document {
@@ -24,18 +25,12 @@ pub(super) fn race_strategies(harness: &mut Editor, seconds_each: f64) {
 
 /// Has the kinds race that are chosen, for so many seconds each, these chosen or not any more.
 fn race_kinds(harness: &mut Editor, changed: &[&str], seconds_each: f64) {
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(2);
+    harness.reveal(Pane::Race);
     for kind in changed {
-        harness.get_by_role_and_label(Role::CheckBox, kind).click_accesskit();
-        harness.run_steps(2);
+        harness.tap(Role::CheckBox, kind);
     }
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Time per technique")
-        .set_value_accesskit(seconds_each);
-    harness.run_steps(2);
-    harness.get_by_label("Run the race").click_accesskit();
-    harness.run_steps(2);
+    harness.set("Time per technique", seconds_each);
+    harness.tap_label("Run the race");
 }
 
 /// An editor whose sphere is rendered.
@@ -53,31 +48,22 @@ fn a_race_is_run_and_its_winner_taken() {
     let mut harness = sphere_editor();
     race_strategies(&mut harness, 0.05);
     see_label(&mut harness, "Use Light sampling only");
-    assert!(
-        harness.query_by_label("Time against bias").is_some(),
-        "the chart is shown"
-    );
-    assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
-    harness.get_by_label("Equal error").click_accesskit();
-    harness.run_steps(2);
+    assert!(harness.has("Time against bias"), "the chart is shown");
+    assert_eq!(harness.document().render.strategy, Strategy::Mis);
+    harness.tap_label("Equal error");
     harness.get_by_label("Use Light sampling only").click_accesskit();
     settle(&mut harness);
-    assert_eq!(harness.state().document().render.strategy, Strategy::Light);
+    assert_eq!(harness.document().render.strategy, Strategy::Light);
     undo(&mut harness);
-    assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
+    assert_eq!(harness.document().render.strategy, Strategy::Mis);
 }
 
 /// A window in which a race runs, so many seconds for each technique.
 fn racing(seconds: f64) -> Editor {
     let mut harness = sphere_editor();
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(2);
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Time per technique")
-        .set_value_accesskit(seconds);
-    harness.run_steps(2);
-    harness.get_by_label("Run the race").click_accesskit();
-    harness.run_steps(3);
+    harness.reveal(Pane::Race);
+    harness.set("Time per technique", seconds);
+    harness.tap_label("Run the race");
     harness
 }
 
@@ -94,12 +80,18 @@ fn a_race_can_be_stopped() {
 fn the_ledger_is_measured_on_demand() {
     let mut harness = sphere_editor();
     // The command shows the panel as well.
-    request(&mut harness, Action::Do(Command::Measure));
+    harness.command(Command::Measure);
     // Nothing else is measured meanwhile.
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(2);
+    harness.reveal(Pane::Race);
     assert!(harness.get_by_label("Run the race").accesskit_node().is_disabled());
     harness.state_mut().reveal(Pane::Effects);
+    if cfg!(not(feature = "thorough")) {
+        // It takes two seconds for each effect.
+        see_label(&mut harness, "Stop");
+        harness.get_by_label("Stop").click_accesskit();
+        see_label(&mut harness, "Stopped.");
+        return;
+    }
     see(&mut harness, "the ledger", |harness| {
         let line = "Schlick's Fresnel (instead of exact): ";
         harness.query_by_label_contains(line).is_some()

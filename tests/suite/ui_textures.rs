@@ -14,6 +14,7 @@ use image::{Rgba, RgbaImage};
 use super::gltf_builder::Folder;
 use super::ui::{Editor, editor_of, editor_with, options, picture, see_label, settle, undo, wait};
 use super::ui_files::{drop_on, says};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 /// The editor on a sphere, with paths typed into a field.
@@ -40,10 +41,7 @@ fn write(folder: &Folder, name: &str) -> std::path::PathBuf {
 }
 
 fn own(harness: &Editor, target: TextureTarget) -> Option<UserTexture> {
-    harness.state().document().materials[0]
-        .user_textures
-        .get(target)
-        .cloned()
+    harness.document().materials[0].user_textures.get(target).cloned()
 }
 
 fn click(harness: &mut Editor, role: Role, label: &str) {
@@ -57,12 +55,10 @@ fn a_texture_is_chosen_placed_and_removed() {
     let file = write(&folder, "any.png");
     let mut harness = on_a_sphere(&folder);
     let plain = picture(&harness);
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     click(&mut harness, Role::Button, "Texture of the base colour");
     see_label(&mut harness, "Choose a texture");
-    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
-    field.set_text_value_accesskit(file.to_str().unwrap());
-    harness.run_steps(2);
+    harness.write("Path", file.to_str().unwrap());
     click(&mut harness, Role::Button, "Open");
     wait(&mut harness, "the texture", |app| {
         app.document().materials[0]
@@ -107,7 +103,7 @@ fn a_texture_is_chosen_placed_and_removed() {
     undo(&mut harness);
     assert!(own(&harness, TextureTarget::BaseColor).is_some());
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
 }
 
 /// The pictures of a set go where their names say, in one edit; by files and by their folder.
@@ -122,7 +118,7 @@ fn a_set_is_dropped_at_once() {
     ];
     let files = names.map(|name| write(&folder, name));
     let mut harness = on_a_sphere(&folder);
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     for dropped in [files.to_vec(), vec![folder.path("wood")]] {
         drop_on(&mut harness, &dropped);
         settle(&mut harness);
@@ -136,7 +132,7 @@ fn a_set_is_dropped_at_once() {
             harness.state().messages()
         );
         undo(&mut harness);
-        assert_eq!(*harness.state().document(), before);
+        assert_eq!(*harness.document(), before);
     }
 }
 

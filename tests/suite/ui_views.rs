@@ -9,16 +9,17 @@ use glossmith::document::{AreaLight, CameraSettings};
 use glossmith::scene::camera::Projection;
 
 use super::ui::{Editor, editor, editor_of, editor_with, options, picture, see, settle, undo};
+use super::ui_hands::Hands as _;
 use super::worker::small_document;
 
 fn camera(harness: &Editor) -> CameraSettings {
-    harness.state().document().camera
+    harness.document().camera
 }
 
 #[test]
 fn keys_look_from_the_sides_in_parallel_rays() {
     let mut harness = editor();
-    let (before, shown) = (harness.state().document().clone(), picture(&harness));
+    let (before, shown) = (harness.document().clone(), picture(&harness));
     for (key, yaw_deg, pitch_deg) in [(Key::Num1, 0.0, 0.0), (Key::Num3, 90.0, 0.0), (Key::Num7, 0.0, 90.0)] {
         harness.key_press(key);
         settle(&mut harness);
@@ -33,12 +34,8 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     settle(&mut harness);
     assert_eq!(camera(&harness).projection, Projection::Perspective);
     // And by its row.
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(3);
-    harness
-        .get_by_role_and_label(Role::ComboBox, "Projection")
-        .click_accesskit();
-    harness.run_steps(3);
+    harness.reveal(Pane::Camera);
+    harness.tap(Role::ComboBox, "Projection");
     harness
         .get_by_role_and_label(Role::Button, "Orthographic")
         .click_accesskit();
@@ -47,7 +44,7 @@ fn keys_look_from_the_sides_in_parallel_rays() {
     for _ in 0..5 {
         undo(&mut harness);
     }
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     assert_eq!(picture(&harness), shown);
 }
 
@@ -65,24 +62,23 @@ fn lit() -> Editor {
     }];
     let mut harness = editor_with(document, Vec::new());
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Lighting);
-    harness.run_steps(4);
+    harness.reveal(Pane::Lighting);
     harness
 }
 
 #[test]
 fn a_light_is_hidden_from_the_camera_by_its_row() {
     let mut harness = lit();
-    let (before, shown) = (harness.state().document().clone(), picture(&harness));
+    let (before, shown) = (harness.document().clone(), picture(&harness));
     harness
         .get_by_role_and_label(Role::CheckBox, "Area light 1 hidden")
         .click_accesskit();
     settle(&mut harness);
-    assert!(harness.state().document().lighting.area_lights[0].is_hidden);
+    assert!(harness.document().lighting.area_lights[0].is_hidden);
     let brightest = |pixels: &[[f32; 4]]| pixels.iter().map(|pixel| pixel[1]).fold(0.0, f32::max);
     assert!(brightest(&shown) >= 5.0 && brightest(&picture(&harness)) < brightest(&shown));
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), before);
+    assert_eq!(*harness.document(), before);
     assert_eq!(picture(&harness), shown);
 }
 
@@ -99,17 +95,13 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
         ..options()
     });
     settle(&mut harness);
-    let (before, shown) = (harness.state().document().clone(), picture(&harness));
-    harness.state_mut().reveal(Pane::Camera);
-    harness.run_steps(4);
+    let (before, shown) = (harness.document().clone(), picture(&harness));
+    harness.reveal(Pane::Camera);
     harness.get_by_label("Reference image").click_accesskit();
     see(&mut harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
-    harness
-        .get_by_role_and_label(Role::TextInput, "Path")
-        .set_text_value_accesskit(&file.display().to_string());
-    harness.run_steps(2);
+    harness.write("Path", &file.display().to_string());
     harness.get_by_role_and_label(Role::Button, "Open").click();
     let named = |harness: &Editor, place: &str| {
         let name = format!("Reference image {place} the render");
@@ -120,10 +112,7 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
     });
     let viewport = harness.get_by_label("Viewport").rect();
     for (choice, place) in [("Over the render", "over"), ("Beside the render", "beside")] {
-        harness
-            .get_by_role_and_label(Role::ComboBox, "Place of the reference")
-            .click_accesskit();
-        harness.run_steps(3);
+        harness.tap(Role::ComboBox, "Place of the reference");
         harness.get_by_role_and_label(Role::Button, choice).click_accesskit();
         see(&mut harness, choice, |harness| named(harness, place).is_some());
     }
@@ -135,23 +124,14 @@ fn a_reference_picture_is_shown_under_over_and_beside_the_render() {
         now.width() < 0.51 * viewport.width() && beside.left() > now.right(),
         "{now:?} and {beside:?}"
     );
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Opacity of the reference")
-        .set_value_accesskit(0.5);
+    harness.set("Opacity of the reference", 0.5);
     settle(&mut harness);
-    let reference = harness
-        .state()
-        .document()
-        .view
-        .reference
-        .clone()
-        .expect("it was chosen");
+    let reference = harness.document().view.reference.clone().expect("it was chosen");
     assert_eq!((reference.file, reference.opacity), (file, 0.5));
     assert_eq!(picture(&harness), shown, "it is no part of the render");
-    harness.get_by_label("Remove the reference image").click_accesskit();
-    harness.run_steps(3);
-    assert_eq!(*harness.state().document(), before);
+    harness.tap_label("Remove the reference image");
+    assert_eq!(*harness.document(), before);
     assert_eq!(harness.get_by_label("Viewport").rect(), viewport);
     undo(&mut harness);
-    assert!(harness.state().document().view.reference.is_some());
+    assert!(harness.document().view.reference.is_some());
 }

@@ -12,6 +12,7 @@ use glossmith::store::examples::still_life;
 use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, settle, undo, wait};
+use super::ui_hands::Hands as _;
 
 /// An editor as a user starts it.
 fn at_first() -> Editor {
@@ -31,15 +32,14 @@ fn has(harness: &Editor, label: &str) -> bool {
 }
 
 fn use_workspace(harness: &mut Editor, name: &str) {
-    harness.get_by_label(&format!("Workspace {name}")).click_accesskit();
-    harness.run_steps(3);
+    harness.tap_label(&format!("Workspace {name}"));
 }
 
 /// Nothing of errors and costs is in sight at the start; one click brings all of it, and one takes it away.
 #[test]
 fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     let mut harness = at_first();
-    let before = harness.state().document().clone();
+    let before = harness.document().clone();
     for pane in [Pane::Convergence, Pane::Race, Pane::Effects, Pane::Check, Pane::Samples] {
         assert!(
             harness.query_all_by_label(pane.title()).next().is_none(),
@@ -49,7 +49,7 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     for told in ["samples/s", "error ", " %", "window "] {
         assert!(!has(&harness, told), "{told:?} at the start");
     }
-    assert!(harness.query_by_label("Specular roughness").is_some(), "the material");
+    assert!(harness.has("Specular roughness"), "the material");
     use_workspace(&mut harness, MEASURE);
     assert!(has(&harness, "samples/s"), "the status bar tells numbers");
     for pane in [Pane::Convergence, Pane::Race, Pane::Inspector] {
@@ -57,26 +57,23 @@ fn the_window_begins_with_looks_and_measures_where_that_is_asked_for() {
     }
     use_workspace(&mut harness, LOOK);
     assert!(!has(&harness, "samples/s"));
-    assert_eq!(*harness.state().document(), before, "workspaces are no edit");
+    assert_eq!(*harness.document(), before, "workspaces are no edit");
 }
 
 /// A workspace of the user's is saved under a name from the menu, shown again, and removed.
 #[test]
 fn a_workspace_of_ones_own_is_saved_and_removed() {
     let mut harness = at_first();
-    harness.state_mut().reveal(Pane::Log);
-    harness.run_steps(2);
-    harness.get_by_label("Workspaces").click_accesskit();
-    harness.run_steps(2);
+    harness.reveal(Pane::Log);
+    harness.tap_label("Workspaces");
     harness.get_by_role_and_label(Role::TextInput, "Workspace name").focus();
     harness.run_steps(2);
     harness
         .get_by_role_and_label(Role::TextInput, "Workspace name")
         .type_text("Shots");
     harness.run_steps(2);
-    harness.get_by_label("Save workspace").click_accesskit();
-    harness.run_steps(3);
-    assert!(harness.query_by_label("Workspace Shots").is_some(), "it is shown");
+    harness.tap_label("Save workspace");
+    assert!(harness.has("Workspace Shots"), "it is shown");
     use_workspace(&mut harness, LOOK);
     assert!(harness.query_all_by_label(Pane::Log.title()).next().is_none());
     request(&mut harness, Action::ChangeWorkspaces(Change::Use("Shots".to_owned())));
@@ -85,8 +82,8 @@ fn a_workspace_of_ones_own_is_saved_and_removed() {
         &mut harness,
         Action::ChangeWorkspaces(Change::Remove("Shots".to_owned())),
     );
-    assert!(harness.query_by_label("Workspace Shots").is_none());
-    assert!(harness.query_by_label("Workspace Look").is_some());
+    assert!(!harness.has("Workspace Shots"));
+    assert!(harness.has("Workspace Look"));
 }
 
 /// The start and *New* show the still life; it is a project like any other, and its parts are objects.
@@ -110,7 +107,7 @@ fn the_start_and_new_show_the_still_life() {
     save_document(&path, &first).expect("a temporary file");
     assert_eq!(load_document(&path).expect("a project").value, first);
     // A way to one's own model is in sight, until there is one.
-    assert!(harness.query_by_label("Open your model…").is_some());
+    assert!(harness.has("Open your model…"));
     request(&mut harness, Action::UseModel(ModelSource::Sphere));
     wait(&mut harness, "another model", |app| {
         app.document().model == ModelSource::Sphere
@@ -119,17 +116,17 @@ fn the_start_and_new_show_the_still_life() {
     wait(&mut harness, "the still life", |app| {
         app.document().model == ModelSource::StillLife
     });
-    assert_eq!(harness.state().document().materials, first.materials);
+    assert_eq!(harness.document().materials, first.materials);
 }
 
 /// C shows what the material was before the last change, until something else is chosen to compare with.
 #[test]
 fn comparing_begins_with_what_one_had() {
     let mut harness = at_first();
-    let before = harness.state().document().materials.clone();
+    let before = harness.document().materials.clone();
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[5].clone())));
     settle(&mut harness);
-    request(&mut harness, Action::Do(Command::Compare));
+    harness.command(Command::Compare);
     wait(&mut harness, "B", |app| {
         app.rival_snapshot().is_some_and(|rival| rival.picture.is_some())
     });
@@ -147,7 +144,7 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
         .expect("it is shipped");
     request(&mut harness, Action::UseMaterial(Box::new(gold.clone())));
     harness.run_steps(3);
-    let material = |harness: &Editor| harness.state().document().materials[0].clone();
+    let material = |harness: &Editor| harness.document().materials[0].clone();
     let before = material(&harness);
     harness.get_by_label("Edit as colours").click_accesskit();
     settle(&mut harness);
@@ -158,12 +155,8 @@ fn a_metal_is_edited_by_colours_or_as_measured() {
         "{:?}",
         colored.base_color
     );
-    assert!(
-        harness.query_by_label("Specular edge tint").is_some(),
-        "the second colour"
-    );
-    harness.get_by_label("Measured metal…").click_accesskit();
-    harness.run_steps(3);
+    assert!(harness.has("Specular edge tint"), "the second colour");
+    harness.tap_label("Measured metal…");
     harness.get_by_role_and_label(Role::Button, "copper").click_accesskit();
     settle(&mut harness);
     assert_ne!(material(&harness), colored);

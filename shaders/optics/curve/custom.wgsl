@@ -1,9 +1,6 @@
 // D(xi) and h(D) of a custom curve, whose table starts at number `table`. An interval has four numbers: distribution and
 // density at its start, density at its end, and D's maximum. Twin of src/optics/curve/custom.rs.
-#import "optics/numeric"
 #import "scene/layout"
-
-const CUSTOM_INTERVALS: u32 = 64u;
 
 fn custom_distance(table: u32, xi: f32) -> f32 {
     // Six halvings of 64 intervals; `low` counts those that end below xi.

@@ -4,10 +4,6 @@ fn linear_distance(table: u32, xi: f32) -> f32 {
     return xi;
 }
 
-fn linear_distance_max(table: u32) -> f32 {
-    return 1.0;
-}
-
 fn linear_h(table: u32, distance: f32) -> f32 {
     return 1.0 / max(distance, 1e-12);
 }

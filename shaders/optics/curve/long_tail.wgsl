@@ -1,17 +1,12 @@
 // D(xi) and h(D). Twin of src/optics/curve/long_tail.rs.
+#import "scene/constants"
 #import "optics/numeric"
-
-const LONG_TAIL_MAX: f32 = 17.32868;
 
 fn long_tail_distance(table: u32, xi: f32) -> f32 {
     // 1 - sqrt(xi) = (1 - xi)/(1 + sqrt(xi)): stays above zero for the largest number below 1.
     let root = sqrt(xi);
     let complement = max((1.0 - xi) / (1.0 + root), 2.9802322e-8);
     return select(-log(complement), -log1p(-root), root < 0.5);
-}
-
-fn long_tail_distance_max(table: u32) -> f32 {
-    return LONG_TAIL_MAX;
 }
 
 fn long_tail_h(table: u32, distance: f32) -> f32 {

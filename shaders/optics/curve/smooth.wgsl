@@ -7,10 +7,6 @@ fn smooth_distance(table: u32, xi: f32) -> f32 {
     return root / (1.0 + safe_sqrt(1.0 - root));
 }
 
-fn smooth_distance_max(table: u32) -> f32 {
-    return 1.0;
-}
-
 fn smooth_h(table: u32, distance: f32) -> f32 {
     return 4.0 * (2.0 - distance) * max(1.0 - distance, 0.0);
 }

@@ -4,10 +4,6 @@ fn sqrt_distance(table: u32, xi: f32) -> f32 {
     return sqrt(xi);
 }
 
-fn sqrt_distance_max(table: u32) -> f32 {
-    return 1.0;
-}
-
 fn sqrt_h(table: u32, distance: f32) -> f32 {
     return 2.0;
 }

@@ -1,19 +1,6 @@
 // The diffuse base. Twin of src/optics/layer/base.rs.
 #import "optics/layer/registry"
-#import "optics/material"
 #import "optics/rough_diffuse"
-#import "optics/warp"
-
-// Rounding of a squared sine at the edge of the cone.
-const BASE_EDGE: f32 = 1.00001;
-
-fn base_is_there(material: Material, surface: Surface) -> bool {
-    return material_has_base(material);
-}
-
-fn base_lobe(material: Material, surface: Surface) -> LayerLobe {
-    return LayerLobe(base_shape(), surface.frame);
-}
 
 fn base_shape() -> LobeShape {
     return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
@@ -21,15 +8,15 @@ fn base_shape() -> LobeShape {
 
 fn base_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
     var reflected = material.base_color * (left * (1.0 - material.metalness));
-    if PLAN_TRANSMISSION == 1u {
+    if PLAN_TRANSMISSION {
         reflected *= 1.0 - material.transmission_weight;
     }
     return reflected;
 }
 
-fn base_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
+fn base_toward(material: Material, layers: Layers, surface: Surface, wi: vec3f) -> LayerToward {
     var color = layers.base.albedo;
-    if PLAN_DIFFUSE_ROUGHNESS == 1u && material.diffuse_roughness > 0.0
+    if PLAN_DIFFUSE_ROUGHNESS && material.diffuse_roughness > 0.0
         && !is_within(material, surface) {
         let cosines = vec2f(dot(surface.frame.normal, surface.wo), dot(surface.frame.normal, wi));
         color *= rough_diffuse(material.base_color, material.diffuse_roughness, cosines, dot(surface.wo, wi));
@@ -71,7 +58,7 @@ fn base_refined(material: Material, surface: Surface, wi: vec3f, evaluated: vec2
 
 // The sine of the widest angle to which the base scatters: 1 but from within.
 fn base_spread(material: Material, surface: Surface) -> f32 {
-    if PLAN_TRANSMISSION == 0u {
+    if !PLAN_TRANSMISSION {
         return 1.0;
     }
     return select(1.0, material_ior_ahead(material, true), is_within(material, surface));

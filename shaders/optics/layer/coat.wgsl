@@ -1,49 +1,41 @@
 // A clear dielectric coat over everything else. Twin of src/optics/layer/coat.rs.
-#import "optics/albedo"
 #import "optics/coat_medium"
 #import "optics/layer/registry"
-#import "optics/material"
-
-const INNER_MAX: f32 = 0.9999;
 
 fn coat_is_there(material: Material, surface: Surface) -> bool {
-    return PLAN_COAT == 1u && material.coat_weight > 0.0 && !is_within(material, surface);
+    return PLAN_COAT && material.coat_weight > 0.0 && !is_within(material, surface);
 }
 
-fn coat_lobe(material: Material, surface: Surface) -> LayerLobe {
+fn coat_lobe(material: Material, layers: Layers, surface: Surface) -> LayerLobe {
     var frame = frame_from_normal(surface.coat_normal);
-    if PLAN_ANISOTROPY == 1u && material.coat_anisotropy != 0.0 {
+    if PLAN_ANISOTROPY && material.coat_anisotropy != 0.0 {
         frame = frame_from_tangent(surface.coat_normal, surface.frame.tangent, 0.0);
     }
-    return LayerLobe(coat_shape(material), frame);
+    return LayerLobe(coat_is_there(material, surface), coat_shape(material), frame, layers.coat);
 }
 
 fn coat_shape(material: Material) -> LobeShape {
-    let is_ggx = PLAN_COAT_GGX == 1u && has_flag(material, COAT_IS_GGX);
+    let is_ggx = PLAN_COAT_GGX && has_flag(material, COAT_IS_GGX);
     return LobeShape(
         select(LOBE_GEOMETRIC, LOBE_GGX, is_ggx), CURVE_SMOOTH, HORIZON_MIRROR, 0u, material.coat_roughness,
-        select(0.0, material.coat_anisotropy, PLAN_ANISOTROPY == 1u), 0.0,
+        select(0.0, material.coat_anisotropy, PLAN_ANISOTROPY), 0.0,
     );
 }
 
 fn coat_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     let cosine = dot(surface.coat_normal, surface.wo);
     var share = material.coat_weight;
-    if PLAN_COAT_TEXTURES == 1u && material.coat_roughness_texture != NO_TEXTURE {
+    if PLAN_COAT_TEXTURES && material.coat_roughness_texture != NO_TEXTURE {
         share *= rough_albedo_lookup(material.coat_table, cosine, material.coat_roughness).x;
     } else {
         share *= albedo_lookup(material.coat_table, cosine).x;
     }
     let color = select(material.coat_color, vec3f(1.0), has_flag(material, COATS_BASE));
     var transmittance = mix(vec3f(1.0), color, material.coat_weight) * max(1.0 - share, 0.0);
-    if PLAN_COAT_DARKENING == 1u && material.coat_darkening > 0.0 {
+    if PLAN_COAT_DARKENING && material.coat_darkening > 0.0 {
         transmittance *= darkened(material, surface, cosine);
     }
     return LayerAlbedo(vec3f(share), transmittance);
-}
-
-fn coat_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
-    return LayerToward(vec3f(1.0), layers.coat.probability);
 }
 
 fn coat_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
@@ -62,17 +54,17 @@ fn coat_fresnel(material: Material, wo: vec3f, wi: vec3f) -> f32 {
 fn darkened(material: Material, surface: Surface, cosine: f32) -> vec3f {
     let terms = material_fresnel_terms(material, surface.is_inside);
     let dielectric = fresnel(of_dielectric(terms), 1.0);
-    var deeper = select(vec3f(0.0), material.base_color, PLAN_BASE == 1u);
-    if PLAN_TRANSMISSION == 1u {
+    var deeper = select(vec3f(), material.base_color, PLAN_BASE);
+    if PLAN_TRANSMISSION {
         deeper = mix(deeper, material.transmission_tint, material.transmission_weight);
     }
-    let base = fresnel(terms, 1.0) + (vec3f(1.0) - dielectric) * deeper * (1.0 - material.metalness);
+    let base = fresnel(terms, 1.0) + (1.0 - dielectric) * deeper * (1.0 - material.metalness);
     let rough = material.ggx_roughness;
     let of_gloss = mix(1.0, rough, min(luminance(dielectric), 1.0));
     let spread = mix(of_gloss, rough, material.metalness);
     let smooth_share = fresnel_dielectric(cosine, material.coat_ior);
     let inner = min(mix(smooth_share, material.coat_inner, spread), INNER_MAX);
-    let kept = vec3f(1.0 - inner) / (vec3f(1.0) - min(base, vec3f(1.0)) * inner);
+    let kept = vec3f(1.0 - inner) / (1.0 - min(base, vec3f(1.0)) * inner);
     return mix(vec3f(1.0), kept, material.coat_weight * material.coat_darkening);
 }
 

@@ -3,19 +3,16 @@
 
 fn material_density(material: Material, surface: Surface, layers: Layers, wi: vec3f) -> f32 {
     var density = 0.0;
-    for (var place = 0u; place < planned_layers(); place++) {
+    for (var place = 0u; place < countOneBits(planned_layers()); place++) {
         let layer = planned_layer(place);
-        if !layer_is_there(layer, material, surface) {
-            continue;
-        }
-        let lobe = layer_lobe(layer, material, surface);
-        if is_mirror(lobe.shape) {
+        let lobe = layer_lobe(layer, material, layers, surface);
+        if !lobe.is_there || is_mirror(lobe.shape) {
             continue;
         }
         let toward = layer_toward(layer, material, layers, surface, lobe.shape, wi);
         let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
         let evaluated = layer_refined(layer, material, surface, wi, of_lobe);
-        density += layer_share(layer, layers).reached * toward.probability * evaluated.y;
+        density += lobe.share.reached * toward.probability * evaluated.y;
     }
     return density;
 }

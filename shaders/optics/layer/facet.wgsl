@@ -1,7 +1,5 @@
 // Sharing of a direction between the specular and the refracting lobe. Twin of src/optics/layer/facet.rs.
-#import "optics/fresnel"
 #import "optics/material"
-#import "optics/numeric"
 
 fn passes_on(material: Material) -> bool {
     return material_transmits(material) && weighs_one(planned(material.lobe, PLAN_LOBE));
@@ -25,7 +23,7 @@ fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f 
     let terms = material_fresnel_terms(material, surface.is_inside);
     var behind = cosines.y;
     // Under a coat the reflection has another index than the refraction.
-    if PLAN_COAT == 1u && terms.ior != material_ior_ahead(material, surface.is_inside) {
+    if PLAN_COAT && terms.ior != material_ior_ahead(material, surface.is_inside) {
         behind = safe_sqrt(refracted_square(cosines.x, terms.ior)) / terms.ior;
     }
     let left = fresnel_left(terms, cosines.x, behind);

@@ -1,23 +1,13 @@
 // A layer of small fibres over everything else. Twin of src/optics/layer/fuzz.rs.
 #import "optics/layer/registry"
-#import "optics/material"
-#import "optics/warp"
 
 fn fuzz_is_there(material: Material, surface: Surface) -> bool {
-    return PLAN_FUZZ == 1u && material.fuzz_weight > 0.0 && !is_within(material, surface);
-}
-
-fn fuzz_lobe(material: Material, surface: Surface) -> LayerLobe {
-    return LayerLobe(base_shape(), surface.frame);
+    return PLAN_FUZZ && material.fuzz_weight > 0.0 && !is_within(material, surface);
 }
 
 fn fuzz_albedo(material: Material, surface: Surface) -> LayerAlbedo {
     let share = material.fuzz_weight * fuzz_reflectance(material, dot(surface.frame.normal, surface.wo));
     return LayerAlbedo(material.fuzz_color * share, vec3f(1.0 - share));
-}
-
-fn fuzz_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
-    return LayerToward(layers.fuzz.albedo, layers.fuzz.probability);
 }
 
 fn fuzz_refined_sample(material: Material, surface: Surface, xi: vec3f, drawn: LobeSample) -> LobeSample {
@@ -45,7 +35,7 @@ fn fuzz_frame(surface: Surface) -> Frame {
 
 // What the matrix stretches the tangent plane by, and what it adds of the height along the view.
 fn fuzz_matrix(material: Material, cosine: f32) -> vec2f {
-    let x = clamp(cosine, 0.0, 1.0);
+    let x = saturate(cosine);
     let y = material.fuzz_roughness;
     let stretch = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x * x + 2.60994 * x * y);
     let divisor = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y;
@@ -63,7 +53,7 @@ fn fuzz_reflectance(material: Material, cosine: f32) -> f32 {
     let middle = y * (-0.193854 + y * (-1.14885 + y * (1.7932 - 0.95943 * y * y))) / (0.046391 + y);
     let width = y * (0.0206607 + 1.58491 * y) / (0.0379424 + y * (1.32227 + y));
     let floor_y = y * (0.000654023 + (-0.0207818 + 0.119681 * y) * y) / (1.26264 + y * (-1.92021 + y));
-    let off = (clamp(cosine, 0.0, 1.0) - middle) / width;
+    let off = (saturate(cosine) - middle) / width;
     let bell = exp(-0.5 * off * off) / (width * sqrt(2.0 * PI));
-    return clamp(bell + floor_y, 0.0, 1.0);
+    return saturate(bell + floor_y);
 }

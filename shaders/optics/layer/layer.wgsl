@@ -1,12 +1,5 @@
 // Common part of the layers. Twin of src/optics/layer/mod.rs, which explains it, and of src/optics/layer/shares.rs.
-#import "optics/lobe/registry"
 #import "optics/material"
-#import "optics/numeric"
-
-struct LayerLobe {
-    shape: LobeShape,
-    frame: Frame,
-}
 
 struct LayerAlbedo {
     reflected: vec3f,
@@ -25,9 +18,17 @@ struct LayerShare {
     reached: f32,
 }
 
-// A layer that is chosen, and the number that chose it, stretched again.
+// A layer at a surface point: its lobe, and its share of the view.
+struct LayerLobe {
+    is_there: bool,
+    shape: LobeShape,
+    frame: Frame,
+    share: LayerShare,
+}
+
+// The place of a layer that is chosen, and the number that chose it, stretched again.
 struct LayerChoice {
-    layer: u32,
+    place: u32,
     number: f32,
 }
 
@@ -41,9 +42,4 @@ fn cover_choose(albedo: vec3f, below: f32) -> vec2f {
 fn cover_probability(reflected: f32, rest: f32) -> f32 {
     let probability = sampled_share(reflected / max(reflected + rest, 1e-9));
     return select(0.0, select(1.0, probability, rest > 0.0), reflected > 0.0);
-}
-
-// The lobe where no layer is planned.
-fn no_lobe(surface: Surface) -> LayerLobe {
-    return LayerLobe(LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0), surface.frame);
 }

@@ -1,7 +1,6 @@
 // Light that a material reflects, and directions drawn from it: one loop over its layers for both. Twin of
 // src/optics/layer/evaluate.rs and src/optics/layer/sample.rs.
 #import "optics/layer/registry"
-#import "optics/warp"
 
 struct MaterialSample {
     wi: vec3f,
@@ -32,8 +31,8 @@ struct MaterialScatter {
 // Steps at a surface point, as a range: each planned layer weights the light (if `evaluates`), then a direction is sampled
 // (if `draws`), and once more if the first layer passed it on.
 fn material_steps(evaluates: bool, draws: bool) -> vec2u {
-    let first_draw = planned_layers();
-    return vec2u(select(first_draw, 0u, evaluates), first_draw + select(0u, 1u + PLAN_TRANSMISSION, draws));
+    let first_draw = countOneBits(planned_layers());
+    return vec2u(select(first_draw, 0u, evaluates), first_draw + select(0u, 1u + u32(PLAN_TRANSMISSION), draws));
 }
 
 fn material_sample(
@@ -64,25 +63,22 @@ fn material_scatter(
     var first = 0u;
     var is_apart = false;
     var drawn = MaterialSample();
-    var reflected = vec3f(0.0);
+    var reflected = vec3f();
     for (var step = steps.x; step < steps.y; step++) {
-        let draws = step >= planned_layers();
-        var layer = planned_layer(step);
+        let draws = step >= countOneBits(planned_layers());
+        var place = step;
         if draws {
             let choice = layer_choice(material, layers, first, number);
-            layer = choice.layer;
-            if layer == LAYERS {
+            place = choice.place;
+            if place >= countOneBits(planned_layers()) {
                 break;
             }
-            if !is_apart {
-                xi.x = choice.number;
-            }
-        } else if !layer_is_there(layer, material, surface) {
-            continue;
+            xi.x = select(choice.number, xi.x, is_apart);
         }
-        let lobe = layer_lobe(layer, material, surface);
+        let layer = planned_layer(place);
+        let lobe = layer_lobe(layer, material, layers, surface);
         let mirror = is_mirror(lobe.shape);
-        if mirror && !draws {
+        if !draws && (mirror || !lobe.is_there) {
             continue;
         }
         var wi = light.wi;
@@ -94,26 +90,27 @@ fn material_scatter(
             weight = refined.weight;
         }
         let toward = layer_toward(layer, material, layers, surface, lobe.shape, wi);
-        if draws && layer_decides_by_facet(layer, material) {
-            let is_passed_on = layer_pass_on(layer, material, &layers, weight, toward.probability);
-            let part = split(numbers.facet, layer_share(layer, layers).probability);
+        var share = lobe.share;
+        if PLAN_SPECULAR && draws && layer == LAYER_SPECULAR && decides_by_facet(material) {
+            let is_passed_on = specular_pass_on(material, &layers, weight, toward.probability);
+            share = layers.specular;
+            let part = split(numbers.facet, share.probability);
             if !part.is_below {
                 // The layer below uses its own random numbers, or the same facet.
                 xi = select(xi, numbers.below, is_passed_on);
                 number = part.remapped;
-                first = layer + 1u;
+                first = place + 1u;
                 is_apart = true;
                 continue;
             }
         }
-        let share = layer_share(layer, layers);
-        var evaluated = vec2f(0.0);
+        var evaluated = vec2f();
         if !draws || (needs_density && !mirror) {
             let of_lobe = lobe_evaluate(lobe.shape, lobe.frame, surface.normal, surface.wo, wi);
             evaluated = layer_refined(layer, material, surface, wi, of_lobe);
         }
         var color = toward.color * share.transmittance;
-        if PLAN_COAT_ABSORPTION == 1u && layer > LAYER_COAT {
+        if PLAN_COAT_ABSORPTION && layer > LAYER_COAT {
             color *= coat_tint(material, layers, surface, wi);
         }
         let density = share.reached * toward.probability * evaluated.y;

@@ -1,30 +1,13 @@
 // The specular lobe. Twin of src/optics/layer/specular.rs.
-#import "optics/albedo"
-#import "optics/layer/facet"
 #import "optics/layer/registry"
-#import "optics/material"
-#import "optics/scattering"
-
-struct SpecularAlbedos {
-    taken: vec3f,
-    by_dielectric: vec3f,
-}
-
-fn specular_is_there(material: Material, surface: Surface) -> bool {
-    return material_has_specular(material);
-}
-
-fn specular_lobe(material: Material, surface: Surface) -> LayerLobe {
-    return LayerLobe(material_shape(material), surface.frame);
-}
 
 fn specular_albedo(material: Material, surface: Surface) -> LayerAlbedo {
-    var albedos = SpecularAlbedos(vec3f(0.0), vec3f(0.0));
+    var albedos = mat2x3f();
     if has_more(material) {
         albedos = specular_albedos(material, surface);
     }
     // A metal has no layer below; the rest lies below the dielectric alone.
-    return LayerAlbedo(albedos.taken, max(vec3f(1.0) - albedos.by_dielectric, vec3f(0.0)));
+    return LayerAlbedo(albedos[0], max(1.0 - albedos[1], vec3f()));
 }
 
 fn specular_toward(material: Material, layers: Layers, surface: Surface, shape: LobeShape, wi: vec3f) -> LayerToward {
@@ -45,7 +28,7 @@ fn specular_choose(material: Material, layers: ptr<function, Layers>, below: f32
     (*layers).specular.probability = share;
     (*layers).transmission.probability = through;
     (*layers).base.probability = 1.0 - share - through;
-    return select(select(0.0, 1.0, material_has_specular(material)), specular + below, has_more(material));
+    return select(f32(material_has_specular(material)), specular + below, has_more(material));
 }
 
 fn specular_seen_albedo(material: Material, surface: Surface, share: LayerShare) -> vec3f {
@@ -70,23 +53,23 @@ fn has_more(material: Material) -> bool {
     return material_has_base(material) || material_transmits(material);
 }
 
-fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
+fn specular_albedos(material: Material, surface: Surface) -> mat2x3f {
     var place = dot(surface.frame.normal, surface.wo);
     var first = material.albedo_table;
     if is_within(material, surface) {
         place = albedo_place(place, material_ior_ahead(material, true));
         first = material.inner_albedo_table;
     }
-    if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
+    if PLAN_ROUGH_TABLES && material.has_rough_tables == 1u {
         var integrals = rough_albedo_lookup(first, place, material.roughness);
-        if first == material.albedo_table && PLAN_COAT_TEXTURES == 1u && has_coated_table(material) {
+        if first == material.albedo_table && PLAN_COAT_TEXTURES && has_coated_table(material) {
             integrals.x = dielectric_under_coat(material, place, integrals.x);
         }
         let terms = material_fresnel_terms(material, surface.is_inside);
-        return SpecularAlbedos(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
+        return mat2x3f(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
     }
     let taken = albedo_lookup(first, place);
-    return SpecularAlbedos(taken, taken);
+    return mat2x3f(taken, taken);
 }
 
 // The dielectric's integral where a texture varies the coat over it.

@@ -1,16 +1,7 @@
 // The refracting lobe. Twin of src/optics/layer/transmission.rs.
 #import "optics/layer/facet"
 #import "optics/layer/registry"
-#import "optics/material"
 #import "optics/scattering"
-
-fn transmission_is_there(material: Material, surface: Surface) -> bool {
-    return material_transmits(material);
-}
-
-fn transmission_lobe(material: Material, surface: Surface) -> LayerLobe {
-    return LayerLobe(material_transmission_shape(material, surface.is_inside), surface.frame);
-}
 
 fn transmission_albedo(material: Material, surface: Surface, left: vec3f) -> vec3f {
     let left_by_metal = left * (1.0 - material.metalness);

@@ -1,8 +1,6 @@
 // The geometric lobe and its density. Twin of src/optics/lobe/geometric.rs, which explains the mathematics.
 #import "optics/chord"
-#import "optics/curve/registry"
 #import "optics/lobe/lobe"
-#import "optics/warp"
 
 fn geometric_widths(shape: LobeShape) -> vec3f {
     let stretch = stretch_from_anisotropy(shape.anisotropy);

@@ -1,6 +1,5 @@
 // Lambert's lobe. Twin of src/optics/lobe/lambert.rs.
 #import "optics/lobe/lobe"
-#import "optics/warp"
 
 fn lambert_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     return normalize_or(frame.normal + uniform_sphere(xi.xy), frame.normal);

@@ -1,16 +1,12 @@
 // Common part of the lobes, and the horizon policy. Twin of src/optics/lobe/mod.rs. raw_sample, raw_density, raw_weight, the
 // lobes' properties and LOBE_* are generated from the registry.
-#import "optics/choices"
-#import "optics/frame"
 #import "optics/lobe/registry"
 #import "optics/microfacet"
 #import "optics/refraction"
 
-const FACETS_NONE: u32 = 0u;
-const FACETS_VISIBLE: u32 = 1u;
-const FACETS_ALL: u32 = 2u;
-const ALPHA_MIN: f32 = 1e-4;
-const MIRROR_WIDTH: f32 = 1e-3;
+const FACETS_NONE = 0u;
+const FACETS_VISIBLE = 1u;
+const FACETS_ALL = 2u;
 
 struct LobeShape {
     lobe: u32,
@@ -150,10 +146,10 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
 fn lobe_evaluate(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, wi: vec3f) -> vec2f {
     let view = lobe_view(shape, frame, surface_normal, wo);
     if shape.horizon != HORIZON_NONE && !(dot(view.normal, wi) > 0.0) {
-        return vec2f(0.0);
+        return vec2f();
     }
     // A loop, so that the lobes' code is there once: drivers inline, and compile in more than proportion to the size.
-    var result = vec2f(0.0);
+    var result = vec2f();
     var direction = wi;
     let count = select(1u, 2u, shape.horizon == HORIZON_MIRROR);
     for (var i = 0u; i < count; i++) {
@@ -173,10 +169,10 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
         mirrored = facet_mirror(view.frame, view.wo, wi, shape.eta);
         factor = facet_density_factor(view.frame, view.wo, wi, shape.eta, along);
         if !(factor > 0.0) {
-            return vec2f(0.0);
+            return vec2f();
         }
     } else if is_hemispherical(shape.lobe) && dot(view.frame.normal, wi) <= 0.0 {
-        return vec2f(0.0);
+        return vec2f();
     }
     let seen = seen_lobe(shape, view);
     let density = raw_density(seen, view.frame, view.wo, mirrored) * factor;

@@ -1,6 +1,6 @@
 //! Sums of estimated squared errors of a denoised image, and what follows from them.
 
-use super::super::noise::BAND;
+use super::super::noise::{BAND, sums};
 
 /// Standard errors that the denoised image's error must exceed before samples are blended in.
 const DOUBT_SIGMAS: f64 = 1.0;
@@ -10,46 +10,32 @@ const SHRINKAGE: f64 = 0.1;
 /// Smallest effective number of tiles behind a standard error. With fewer, the expansion of Student's quantile fails.
 const TILES_MIN: f64 = 3.0;
 
-/// Unbiased estimates of a pixel's squared errors, or sums of these over pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Moments {
-    /// Squared error of the denoised image.
-    pub denoised: f64,
-    /// The part of `denoised` that is known without noise.
-    pub known: f64,
-    /// Squared error of the samples' mean.
-    pub noisy: f64,
-    /// Product of both errors.
-    pub product: f64,
-    /// Variance of `denoised`, from the neighbourhood of each pixel. Too small if the noise differs between pixels, or comes
-    /// from rare samples.
-    pub variance: f64,
-    /// The same from whole tiles, by the differences of the halves' squares. Too large for noise with long tails, where the
-    /// error is uncertain anyway.
-    pub by_squares: f64,
-    /// The same from the difference of the denoised halves in each pixel, and its correlation with those around it. Needed if
-    /// the filter leaves noise that differs between pixels, of which the other two see too little.
-    pub by_pixels: f64,
-    /// Sum over tiles of `by_squares` squared.
-    pub fourth_powers: f64,
-    /// Squared difference of the denoised image and the samples' mean.
-    pub difference: f64,
-    /// Number of pixels.
-    pub pixels: f64,
-}
-
-impl std::ops::AddAssign for Moments {
-    fn add_assign(&mut self, other: Self) {
-        self.denoised += other.denoised;
-        self.known += other.known;
-        self.noisy += other.noisy;
-        self.product += other.product;
-        self.variance += other.variance;
-        self.by_squares += other.by_squares;
-        self.by_pixels += other.by_pixels;
-        self.fourth_powers += other.fourth_powers;
-        self.difference += other.difference;
-        self.pixels += other.pixels;
+sums! {
+    /// Unbiased estimates of a pixel's squared errors, or sums of these over pixels.
+    Moments {
+        /// Squared error of the denoised image.
+        denoised,
+        /// The part of `denoised` that is known without noise.
+        known,
+        /// Squared error of the samples' mean.
+        noisy,
+        /// Product of both errors.
+        product,
+        /// Variance of `denoised`, from the neighbourhood of each pixel. Too small if the noise differs between pixels, or comes
+        /// from rare samples.
+        variance,
+        /// The same from whole tiles, by the differences of the halves' squares. Too large for noise with long tails, where the
+        /// error is uncertain anyway.
+        by_squares,
+        /// The same from the difference of the denoised halves in each pixel, and its correlation with those around it. Needed if
+        /// the filter leaves noise that differs between pixels, of which the other two see too little.
+        by_pixels,
+        /// Sum over tiles of `by_squares` squared.
+        fourth_powers,
+        /// Squared difference of the denoised image and the samples' mean.
+        difference,
+        /// Number of pixels.
+        pixels,
     }
 }
 

@@ -50,60 +50,15 @@ impl Hats {
     /// Adds the isotropic geometric lobe's density for each hat to `densities`, before the horizon policy. Unit
     /// directions; `roughness` in (0, 1).
     pub fn add_densities(&self, roughness: f64, mirror: Vec3<f64>, wi: Vec3<f64>, densities: &mut [f64]) {
-        let Some(chord) = Chord::new(roughness, self.distance_max(), mirror, wi) else {
-            return;
-        };
-        let [first, last] = chord.range;
-        let panels = ((last - first) / PANEL_MAX).ceil().max(1.0);
-        let half = 0.5 * (last - first) / panels;
-        let steps: Vec<[f64; 2]> = GAUSS_8
-            .iter()
-            .map(|[node, weight]| [(half * node).exp(), half * weight * chord.scale])
-            .collect();
-        for panel in 0..panels as usize {
-            let middle = (first + half * (2.0 * panel as f64 + 1.0)).exp();
-            for [step, weight] in &steps {
-                let (distance, square) = chord.distance_and_square(middle * step);
-                let (index, share) = self.place(distance);
-                let value = weight * square;
-                densities[index] += value * (1.0 - share);
-                densities[index + 1] += value * share;
-            }
-        }
-    }
-}
-
-/// The geometry of the integral for one direction, written with the part of a across ω as in the mathematics,
-/// section 4, "As it is computed".
-struct Chord {
-    kappa: f64,
-    k: f64,
-    nu: f64,
-    m: f64,
-    e: f64,
-    mu: f64,
-    tau_middle: f64,
-    tau_scale: f64,
-    delta_root: f64,
-    scale: f64,
-    range: [f64; 2],
-}
-
-impl Chord {
-    /// `None` if the direction misses the ball.
-    fn new(roughness: f64, reach: f64, mirror: Vec3<f64>, wi: Vec3<f64>) -> Option<Self> {
-        let kappa = roughness;
+        let (kappa, reach) = (roughness, self.distance_max());
         let k = (1.0 - kappa) * (1.0 + kappa);
         let s = (1.0 - roughness) / roughness;
         let apart = mirror - wi;
         let versine = 0.5 * apart.dot(apart);
         let perpendicular = (apart + wi * versine) * s;
         let mu = s * (1.0 - versine);
-        let (nu, m, e) = (
-            NORMAL.dot(wi),
-            NORMAL.dot(perpendicular),
-            perpendicular.dot(perpendicular),
-        );
+        let [nu, m] = [wi, perpendicular].map(|vector| NORMAL.dot(vector));
+        let e = perpendicular.dot(perpendicular);
         let a = kappa * kappa * nu * nu + k;
         let a_delta = (k * (kappa * kappa * (nu * nu * e + m * m) + k * e)).max(1e-18);
         let (tau_middle, tau_scale) = (kappa * kappa * nu * m / a, a_delta.sqrt() / a);
@@ -111,39 +66,39 @@ impl Chord {
         let half_chord = discriminant.max(0.0).sqrt();
         let tau_last = reach * kappa * nu + half_chord;
         let tau_first = (reach * kappa * nu - half_chord).max(-mu);
+        // The direction misses the ball.
         if !(discriminant > 0.0 && tau_first < tau_last) {
-            return None;
+            return;
         }
-        let u_last = ((tau_last - tau_middle) / tau_scale).asinh();
-        let u_first = ((tau_first - tau_middle) / tau_scale).asinh().max(u_last - RANGE_MAX);
-        Some(Self {
-            kappa,
-            k,
-            nu,
-            m,
-            e,
-            mu,
-            tau_middle,
-            tau_scale,
-            delta_root: tau_scale * a.sqrt(),
-            scale: 1.0 / (4.0 * std::f64::consts::PI * a.sqrt()),
-            range: [u_first, u_last],
-        })
-    }
-
-    /// D and t² at e^u.
-    fn distance_and_square(&self, exp_u: f64) -> (f64, f64) {
-        let inverse = 1.0 / exp_u;
-        let tau = self.tau_middle + self.tau_scale * 0.5 * (exp_u - inverse);
-        let s = self.delta_root * 0.5 * (exp_u + inverse);
-        let lifted = self.kappa * (tau * self.nu - self.m);
-        // The root of k D² + 2κ(n·q) D − |q|² = 0 in the form that does not cancel.
-        let distance = if lifted > 0.0 {
-            (tau * tau + self.e) / (lifted + s)
-        } else {
-            (s - lifted) / self.k
-        };
-        let t = (tau + self.mu).max(0.0);
-        (distance, t * t)
+        let [first, last] = [tau_first, tau_last].map(|tau| ((tau - tau_middle) / tau_scale).asinh());
+        let first = first.max(last - RANGE_MAX);
+        let delta_root = tau_scale * a.sqrt();
+        let scale = 1.0 / (4.0 * std::f64::consts::PI * a.sqrt());
+        let panels = ((last - first) / PANEL_MAX).ceil().max(1.0);
+        let half = 0.5 * (last - first) / panels;
+        let steps: Vec<[f64; 2]> = GAUSS_8
+            .iter()
+            .map(|[node, weight]| [(half * node).exp(), half * weight * scale])
+            .collect();
+        for panel in 0..panels as usize {
+            let middle = (first + half * (2.0 * panel as f64 + 1.0)).exp();
+            for [step, weight] in &steps {
+                let exp_u = middle * step;
+                let inverse = 1.0 / exp_u;
+                let tau = tau_middle + tau_scale * 0.5 * (exp_u - inverse);
+                let s = delta_root * 0.5 * (exp_u + inverse);
+                let lifted = kappa * (tau * nu - m);
+                // The root of k D² + 2κ(n·q) D − |q|² = 0 in the form that does not cancel.
+                let distance = if lifted > 0.0 {
+                    (tau * tau + e) / (lifted + s)
+                } else {
+                    (s - lifted) / k
+                };
+                let value = weight * (tau + mu).max(0.0).powi(2);
+                let (index, share) = self.place(distance);
+                densities[index] += value * (1.0 - share);
+                densities[index + 1] += value * share;
+            }
+        }
     }
 }

@@ -102,7 +102,7 @@ impl Merl {
             theta_d_rad / quarter * CELLS[1] as f64,
             phi_d_rad / std::f64::consts::PI * CELLS[2] as f64,
         ];
-        let mut sum = Vec3::zero();
+        let mut sum = Vec3::ZERO;
         for corner in 0..8 {
             let mut weight = 1.0;
             let mut cell = 0;

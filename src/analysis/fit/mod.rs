@@ -42,7 +42,7 @@ impl Measure {
 pub fn total_variation(target: Profile, model: &LobeModel, view_angle_rad: f64, measure: Measure) -> f64 {
     let wo = view_direction(view_angle_rad);
     let profile = |wi| measure.of(model, wo, wi);
-    let grid = SphereGrid::adapted(view_angle_rad, Side::Above, true, &[target, &profile]);
+    let grid = SphereGrid::adapted(view_angle_rad, Side::Above, model.is_symmetric(), &[target, &profile]);
     let (p, q) = (grid.values(target), grid.values(&profile));
     let (p_total, q_total) = match measure {
         Measure::Evaluate => (grid.integral(&p), grid.integral(&q)),

@@ -1,21 +1,39 @@
-//! What actions and commands do.
+//! What actions and commands do, and what the palette finds beside them.
+
+use std::time::Instant;
 
 use crate::app::actions::{Action, Command};
 use crate::app::desk::PICTURE_SIZE;
+use crate::app::handlers::pictures::Destination;
 use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
-use crate::app::services::library;
-use crate::app::services::viewing::Resolution;
-use crate::app::sheets::dialogs::Purpose;
-use crate::app::sheets::menu::Sheet;
-use crate::app::sheets::{book, palette};
-use crate::app::{App, denoised_by, is_dragging};
-use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
+use crate::app::services::{
+    library,
+    shelves::{environment_key, environment_label, preset_key},
+    viewing::Resolution,
+};
+use crate::app::sheets::{
+    book,
+    dialogs::Purpose,
+    menu::Sheet,
+    palette::{self, Findable},
+    turntable::Preview,
+    unsaved::Then,
+};
+use crate::app::workspaces::Change;
+use crate::app::{App, is_dragging};
+use crate::document::{CameraSettings, Denoise, Document, History, MaterialSettings, parameter, setting};
 use crate::render::EngineChoice;
-use crate::render::worker::Level;
-use crate::scene::ModelOptions;
-use crate::scene::camera::{Projection, framing_distance};
-use crate::store::examples::{EXAMPLES, Example};
+use crate::scene::{
+    ModelOptions,
+    camera::{Projection, framing_distance},
+    environment::{BUILT_IN, EnvironmentSource},
+    path_text::file_name,
+};
+use crate::store::{
+    PRESETS,
+    examples::{EXAMPLES, Example},
+};
 use crate::study::explain::explain;
 
 /// How many times larger one step of magnification shows the image.
@@ -33,18 +51,17 @@ impl App {
             Action::CancelLoading => self.worker.cancel_loading(),
             Action::Paste(text) => self.paste(&text),
             Action::PastePicture => {
-                let text = "the clipboard holds an image: save it as a file, and open or drop that";
-                self.report(Level::Warning, text);
+                self.warn("the clipboard holds an image: save it as a file, and open or drop that");
             }
             Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
             Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
-            Action::ChooseLut => self.dialogs.ask(Purpose::OpenLut, String::new(), ctx),
-            Action::ChooseProfile(light) => self.dialogs.ask(Purpose::LightProfile(light), String::new(), ctx),
-            Action::ChooseReference => self.dialogs.ask(Purpose::Reference, String::new(), ctx),
-            Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
+            Action::ChooseLut => self.ask(ctx, Purpose::OpenLut),
+            Action::ChooseProfile(light) => self.ask(ctx, Purpose::LightProfile(light)),
+            Action::ChooseReference => self.ask(ctx, Purpose::Reference),
+            Action::ChooseTexture(target) => self.ask(ctx, Purpose::Texture(target)),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),
             Action::CopyAs(material, format) => self.copy_as(*material, format),
             Action::SelectSlot(slot) => self.select_slots(&[slot]),
@@ -56,7 +73,10 @@ impl App {
             Action::ChangeLibrary(change) => self.change_library(change),
             Action::ChangeSnapshots(change) => self.change_snapshots(change),
             Action::UseSnapshot(path) => self.use_snapshot(&path),
-            Action::CompareWith(rival) => self.compare_with(rival),
+            Action::CompareWith(rival) => {
+                let compare = &mut self.shared.compare;
+                (compare.rival, compare.is_on, compare.is_chosen) = (rival, true, true);
+            }
             Action::LookFrom(yaw_deg, pitch_deg) => self.look_from(yaw_deg, pitch_deg),
             Action::OpenExample(number) => self.open_example(number),
             Action::UseBookmark(number) => {
@@ -68,9 +88,7 @@ impl App {
             Action::Reveal(pane) => self.reveal(pane),
             Action::Close(pane) => layout::close(&mut self.layout, pane),
             Action::ChangeWorkspaces(change) => {
-                if std::mem::take(&mut self.is_maximised) {
-                    layout::set_maximised(&mut self.layout, false);
-                }
+                self.maximise(false);
                 self.workspaces.change(change, &mut self.layout);
             }
             Action::Edit(key) => self.edit_parameter(ctx, key),
@@ -101,11 +119,10 @@ impl App {
         else {
             return;
         };
-        let document = denoised_by(self.document.view.denoise, document());
+        let mut document = document();
+        document.view.denoise = self.document.view.denoise;
         self.shared.selection.forget();
-        self.shared.selection.slot = 0;
-        self.document = document;
-        self.edits.note(format!("Open the example {label}"), "");
+        self.replace_document(document, format!("Open the example {label}"));
         if let Some(pane) = Pane::ALL.into_iter().find(|pane| pane.title() == *panel) {
             self.reveal(pane);
         }
@@ -113,7 +130,7 @@ impl App {
 
     /// Lays the account of a path of the image in progress over the window.
     fn explain(&mut self, pixel: [u32; 2], sample: u32) {
-        if let Some(scene) = &self.worker.snapshot().scene {
+        if let Some(scene) = self.scene() {
             let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
             self.sheet = Sheet::Path {
                 text: account.to_string(),
@@ -141,19 +158,9 @@ impl App {
 
     fn command(&mut self, ctx: &egui::Context, command: Command) {
         log::debug!("{}", command.label());
-        if matches!(command, Command::Undo | Command::Redo) {
-            // What was edited in this very frame is a step, too.
-            self.record(is_dragging(ctx));
-        }
         match command {
-            Command::Undo => {
-                let document = self.edits.undo();
-                self.step_to(document);
-            }
-            Command::Redo => {
-                let document = self.edits.redo();
-                self.step_to(document);
-            }
+            Command::Undo => self.step(ctx, History::undo),
+            Command::Redo => self.step(ctx, History::redo),
             Command::ResetMaterial => {
                 let name = self.desk_material().name;
                 let default = MaterialSettings::default();
@@ -164,8 +171,7 @@ impl App {
                 self.edits.note("Reset the camera", "");
             }
             Command::FrameAll => {
-                let camera = &mut self.document.camera;
-                (camera.target, camera.distance, camera.position) = (None, None, None);
+                self.frame_all();
                 self.edits.note("Frame all", "");
             }
             Command::FrontView => self.look_along(0.0, 0.0),
@@ -207,15 +213,12 @@ impl App {
                 self.edits.note("Show all objects", "");
             }
             Command::Maximise => {
-                self.is_maximised = !self.is_maximised;
-                layout::set_maximised(&mut self.layout, self.is_maximised);
+                self.maximise(!self.is_maximised);
             }
             Command::ToggleTheme => {
-                let is_dark = ctx.theme() == egui::Theme::Dark;
-                self.theme = if is_dark {
-                    egui::ThemePreference::Light
-                } else {
-                    egui::ThemePreference::Dark
+                self.theme = match ctx.theme() {
+                    egui::Theme::Dark => egui::ThemePreference::Light,
+                    egui::Theme::Light => egui::ThemePreference::Dark,
                 };
                 ctx.set_theme(self.theme);
             }
@@ -250,17 +253,21 @@ impl App {
                 // The panels stay hidden where they are.
                 layout::reveal(&mut self.layout, Pane::Snapshots);
             }
-            Command::Measure => {
+            Command::Measure | Command::Race => {
                 self.panels.on_command(command);
-                self.reveal(Pane::Effects);
-            }
-            Command::Race => {
-                self.panels.on_command(command);
-                self.reveal(Pane::Race);
+                self.reveal(if command == Command::Race {
+                    Pane::Race
+                } else {
+                    Pane::Effects
+                });
             }
             Command::Benchmark => self.reveal(Pane::Check),
             Command::Turntable => self.open_turntable(),
-            Command::PreviewTurn => self.toggle_preview(),
+            Command::PreviewTurn => {
+                let (since, camera) = (Instant::now(), self.document.camera);
+                let preview = &mut self.turntable.preview;
+                *preview = preview.is_none().then_some(Preview { since, camera });
+            }
             Command::Palette => {
                 palette::focus(ctx);
                 self.sheet = Sheet::Palette {
@@ -275,17 +282,37 @@ impl App {
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::SaveToMyPresets => self.change_library(library::Change::Add),
-            of_files => self.file_command(ctx, of_files),
+            Command::New => self.unless_unsaved(ctx, Then::New),
+            Command::Open => self.ask(ctx, Purpose::Open),
+            Command::OpenModel => self.ask(ctx, Purpose::OpenModel),
+            Command::OpenEnvironment => self.ask(ctx, Purpose::OpenEnvironment),
+            Command::OpenMaterial => self.ask(ctx, Purpose::OpenMaterial),
+            Command::OpenMeasured => self.ask(ctx, Purpose::OpenMeasured),
+            Command::WatchFolder => self.ask(ctx, Purpose::WatchFolder),
+            Command::TypePaths => self.toggle_typed_paths(),
+            Command::Save => self.save_or_ask(ctx),
+            Command::SaveAs => self.ask(ctx, Purpose::SaveProject),
+            Command::SaveMaterial => self.ask(ctx, Purpose::SaveMaterial),
+            Command::Export => self.ask_export(ctx, None),
+            Command::SavePicture => self.ask(ctx, Purpose::SavePicture),
+            Command::SaveLayers => self.ask(ctx, Purpose::SaveLayers),
+            Command::SaveWindow => self.ask(ctx, Purpose::SaveWindow),
+            Command::CopyPicture => self.want_picture(Destination::Clipboard),
+            Command::QueuePicture => self.ask(ctx, Purpose::QueuePicture),
         }
     }
 
     fn select_slots(&mut self, slots: &[usize]) {
-        let Some(first) = slots.first() else { return };
+        let [first, rest @ ..] = slots else { return };
         let selection = &mut self.shared.selection;
-        selection.slot = *first;
-        selection.is_made = true;
-        selection.also = slots[1..].iter().copied().collect();
-        self.edits.seal();
+        (selection.slot, selection.is_made) = (*first, true);
+        selection.also = rest.iter().copied().collect();
+        self.edits.history.seal();
+    }
+
+    pub fn frame_all(&mut self) {
+        let camera = &mut self.document.camera;
+        (camera.target, camera.distance, camera.position) = (None, None, None);
     }
 
     /// Turns the camera about its target.
@@ -302,8 +329,12 @@ impl App {
     }
 
     /// Goes to another step of the history. Where that has another model, the slot is the one that was selected of it last.
-    fn step_to(&mut self, document: Option<Document>) {
-        let Some(document) = document else { return };
+    fn step(&mut self, ctx: &egui::Context, step: fn(&mut History<Document>) -> Option<&Document>) {
+        // What was edited in this very frame is a step, too.
+        self.record(is_dragging(ctx));
+        let Some(document) = step(&mut self.edits.history).cloned() else {
+            return;
+        };
         if document.model != self.document.model {
             let left = self.document.model.clone();
             self.shared.selection.change_model(left, &document.model);
@@ -321,8 +352,7 @@ impl App {
 
     /// Looks at the chosen objects, or the surfaces of the selected slots, from where the camera is.
     fn frame_selected(&mut self) {
-        let snapshot = self.worker.snapshot();
-        let Some(scene) = &snapshot.scene else { return };
+        let Some(scene) = self.scene() else { return };
         let geometry = &scene.job.geometry;
         let selection = &self.shared.selection;
         let slots = selection.slots();
@@ -340,5 +370,59 @@ impl App {
         camera.distance = Some(distance * geometry.world_units_per_unit);
         camera.position = None;
         self.edits.note("Frame selected", "");
+    }
+
+    /// Materials, environments, views of the camera, workspaces and recent files.
+    pub fn things(&self) -> Vec<Findable> {
+        let shipped = PRESETS
+            .iter()
+            .map(|material| self.material(preset_key(material), material));
+        let own = self.shared.library.entries.iter().filter_map(|own| {
+            let material = own.material.as_ref().ok()?;
+            Some(self.material(own.path.display().to_string(), material))
+        });
+        let built_in = BUILT_IN.iter().map(|built_in| built_in.source.clone());
+        let sources = built_in.chain(self.shared.recent.environments());
+        let environments = sources.map(|source: EnvironmentSource| {
+            let label = format!("Environment {}", environment_label(&source));
+            self.of_browser(environment_key(&source), label, Action::UseEnvironment(source))
+        });
+        let mut things: Vec<Findable> = shipped.chain(own).chain(environments).collect();
+        for (number, view) in self.document.bookmarks.iter().enumerate() {
+            things.push(Findable::new(
+                format!("View {}", view.name),
+                Action::UseBookmark(number),
+            ));
+        }
+        for name in self.workspaces.names() {
+            let action = Action::ChangeWorkspaces(Change::Use(name.to_owned()));
+            things.push(Findable::new(format!("Workspace {name}"), action));
+        }
+        for path in &self.shared.recent.paths {
+            things.push(Findable::new(
+                format!("Open {}", file_name(path)),
+                Action::Open(path.clone()),
+            ));
+        }
+        things
+    }
+
+    fn material(&self, key: String, material: &MaterialSettings) -> Findable {
+        let action = Action::UseMaterial(Box::new(material.clone()));
+        let mut found = self.of_browser(key, format!("Material {}", material.name), action);
+        for word in material.look_words() {
+            found.tags += &format!(" {word}");
+        }
+        found
+    }
+
+    /// With its tags, and whether it is a favourite, as in the browser.
+    fn of_browser(&self, key: String, label: String, action: Action) -> Findable {
+        let kept = &self.shared.shelves.kept;
+        Findable {
+            tags: kept.tags_of(&key),
+            is_favourite: kept.favourites.contains(&key),
+            ..Findable::new(label, action)
+        }
     }
 }

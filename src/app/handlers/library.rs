@@ -1,70 +1,135 @@
-//! What the window does about the user's materials.
+//! What the window does about the user's folders.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use image::RgbaImage;
 
 use crate::app::App;
+use crate::app::handlers::files::finish;
 use crate::app::layout::Pane;
-use crate::app::services::disk::Done;
-use crate::app::services::library::{Change, Listed};
-use crate::app::services::messages::Success;
-use crate::render::worker::Level;
-use crate::store::{FileError, library};
+use crate::app::services::{disk::Task, library::Change, messages::Entry, pictures::uploaded};
+use crate::render::display::display;
+use crate::store::{
+    FileError,
+    library::{self, Removed},
+    snapshots,
+};
 
-type Materials = Listed<Vec<library::Entry>>;
+/// What was done, and what was removed.
+type Done = (Option<Entry>, Option<Removed>);
+
+fn task(change: &Change) -> Task {
+    if *change == Change::List {
+        Task::List
+    } else {
+        Task::Write
+    }
+}
+
+/// Makes a change that is the same in each folder, where `before` was removed last.
+fn carry_out(
+    change: &Change,
+    before: Option<Removed>,
+    rename: fn(&Path, &str) -> Result<PathBuf, FileError>,
+) -> Result<Done, FileError> {
+    let done = |verb, path: &Path| Some(Entry::done_with(verb, path, ""));
+    Ok(match (change, before) {
+        (Change::Rename(path, name), _) => (done("Renamed to", &rename(path, name)?), None),
+        (Change::Remove(path), _) => (done("Removed", path), Some(library::remove(path)?)),
+        (Change::Restore, Some(removed)) => (done("Restored", &library::restore(&removed)?), None),
+        _ => (None, None),
+    })
+}
 
 impl App {
-    /// Lists the user's folder, beside the window.
-    pub fn list_library(&mut self) {
-        if let Some(folder) = self.shared.library.folder.clone() {
-            self.files
-                .disk
-                .list(move || Done::Listed(library::list(&folder).map(Listed::of)));
-        }
-    }
-
-    /// Changes the user's folder, beside the window.
+    /// Changes the user's materials, beside the window.
     pub fn change_library(&mut self, change: Change) {
-        let Some(folder) = self.shared.library.folder.clone() else {
-            self.report(
-                Level::Error,
-                "there is no folder for your materials: set HOME, or save the material as a file",
-            );
+        let Some(folder) = self.shared.library.path.clone() else {
+            if change != Change::List {
+                self.fail("there is no folder for your materials: set HOME, or save the material as a file");
+            }
             return;
         };
-        let material = self.desk_material();
-        let kept = self.shared.library.removed.take();
-        self.files.disk.write(move || {
-            let changed = || -> Result<Materials, FileError> {
-                let mut listed = Listed::default();
-                let saved = |path: &Path| Some(Success::with_file("Saved", path, "one of your presets"));
-                match &change {
-                    Change::Add => {
-                        let path = library::add(&folder, &material)?;
-                        listed.done = saved(listed.added.insert(path));
-                    }
-                    Change::Duplicate(path) => listed.done = saved(&library::duplicate(path)?),
-                    change => listed.change(change, kept.as_ref(), library::rename)?,
-                }
-                listed.entries = library::list(&folder)?;
-                Ok(listed)
+        let (material, before) = (self.desk_material(), self.shared.library.removed.take());
+        self.files.disk.order(task(&change), move || {
+            let saved = |path: PathBuf| (Some(Entry::done_with("Saved", &path, "one of your presets")), None);
+            let done = match &change {
+                Change::Add => library::add(&folder, &material).map(saved),
+                Change::Duplicate(path) => library::duplicate(path).map(saved),
+                change => carry_out(change, before, library::rename),
             };
-            Done::ChangedLibrary(changed())
+            let listed = done.and_then(|done| Ok((done, library::list(&folder)?)));
+            finish(move |app, _| {
+                let Some(((done, removed), entries)) = app.taken(listed) else {
+                    return false;
+                };
+                let library = &mut app.shared.library;
+                (library.entries, library.removed) = (entries, removed);
+                let added = done
+                    .as_ref()
+                    .and_then(|done| done.file.clone())
+                    .filter(|_| change == Change::Add);
+                if let Some(entry) = library.entries.iter().find(|entry| Some(&entry.path) == added.as_ref()) {
+                    library.renaming = Some((entry.path.clone(), entry.name()));
+                    app.reveal(Pane::Presets);
+                }
+                app.say_all(done);
+                true
+            })
         });
     }
 
-    /// Takes the folder's contents, or says why there are none.
-    pub fn take_library(&mut self, listed: Result<Materials, FileError>) {
-        match listed {
-            Ok(listed) => {
-                self.report_success(listed.done);
-                self.shared.library.removed = listed.removed;
-                self.shared.library.take_list(listed.entries);
-                if let Some(path) = listed.added {
-                    self.reveal(Pane::Presets);
-                    self.shared.library.ask_name(path);
-                }
+    /// Changes the pinned states, beside the window.
+    pub fn change_snapshots(&mut self, change: Change) {
+        let Some(folder) = self.shared.snapshots.path.clone() else {
+            if change != Change::List {
+                self.fail(
+                    "there is no folder for snapshots: set HOME, or save the image as a .png, which has the document inside",
+                );
             }
-            Err(error) => self.report(Level::Error, error.to_string()),
+            return;
+        };
+        let picture = self.worker.snapshot().picture.clone();
+        if change == Change::Add && picture.is_none() {
+            return self.warn("there is no image to pin yet");
+        }
+        let (document, before) = (self.document.clone(), self.shared.snapshots.removed.take());
+        self.files.disk.order(task(&change), move || {
+            let done = match (&change, picture) {
+                (Change::Add, Some(picture)) => {
+                    let rgba = display(&picture.image, &picture.document.view);
+                    let pixels = RgbaImage::from_raw(picture.width, picture.height, rgba).unwrap_or_default();
+                    let added = snapshots::add(&folder, &document, &pixels);
+                    added.map(|path| (Some(Entry::done_with("Pinned", &path, "")), None))
+                }
+                (change, _) => carry_out(change, before, snapshots::rename),
+            };
+            let listed = done.and_then(|done| Ok((done, snapshots::list(&folder)?)));
+            finish(move |app, ctx| {
+                let Some(((done, removed), (pinned, errors))) = app.taken(listed) else {
+                    return false;
+                };
+                app.report_all(errors);
+                app.shared.snapshots.removed = removed;
+                let known = std::mem::take(&mut app.shared.snapshots.entries);
+                for pinned in pinned {
+                    let texture = match known.iter().find(|(known, _)| known.path == pinned.path) {
+                        Some((_, texture)) => texture.clone(),
+                        None => uploaded(ctx, &pinned.picture),
+                    };
+                    app.shared.snapshots.entries.push((pinned, texture));
+                }
+                app.say_all(done);
+                true
+            })
+        });
+    }
+
+    /// Brings a pinned state back: an edit like others.
+    pub fn use_snapshot(&mut self, path: &Path) {
+        let mut pinned = self.shared.snapshots.entries.iter();
+        if let Some((pinned, _)) = pinned.find(|(pinned, _)| pinned.path == path) {
+            self.replace_document(pinned.document.clone(), format!("Bring back {}", pinned.name));
         }
     }
 }

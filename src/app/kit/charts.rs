@@ -2,7 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use egui_plot::{AxisHints, GridInput, GridMark, Plot};
+use egui::*;
+use egui_plot::{AxisHints, GridInput, GridMark, Line, Plot, PlotPoint, PlotTransform};
 
 use crate::app::kit::words::{duration, percent_short};
 pub(crate) use crate::plot::number as short;
@@ -16,8 +17,6 @@ const HALF_CHARACTER: f64 = 0.0135;
 const LABEL_SPACING: [f32; 2] = [36.0, 19.0];
 /// Powers of ten along an axis of which each gets a label.
 const POWERS_MAX: f64 = 6.5;
-/// The margin around what is drawn, as shares of it: the first and the last label stay within the chart.
-const MARGIN: [f32; 2] = [0.07, 0.07];
 
 /// A plot that stands still; what a number on either axis is called is up to the chart.
 pub fn still<'a, F>(name: &str, height: f32, in_words: [F; 2]) -> Plot<'a>
@@ -33,7 +32,7 @@ where
             if fits { label } else { String::new() }
         }
     };
-    let spacing = |axis: usize| egui::Rangef::new(LABEL_SPACING[axis] - 0.5, LABEL_SPACING[axis]);
+    let spacing = |axis: usize| Rangef::new(LABEL_SPACING[axis] - 0.5, LABEL_SPACING[axis]);
     let across = AxisHints::new_x().label_spacing(spacing(0)).formatter(formatter(0));
     let upwards = AxisHints::new_y().label_spacing(spacing(1)).formatter(formatter(1));
     Plot::new(name.to_owned())
@@ -46,7 +45,7 @@ where
         .show_background(false)
         .custom_x_axes(vec![across])
         .custom_y_axes(vec![upwards])
-        .set_margin_fraction(MARGIN.into())
+        .set_margin_fraction([0.07, 0.07].into())
 }
 
 /// A plot of logarithms to base 10 that stands still: seconds to the right, shares upwards; `axes` are the titles.
@@ -58,6 +57,22 @@ pub fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Pl
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .set_margin_fraction(margin.into())
+}
+
+/// A line through points.
+pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>, color: Color32, width: f32) -> Line<'static> {
+    Line::new(name, points).color(color).width(width)
+}
+
+/// How near to a point the pointer must be to take it, points.
+const REACH: f32 = 14.0;
+
+/// The point of a plot that is nearest to a place on the screen, if it is near.
+pub fn nearest(points: &[[f64; 2]], transform: &PlotTransform, at: Pos2) -> Option<usize> {
+    let distance = |[x, y]: &[f64; 2]| transform.position_from_point(&PlotPoint::new(*x, *y)).distance(at);
+    let near = points.iter().map(distance).enumerate();
+    let (index, distance) = near.min_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    (distance <= REACH).then_some(index)
 }
 
 /// The first round number that is not below this one: where an axis ends so that its last label is always seen.

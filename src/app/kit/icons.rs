@@ -1,11 +1,11 @@
 //! Icons on buttons, drawn as shapes: no glyph of the fonts looks the same everywhere.
 
-use egui::{Painter, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
+use egui::*;
 
-use crate::app::kit::theme::ROW_HEIGHT;
+use super::theme::ROW_HEIGHT;
+use super::widgets::show_focus;
 
 /// What is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     Pause,
     Play,
@@ -21,59 +21,40 @@ pub enum Icon {
 
 /// A square button with an icon, which has a name and explains itself.
 pub fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
-    let (rect, response) = ui.allocate_exact_size(Vec2::splat(ROW_HEIGHT), Sense::click());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
-    let visuals = ui.style().interact(&response);
-    ui.painter()
-        .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
-    if response.has_focus() {
-        ui.painter().rect_stroke(
-            rect,
-            visuals.corner_radius,
-            ui.visuals().selection.stroke,
-            egui::StrokeKind::Inside,
-        );
-    }
-    paint(ui.painter(), icon, rect, visuals.fg_stroke.color);
-    response.on_hover_text(help)
+    let response = ui.add_sized(Vec2::splat(ROW_HEIGHT), Button::new(""));
+    show_focus(ui, &response);
+    let color = ui.style().interact(&response).fg_stroke.color;
+    paint(ui.painter(), icon, response.rect, color);
+    response.accessible_name(name).on_hover_text(help)
 }
 
-fn paint(painter: &Painter, icon: Icon, rect: Rect, color: egui::Color32) {
-    let at = |x: f32, y: f32| rect.center() + vec2(x, y);
-    let stroke = Stroke::new(1.5, color);
-    let bar = |left: f32| Rect::from_min_max(at(left, -5.0), at(left + 3.0, 5.0));
+fn paint(painter: &Painter, icon: Icon, rect: Rect, color: Color32) {
+    let at = |[x, y]: [f32; 2]| rect.center() + vec2(x, y);
+    let line = |width: f32, points: &[[f32; 2]]| {
+        let points = points.iter().map(|point| at(*point)).collect();
+        painter.add(Shape::line(points, Stroke::new(width, color)));
+    };
+    let lid = |height: f32| line(1.5, &[[-6.5, 0.0], [-3.0, height], [3.0, height], [6.5, 0.0]]);
     match icon {
-        Icon::Pause => {
-            painter.rect_filled(bar(-4.5), 0.5, color);
-            painter.rect_filled(bar(1.5), 0.5, color);
-        }
+        Icon::Pause => [-3.0, 3.0].into_iter().for_each(|x| line(3.0, &[[x, -5.0], [x, 5.0]])),
         Icon::Play => {
-            let corners = vec![at(-3.5, -5.5), at(5.5, 0.0), at(-3.5, 5.5)];
-            painter.add(Shape::convex_polygon(corners, color, Stroke::NONE));
+            let corners = [[-3.5, -5.5], [5.5, 0.0], [-3.5, 5.5]].map(at);
+            painter.add(Shape::convex_polygon(corners.to_vec(), color, Stroke::NONE));
         }
         Icon::More => [-5.0, 0.0, 5.0].into_iter().for_each(|x| {
-            painter.circle_filled(at(x, 0.0), 1.5, color);
+            painter.circle_filled(at([x, 0.0]), 1.5, color);
         }),
-        Icon::Close => {
-            painter.line_segment([at(-4.0, -4.0), at(4.0, 4.0)], stroke);
-            painter.line_segment([at(-4.0, 4.0), at(4.0, -4.0)], stroke);
-        }
+        Icon::Close => [-4.0, 4.0].into_iter().for_each(|y| line(1.5, &[[-4.0, y], [4.0, -y]])),
         Icon::Shown => {
-            let lid = |side: f32| vec![at(-6.5, 0.0), at(-3.0, side * 3.6), at(3.0, side * 3.6), at(6.5, 0.0)];
-            [1.0, -1.0].into_iter().for_each(|side| {
-                painter.add(Shape::line(lid(side), stroke));
-            });
-            painter.circle_filled(at(0.0, 0.0), 2.0, color);
+            lid(3.6);
+            lid(-3.6);
+            painter.circle_filled(rect.center(), 2.0, color);
         }
         Icon::Texture => {
-            for (row, column) in [(0, 0), (1, 1), (2, 0), (0, 2), (2, 2)] {
-                let corner = at(4.0 * column as f32 - 6.0, 4.0 * row as f32 - 6.0);
-                painter.rect_filled(Rect::from_min_size(corner, Vec2::splat(4.0)), 0.0, color);
+            for [x, y] in [[-4.0, -4.0], [0.0, 0.0], [-4.0, 4.0], [4.0, -4.0], [4.0, 4.0]] {
+                line(4.0, &[[x - 2.0, y], [x + 2.0, y]]);
             }
         }
-        Icon::Hidden => {
-            let lid = vec![at(-6.5, 0.0), at(-3.0, 3.0), at(3.0, 3.0), at(6.5, 0.0)];
-            painter.add(Shape::line(lid, stroke));
-        }
+        Icon::Hidden => lid(3.0),
     }
 }

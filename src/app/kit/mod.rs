@@ -1,6 +1,7 @@
 //! What everything in the window is drawn with: theme, rows and controls, icons, charts, numbers in words.
 
 pub mod charts;
+pub mod drag;
 pub mod icons;
 pub mod keys;
 pub mod parameter_row;

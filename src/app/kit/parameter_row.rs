@@ -1,10 +1,10 @@
 //! The row of a parameter, of a material or of a document: the control that suits its kind.
 
-use egui::{Align, Layout, Response, Ui, Vec2};
+use egui::*;
 
 use crate::app::kit::theme::ROW_HEIGHT;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::document::parameter::RowStyle;
+use crate::document::parameter::{Precision, RowStyle};
 use crate::document::{Kind, Parameter, Value};
 
 /// Whether a parameter can be edited in a row; what depends on the scene has controls of its own.
@@ -16,49 +16,29 @@ pub fn has_row<T>(parameter: &Parameter<T>) -> bool {
     }
 }
 
-/// Shows a parameter's row; true where `value` is another afterwards, which may be out of the parameter's range for a
-/// moment, as a picker's is.
-pub fn show<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, value: &mut Value) -> bool {
-    show_as(ui, parameter, &parameter.full_name(), value)
-}
-
-/// The same under another name, for one of several things that have the parameter.
-pub fn show_as<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, full: &str, value: &mut Value) -> bool {
-    show_beside(ui, parameter, full, value, None)
-}
-
 /// A square behind a row's control, which is shown by a function.
 pub type Beside<'a> = Option<&'a mut dyn FnMut(&mut Ui)>;
 
-/// The same with something in a square behind the control.
-pub fn show_beside<T: Default>(
-    ui: &mut Ui,
-    parameter: &Parameter<T>,
-    full: &str,
-    value: &mut Value,
-    beside: Beside<'_>,
-) -> bool {
+/// Shows the row of a parameter of something, under a name that is unique in the window; true where it was edited.
+pub fn edit<T: Default>(ui: &mut Ui, parameter: &Parameter<T>, full: &str, of: &mut T, beside: Beside) -> bool {
+    let mut value = parameter.get(of);
     let name = Name {
         full,
         label: parameter.label,
         symbol: parameter.symbol,
         help: parameter.help,
     };
-    let response = widgets::row(ui, name, |ui| {
+    let is_edited = widgets::value_row(ui, name, &mut value, parameter.default_value(), |ui, value| {
         let Some(beside) = beside else {
             return control(ui, parameter, full, value);
         };
         let width = ui.available_width() - ROW_HEIGHT - ui.spacing().item_spacing.x;
-        let layout = Layout::left_to_right(Align::Center);
-        let room = Vec2::new(width.max(1.0), ROW_HEIGHT);
-        let response = ui.allocate_ui_with_layout(room, layout, |ui| control(ui, parameter, full, value));
+        let response = widgets::sized(ui, width.max(1.0), |ui| control(ui, parameter, full, value));
         beside(ui);
-        response.inner
+        response
     });
-    if response.reset {
-        *value = parameter.default_value();
-    }
-    response.changed || response.reset
+    // A picker's colour may be out of range for a moment.
+    is_edited && parameter.set(of, value).is_ok()
 }
 
 /// The control of a parameter, under a name that is unique in the window.
@@ -68,18 +48,14 @@ pub fn control<T>(ui: &mut Ui, parameter: &Parameter<T>, name: &str, value: &mut
 
 fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Value) -> Response {
     match (kind, value) {
-        (Kind::Number { range, unit }, Value::Number(x)) => number(ui, x, range.map(f64::from), unit, row),
-        (Kind::Real { range, unit }, Value::Real(x)) => number(ui, x, *range, unit, row),
-        (Kind::Count { range }, Value::Count(n)) => {
-            let whole = RowStyle { decimals: 0, ..*row };
-            number(ui, n, range.map(f64::from), "", &whole)
-        }
-        (Kind::Color, Value::Color(linear)) => {
-            let response = widgets::color(ui, full, linear);
-            *linear = linear.map(|x| x.clamp(0.0, 1.0));
+        (Kind::Number { range, unit, precision }, Value::Number(x)) if *precision == Precision::Whole => {
+            let (whole, mut n) = (RowStyle { decimals: 0, ..*row }, *x as u32);
+            let response = number(ui, &mut n, *range, unit, &whole);
+            *x = n.into();
             response
         }
-        (Kind::Tint { most }, Value::Color(linear)) => {
+        (Kind::Number { range, unit, .. }, Value::Number(x)) => number(ui, x, *range, unit, row),
+        (Kind::Color { most }, Value::Color(linear)) => {
             // A colour of at most 1 is picked; what it is multiplied by stays.
             let strength = linear.iter().fold(1.0_f32, |most, x| most.max(*x));
             let shown = linear.map(|x| x / strength);
@@ -98,11 +74,8 @@ fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Val
             widgets::triple(ui, full, place, range[0]..=range[1], ["x", "y", "z"])
         }
         (Kind::Choice(choices), Value::Choice(name)) => {
-            let choices: Vec<_> = choices
-                .iter()
-                .map(|choice| (choice.name, choice.label, choice.help))
-                .collect();
-            widgets::choice(ui, full, name, &choices)
+            let choices = choices.iter().map(|choice| (choice.name, choice.label, choice.help));
+            widgets::choice(ui, full, name, &choices.collect::<Vec<_>>())
         }
         (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),
         (Kind::Optional { kind, .. }, value) if matches!(**kind, Kind::Toggle) => {
@@ -113,14 +86,9 @@ fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Val
             ];
             widgets::choice(ui, full, value, &choices)
         }
-        (
-            Kind::Optional {
-                kind,
-                at_first: Some(at_first),
-                ..
-            },
-            value,
-        ) => optional(ui, kind, row, full, value, at_first),
+        (Kind::Optional { kind, at_first, .. }, value) => {
+            optional(ui, kind, row, full, value, at_first.as_ref().unwrap_or(&Value::Absent))
+        }
         (Kind::Curve, Value::Curve(points)) => ui.label(format!("{} points", points.len())),
         // A test of the tables keeps kinds and values together.
         _ => ui.label("not shown"),
@@ -134,12 +102,11 @@ fn optional(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Va
     if switch.changed() {
         *value = if is_on { at_first.clone() } else { Value::Absent };
     }
-    if *value != Value::Absent
-        && of_kind(ui, kind, row, full, value)
-            .accessible_name(format!("{full} value"))
-            .changed()
-    {
-        switch.mark_changed();
+    if *value != Value::Absent {
+        let control = of_kind(ui, kind, row, full, value).accessible_name(format!("{full} value"));
+        if control.changed() {
+            switch.mark_changed();
+        }
     }
     switch
 }
@@ -159,10 +126,6 @@ fn number<N: egui::emath::Numeric>(
     }
     let style = NumberStyle::plain(100.0 * low..=100.0 * high, " %", row.step, row.decimals)
         .with_bar(row.bar.map(|bar| bar.map(|end| 100.0 * end)));
-    let mut percent = 100.0 * value.to_f64();
-    let response = widgets::number(ui, &mut percent, &style);
-    if response.changed() {
-        *value = N::from_f64((0.01 * percent).clamp(low, high));
-    }
-    response
+    let of_percent = |percent: f64| N::from_f64((0.01 * percent).clamp(low, high));
+    widgets::number_as(ui, value, &style, |value| 100.0 * value.to_f64(), of_percent)
 }

@@ -1,8 +1,8 @@
 //! A button that starts work beside the window and, while that is under way, one that stops it.
 
-use egui::{Button, Response, Ui};
+use egui::*;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Default, PartialEq)]
 pub enum Pressed {
     #[default]
     Nothing,
@@ -24,7 +24,7 @@ pub fn start_or_stop(
     }
     // Another control than the one that starts it: a click under way when it ends must not start it again.
     let stop = ui.push_id(("stop", label), |ui| ui.button("Stop")).inner;
-    ui.add(egui::Spinner::new().size(12.0));
+    ui.add(Spinner::new().size(12.0));
     if stop.clicked() {
         Pressed::Stop
     } else {

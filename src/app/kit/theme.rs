@@ -1,10 +1,9 @@
 //! Dark and light, in untinted greys: colour is judged against its surroundings. One accent.
 
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
-use egui::{
-    Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2,
-    Visuals,
-};
+use egui::*;
+
+use crate::render::worker::Level;
 
 /// Space between the parts of a panel, points.
 pub const GAP: f32 = 8.0;
@@ -15,66 +14,25 @@ pub const BAR_HEIGHT: f32 = 28.0;
 /// Space around the contents of a panel, points.
 pub const PANEL_MARGIN: i8 = 10;
 
-/// The greys of a theme, from the darkest surface to the text.
-struct Palette {
-    /// Behind and between the panels.
-    ground: u8,
-    panel: u8,
-    /// What is typed into.
-    well: u8,
-    widget: u8,
-    hovered: u8,
-    pressed: u8,
-    line: u8,
-    weak_text: u8,
-    text: u8,
-    strong_text: u8,
+/// The one colour of the interface.
+pub fn accent(ui: &Ui) -> Color32 {
+    ui.visuals().hyperlink_color
 }
 
-const DARK: Palette = Palette {
-    ground: 22,
-    panel: 36,
-    well: 26,
-    widget: 58,
-    hovered: 70,
-    pressed: 82,
-    line: 52,
-    weak_text: 140,
-    text: 196,
-    strong_text: 238,
-};
-
-const LIGHT: Palette = Palette {
-    ground: 176,
-    panel: 226,
-    well: 246,
-    widget: 206,
-    hovered: 194,
-    pressed: 180,
-    line: 196,
-    weak_text: 96,
-    text: 40,
-    strong_text: 8,
-};
-
-/// The one colour of the interface.
-pub fn accent(is_dark: bool) -> Color32 {
-    if is_dark {
-        Color32::from_rgb(86, 148, 214)
-    } else {
-        Color32::from_rgb(32, 102, 176)
-    }
+/// A grey of the dark theme, and of the light one.
+fn grey(is_dark: bool, [dark, light]: [u8; 2]) -> Color32 {
+    Color32::from_gray(if is_dark { dark } else { light })
 }
 
 /// What surrounds the image: a grey that is neither black nor white, so that both can be distinguished from it.
 pub fn surround(is_dark: bool) -> Color32 {
-    Color32::from_gray(if is_dark { 28 } else { 150 })
+    grey(is_dark, [28, 150])
 }
 
-pub fn install(ctx: &egui::Context) {
+pub fn install(ctx: &Context) {
     ctx.set_fonts(fonts());
-    ctx.set_style_of(Theme::Dark, style(&DARK, true));
-    ctx.set_style_of(Theme::Light, style(&LIGHT, false));
+    ctx.set_style_of(Theme::Dark, style(true));
+    ctx.set_style_of(Theme::Light, style(false));
 }
 
 /// egui's fonts; what the proportional one lacks, such as the cube root, comes from the one for code.
@@ -90,9 +48,9 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-fn style(palette: &Palette, is_dark: bool) -> Style {
+fn style(is_dark: bool) -> Style {
     let mut style = Style {
-        visuals: visuals(palette, is_dark),
+        visuals: visuals(is_dark),
         ..Style::default()
     };
     let font = |size: f32| FontId::new(size, FontFamily::Proportional);
@@ -126,15 +84,21 @@ fn style(palette: &Palette, is_dark: bool) -> Style {
     style
 }
 
-fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
-    let grey = Color32::from_gray;
-    let accent = accent(is_dark);
-    let widget = |fill: u8, line: Option<u8>, text: u8| WidgetVisuals {
-        bg_fill: grey(fill),
-        weak_bg_fill: grey(fill),
-        bg_stroke: line.map_or(Stroke::NONE, |line| Stroke::new(1.0, grey(line))),
+fn visuals(is_dark: bool) -> Visuals {
+    let grey = |dark: u8, light: u8| grey(is_dark, [dark, light]);
+    let (panel, well, line) = (grey(36, 226), grey(26, 246), grey(52, 196));
+    let (text, strong_text, hovered) = (grey(196, 40), grey(238, 8), grey(70, 194));
+    let color = |dark: [u8; 3], light: [u8; 3]| {
+        let [r, g, b] = if is_dark { dark } else { light };
+        Color32::from_rgb(r, g, b)
+    };
+    let accent = color([86, 148, 214], [32, 102, 176]);
+    let widget = |fill: Color32, bg_stroke: Stroke, text: Color32| WidgetVisuals {
+        bg_fill: fill,
+        weak_bg_fill: fill,
+        bg_stroke,
         corner_radius: CornerRadius::same(3),
-        fg_stroke: Stroke::new(1.0, grey(text)),
+        fg_stroke: Stroke::new(1.0, text),
         expansion: 0.0,
     };
     let shadow = Shadow {
@@ -143,56 +107,49 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
         spread: 0,
         color: Color32::from_black_alpha(if is_dark { 120 } else { 60 }),
     };
-    let base = if is_dark { Visuals::dark() } else { Visuals::light() };
     Visuals {
         widgets: Widgets {
-            noninteractive: widget(palette.panel, Some(palette.line), palette.text),
-            inactive: widget(palette.widget, None, palette.text),
-            hovered: widget(palette.hovered, None, palette.strong_text),
-            active: widget(palette.pressed, None, palette.strong_text),
-            open: widget(palette.hovered, None, palette.strong_text),
+            noninteractive: widget(panel, Stroke::new(1.0, line), text),
+            inactive: widget(grey(58, 206), Stroke::NONE, text),
+            hovered: widget(hovered, Stroke::NONE, strong_text),
+            active: widget(grey(82, 180), Stroke::NONE, strong_text),
+            open: widget(hovered, Stroke::NONE, strong_text),
         },
         selection: Selection {
             bg_fill: accent.gamma_multiply(if is_dark { 0.55 } else { 0.35 }),
-            stroke: Stroke::new(
-                1.0,
-                if is_dark {
-                    Color32::WHITE
-                } else {
-                    grey(palette.strong_text)
-                },
-            ),
+            stroke: Stroke::new(1.0, grey(255, 8)),
         },
-        weak_text_color: Some(grey(palette.weak_text)),
+        weak_text_color: Some(grey(140, 96)),
         hyperlink_color: accent,
-        faint_bg_color: grey(if is_dark { palette.panel + 5 } else { palette.panel - 8 }),
-        extreme_bg_color: grey(palette.well),
-        code_bg_color: grey(palette.well),
-        warn_fg_color: if is_dark {
-            Color32::from_rgb(230, 170, 70)
-        } else {
-            Color32::from_rgb(150, 92, 0)
-        },
-        error_fg_color: if is_dark {
-            Color32::from_rgb(240, 110, 100)
-        } else {
-            Color32::from_rgb(180, 30, 20)
-        },
+        faint_bg_color: grey(41, 218),
+        extreme_bg_color: well,
+        code_bg_color: well,
+        warn_fg_color: color([230, 170, 70], [150, 92, 0]),
+        error_fg_color: color([240, 110, 100], [180, 30, 20]),
         window_corner_radius: CornerRadius::same(6),
         window_shadow: shadow,
-        window_fill: grey(palette.panel),
-        window_stroke: Stroke::new(1.0, grey(palette.line)),
+        window_fill: panel,
+        window_stroke: Stroke::new(1.0, line),
         menu_corner_radius: CornerRadius::same(5),
-        panel_fill: grey(palette.panel),
+        panel_fill: panel,
         popup_shadow: shadow,
         indent_has_left_vline: false,
         slider_trailing_fill: true,
         handle_shape: HandleShape::Circle,
-        ..base
+        ..if is_dark { Visuals::dark() } else { Visuals::light() }
+    }
+}
+
+/// The colour of what is said.
+pub fn level_color(visuals: &Visuals, level: Level) -> Color32 {
+    match level {
+        Level::Error => visuals.error_fg_color,
+        Level::Warning => visuals.warn_fg_color,
+        Level::Info => visuals.text_color(),
     }
 }
 
 /// The grey between the panels.
 pub fn ground(is_dark: bool) -> Color32 {
-    Color32::from_gray(if is_dark { DARK.ground } else { LIGHT.ground })
+    grey(is_dark, [22, 176])
 }

@@ -2,11 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use egui::emath::Numeric;
 use egui::text::LayoutJob;
-use egui::{
-    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, TextureHandle,
-    Ui, UiBuilder, Vec2,
-};
+use egui::*;
 
 use crate::app::kit::keys::{fulfil_request, hold_arrows, note_requested, requested};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
@@ -24,7 +22,7 @@ const SWATCH_MIN: f32 = 26.0;
 const HEX_WIDTH: f32 = 68.0;
 
 /// What a row is called and explains.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Default)]
 pub struct Name<'a> {
     /// The name for screen readers and tests; unique in the window.
     pub full: &'a str,
@@ -35,59 +33,88 @@ pub struct Name<'a> {
     pub help: &'a str,
 }
 
-impl<'a> Name<'a> {
-    /// Without a symbol.
-    pub fn new(full: &'a str, label: &'a str, help: &'a str) -> Self {
+impl<'a> From<[&'a str; 3]> for Name<'a> {
+    fn from([full, label, help]: [&'a str; 3]) -> Self {
+        let symbol = "";
         Self {
             full,
             label,
-            symbol: "",
+            symbol,
             help,
         }
     }
 }
 
-/// What happened to a row.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RowResponse {
-    /// Its value was changed by the control.
-    pub changed: bool,
-    /// It is to go back to its default.
-    pub reset: bool,
+/// A label and a control that fills the rest of the row; true where the control changed what it shows.
+pub fn row<'a>(ui: &mut Ui, name: impl Into<Name<'a>>, control: impl FnOnce(&mut Ui) -> Response) -> bool {
+    resettable(ui, name, control)[0]
 }
 
-/// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
-pub fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
+/// Such a row that double-clicking the label, or its menu, resets: whether it was changed, and is to be reset.
+fn resettable<'a>(ui: &mut Ui, name: impl Into<Name<'a>>, control: impl FnOnce(&mut Ui) -> Response) -> [bool; 2] {
+    let name = name.into();
     ui.horizontal(|ui| {
         let is_requested = fulfil_request(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
-        let layout = Layout::left_to_right(Align::Center);
-        let control = ui
-            .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
-            .inner;
+        let control = sized(ui, width, control);
         let changed = control.changed();
         let control = control.accessible_name(name.full);
         if is_requested {
             note_requested(ui, &control);
         }
-        if !name.help.is_empty() {
-            control.on_hover_text(name.help);
-        }
+        explained(control, name.help);
         let mut reset = label.double_clicked();
-        label.context_menu(|ui| {
-            if ui.button("Reset to default").clicked() {
-                reset = true;
-                ui.close();
-            }
-        });
-        RowResponse { changed, reset }
+        label.context_menu(|ui| reset |= entry(ui, "Reset to default", ""));
+        [changed, reset]
     })
     .inner
 }
 
-fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
+/// The row of a value with its default; true where it is another afterwards.
+pub fn value_row<'a, T>(
+    ui: &mut Ui,
+    name: impl Into<Name<'a>>,
+    value: &mut T,
+    default: T,
+    control: impl FnOnce(&mut Ui, &mut T) -> Response,
+) -> bool {
+    let [changed, reset] = resettable(ui, name, |ui| control(ui, value));
+    if reset {
+        *value = default;
+    }
+    changed || reset
+}
+
+/// The row of a number.
+pub fn number_row<N: Numeric>(ui: &mut Ui, name: [&str; 3], value: &mut N, default: N, style: &NumberStyle) -> bool {
+    value_row(ui, name, value, default, |ui, value| number(ui, value, style))
+}
+
+/// The row of a closed list.
+pub fn choice_row<T: Named + Default>(ui: &mut Ui, name: [&str; 3], value: &mut T) -> bool {
+    value_row(ui, name, value, T::default(), |ui, value| {
+        choice(ui, name[0], value, &choices())
+    })
+}
+
+/// Contents of a row's height and of a width, points.
+pub fn sized<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, contents)
+        .inner
+}
+
+/// With help, where there is any.
+pub fn explained(response: Response, help: &str) -> Response {
+    match help {
+        "" => response,
+        _ => response.on_hover_text(help),
+    }
+}
+
+fn row_label(ui: &mut Ui, name: Name, width: f32) -> Response {
     let mut job = LayoutJob::default();
     let font = TextStyle::Body.resolve(ui.style());
     let format = |color: Color32| TextFormat::simple(font.clone(), color);
@@ -100,15 +127,14 @@ fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
             job = with_symbol;
         }
     }
-    let layout = Layout::left_to_right(Align::Center);
     // Not a stop of the tab key: a press of a key on it would do nothing.
-    let label = egui::Label::new(job).truncate().selectable(false).sense(Sense::CLICK);
-    let response = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, |ui| {
+    let label = Label::new(job).truncate().selectable(false).sense(Sense::CLICK);
+    let response = sized(ui, width, |ui| {
         ui.set_min_width(width);
         ui.add(label)
     });
     let help = if name.help.is_empty() { name.label } else { name.help };
-    response.inner.on_hover_ui(|ui| {
+    response.on_hover_ui(|ui| {
         ui.set_max_width(ui.spacing().tooltip_width);
         ui.label(help);
         ui.label(RichText::new("Double-click to reset").weak().small());
@@ -116,7 +142,6 @@ fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
 }
 
 /// How a number is edited.
-#[derive(Clone, Debug)]
 pub struct NumberStyle<'a> {
     /// The values that it may take.
     pub range: RangeInclusive<f64>,
@@ -128,6 +153,8 @@ pub struct NumberStyle<'a> {
     pub speed: f64,
     /// Most digits behind the point.
     pub decimals: usize,
+    /// A word in place of 0.
+    pub zero: Option<&'static str>,
 }
 
 impl<'a> NumberStyle<'a> {
@@ -139,6 +166,7 @@ impl<'a> NumberStyle<'a> {
             unit,
             speed,
             decimals,
+            zero: None,
         }
     }
 
@@ -150,66 +178,68 @@ impl<'a> NumberStyle<'a> {
 }
 
 /// A number as a bar to drag (with shift: finely) or to type into.
-pub fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
-    number_or(ui, value, style, None)
-}
-
-/// The same, with a word in place of 0.
-pub fn number_or<N: egui::emath::Numeric>(
-    ui: &mut Ui,
-    value: &mut N,
-    style: &NumberStyle<'_>,
-    zero: Option<&'static str>,
-) -> Response {
+pub fn number<N: Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle) -> Response {
     let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
-    let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
-    let background = ui.painter().add(Shape::Noop);
-    let speed = style
-        .bar
-        .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
-    let fills = ui.visuals().widgets.clone();
+    // Set once it is known whether the pointer is over it and what the bar fills.
+    let field = ui.painter().add(Shape::Noop);
+    let mut speed = style.speed;
     let span = style.bar.map(|[low, high]| {
+        speed = (high - low) / f64::from(size.x.max(40.0));
         let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
         // Signed numbers fill from zero.
         [share(0.0_f64.clamp(low, high)), share(value.to_f64())]
     });
-    let response = ui
-        .scope(|ui| {
-            let widgets = &mut ui.visuals_mut().widgets;
-            for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
-                state.weak_bg_fill = Color32::TRANSPARENT;
-            }
-            let drag = DragValue::new(value)
-                .range(style.range.clone())
-                .speed(speed)
-                .custom_formatter(|value, _| match zero {
-                    Some(word) if value == 0.0 => word.to_owned(),
-                    _ => trimmed(value, style.decimals),
-                })
-                .suffix(style.unit.to_owned());
-            ui.add_sized(size, drag)
+    let drag = DragValue::new(value)
+        .range(style.range.clone())
+        .speed(speed)
+        .custom_formatter(|value, _| match style.zero {
+            Some(word) if value == 0.0 => word.to_owned(),
+            _ => trimmed(value, style.decimals),
         })
-        .inner;
-    let rect = if response.rect.is_positive() {
-        response.rect
-    } else {
-        rect
-    };
-    let state = if response.is_pointer_button_down_on() || response.has_focus() {
-        &fills.active
-    } else if response.hovered() {
-        &fills.hovered
-    } else {
-        &fills.inactive
-    };
+        .suffix(style.unit.to_owned());
+    let response = ui.scope(|ui| {
+        let widgets = &mut ui.visuals_mut().widgets;
+        for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+            state.weak_bg_fill = Color32::TRANSPARENT;
+        }
+        ui.add_sized(size, drag)
+    });
+    let response = response.inner;
+    let (rect, state) = (response.rect, ui.style().interact(&response));
     let mut shapes = vec![Shape::rect_filled(rect, state.corner_radius, state.weak_bg_fill)];
     if let Some([from, to]) = span {
-        let x = |share: f32| egui::lerp(rect.x_range(), share);
+        let x = |share: f32| lerp(rect.x_range(), share);
         let filled = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), rect.y_range());
-        let color = theme::accent(ui.visuals().dark_mode).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
+        let color = theme::accent(ui).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
         shapes.push(bar(rect, filled, color, state.corner_radius));
     }
-    ui.painter().set(background, Shape::Vec(shapes));
+    ui.painter().set(field, Shape::Vec(shapes));
+    response
+}
+
+/// A number that stands for a value, such as its percentage.
+pub fn number_as<T: Copy>(
+    ui: &mut Ui,
+    value: &mut T,
+    style: &NumberStyle,
+    shown: impl FnOnce(T) -> f64,
+    of_shown: impl FnOnce(f64) -> T,
+) -> Response {
+    let mut edited = shown(*value);
+    let response = number(ui, &mut edited, style);
+    if response.changed() {
+        *value = of_shown(edited);
+    }
+    response
+}
+
+/// A number that follows another one until it is changed.
+pub fn number_following<N: Numeric>(ui: &mut Ui, value: &mut Option<N>, otherwise: N, style: &NumberStyle) -> Response {
+    let mut edited = value.unwrap_or(otherwise);
+    let response = number(ui, &mut edited, style);
+    if response.changed() {
+        *value = Some(edited);
+    }
     response
 }
 
@@ -227,19 +257,16 @@ fn trimmed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// The filled part of a field.
-fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) -> Shape {
-    let right = if filled.right() >= field.right() - 1.0 {
-        radius.ne
-    } else {
-        0
-    };
-    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
-        radius.nw
-    } else {
-        0
-    };
-    let corners = egui::CornerRadius {
+/// The filled part of a field, round where it reaches the field's ends.
+fn bar(field: Rect, filled: Rect, color: Color32, radius: CornerRadius) -> Shape {
+    let (mut left, mut right) = (0, 0);
+    if filled.right() >= field.right() - 1.0 {
+        right = radius.ne;
+    }
+    if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
+        left = radius.nw;
+    }
+    let corners = CornerRadius {
         nw: left,
         sw: left,
         ne: right,
@@ -260,26 +287,23 @@ pub fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
     let swatch_width = if has_code { beside_code } else { ui.available_width() };
     // The picker goes over hue and saturation, which rounds, even when it is not touched, and reports that as a change.
     let mut picked = *linear;
-    let swatch = ui
-        .scope(|ui| {
-            ui.spacing_mut().interact_size.x = swatch_width;
-            ui.color_edit_button_rgb(&mut picked)
-        })
-        .inner;
+    let swatch = ui.scope(|ui| {
+        ui.spacing_mut().interact_size.x = swatch_width;
+        ui.color_edit_button_rgb(&mut picked)
+    });
+    let mut swatch = swatch.inner;
     if std::iter::zip(picked, *linear).any(|(new, old)| (new - old).abs() > PICKER_ROUNDING) {
         *linear = picked;
     }
     // A colour like the panel's would not be seen as a field.
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let radius = ui.visuals().widgets.inactive.corner_radius;
-    ui.painter()
-        .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
+    ui.painter().rect_stroke(swatch.rect, radius, line, StrokeKind::Inside);
     show_focus(ui, &swatch);
-    let mut response = swatch.clone();
     if has_code && hex_field(ui, name, linear) {
-        response.mark_changed();
+        swatch.mark_changed();
     }
-    response
+    swatch
 }
 
 fn hex_field(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> bool {
@@ -287,49 +311,48 @@ fn hex_field(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> bool {
     let shown = hex_of(*linear);
     let typed: Option<String> = ui.data(|data| data.get_temp(id));
     let mut text = typed.unwrap_or_else(|| shown.clone());
-    let field = egui::TextEdit::singleline(&mut text)
+    let field = TextEdit::singleline(&mut text)
         .id(id.with("field"))
         .font(TextStyle::Monospace)
         .desired_width(HEX_WIDTH)
         .margin(Vec2::new(4.0, 3.0));
     let response = ui.add(field).accessible_name(format!("{name}, sRGB code"));
+    let parsed = linear_of(&text).filter(|parsed| response.changed() && hex_of(*parsed) != shown);
     if response.has_focus() {
-        ui.data_mut(|data| data.insert_temp(id, text.clone()));
+        ui.data_mut(|data| data.insert_temp(id, text));
     } else {
         ui.data_mut(|data| data.remove::<String>(id));
     }
-    let parsed = response.changed().then(|| linear_of(&text)).flatten();
-    if let Some(parsed) = parsed.filter(|parsed| hex_of(*parsed) != shown) {
-        *linear = parsed;
-        return true;
-    }
-    false
+    *linear = parsed.unwrap_or(*linear);
+    parsed.is_some()
 }
 
 /// `#rrggbb` in sRGB.
-pub fn hex_of(linear: [f32; 3]) -> String {
-    let [r, g, b] = srgb_of(linear);
+fn hex_of(linear: [f32; 3]) -> String {
+    let [r, g, b, _] = shown(linear).to_array();
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// The sRGB bytes of a linear colour.
-pub fn srgb_of([r, g, b]: [f32; 3]) -> [u8; 3] {
+/// A linear colour as the screen shows it.
+pub fn shown([r, g, b]: [f32; 3]) -> Color32 {
     let encoded = srgb_from_linear(vec3(r, g, b)).to_f32();
-    encoded.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
+    rgb(encoded.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8))
+}
+
+/// A colour by its sRGB bytes.
+pub fn rgb([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
 }
 
 fn linear_of(text: &str) -> Option<[f32; 3]> {
     let digits = text.trim().trim_start_matches('#');
-    if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
-        return None;
-    }
-    let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
-    let [r, g, b] = [byte(0)?, byte(1)?, byte(2)?].map(|byte| f32::from(byte) / 255.0);
+    let code = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6)?;
+    let [_, r, g, b] = code.to_be_bytes().map(|byte| f32::from(byte) / 255.0);
     Some(linear_from_srgb(vec3(r, g, b)).to_f32())
 }
 
 /// Three numbers side by side, with what each is called.
-pub fn triple<N: egui::emath::Numeric>(
+pub fn triple<N: Numeric>(
     ui: &mut Ui,
     name: &str,
     values: &mut [N; 3],
@@ -338,48 +361,47 @@ pub fn triple<N: egui::emath::Numeric>(
 ) -> Response {
     let spacing = ui.spacing().item_spacing.x;
     let width = ((ui.available_width() - 2.0 * spacing) / 3.0).max(30.0);
-    let mut whole: Option<Response> = None;
-    for (value, part) in values.iter_mut().zip(parts) {
+    let responses = values.iter_mut().zip(parts).map(|(value, part)| {
         let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
-        let response = ui
-            .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
-            .accessible_name(format!("{name}, {part}"));
-        whole = Some(match whole {
-            Some(whole) => whole.union(response),
-            None => response,
-        });
-    }
+        ui.add_sized(Vec2::new(width, ROW_HEIGHT), drag)
+            .accessible_name(format!("{name}, {part}"))
+    });
+    let whole = responses.reduce(|whole, response| whole.union(response));
     whole.unwrap_or_else(|| ui.label(""))
 }
 
 /// One of several: (value, label, help).
 pub fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T, choices: &[(T, &str, &str)]) -> Response {
-    let current = choices.iter().find(|(choice, ..)| choice == value);
-    let mut changed = false;
-    let width = ui.available_width();
-    let shown = egui::ComboBox::from_id_salt(id)
-        .width(width)
+    let before = value.clone();
+    let at = choices.iter().position(|(choice, ..)| *choice == before);
+    let shown = ComboBox::from_id_salt(id)
+        .width(ui.available_width())
         .truncate()
-        .selected_text(current.map_or("", |(_, label, _)| *label).to_owned())
+        .selected_text(at.map_or("", |at| choices[at].1))
         .show_ui(ui, |ui| {
             for (choice, label, help) in choices {
-                let item = ui.selectable_label(choice == value, *label);
-                let item = if help.is_empty() {
-                    item
-                } else {
-                    item.on_hover_text(*help)
-                };
-                if item.clicked() {
+                let item = ui.selectable_label(*choice == before, *label);
+                if explained(item, help).clicked() {
                     // By the keyboard, too, which egui alone would leave it open for.
                     ui.close();
-                    changed |= choice != value;
                     *value = choice.clone();
                 }
             }
         });
     let mut response = shown.response;
-    changed |= step_by_keys(ui, &response, value, choices);
-    if changed {
+    if response.has_focus() {
+        // Up and down choose the neighbour, as in other programs.
+        hold_arrows(ui, &response, false, true);
+        let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+        let (down, up) = (pressed(Key::ArrowDown), pressed(Key::ArrowUp));
+        let wanted = (at.unwrap_or(0) + down).saturating_sub(up);
+        if let Some((choice, ..)) = choices.get(wanted.min(choices.len().saturating_sub(1)))
+            && down + up > 0
+        {
+            *value = choice.clone();
+        }
+    }
+    if *value != before {
         response.mark_changed();
     }
     response
@@ -400,28 +422,6 @@ pub fn choice_menu<T: PartialEq + Clone>(ui: &mut Ui, label: &str, value: &mut T
     *value != before
 }
 
-/// Up and down choose the neighbour, as in other programs.
-fn step_by_keys<T: PartialEq + Clone>(
-    ui: &Ui,
-    response: &Response,
-    value: &mut T,
-    choices: &[(T, &str, &str)],
-) -> bool {
-    if !response.has_focus() {
-        return false;
-    }
-    hold_arrows(ui, response, false, true);
-    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, key));
-    let (down, up) = (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp));
-    let at = choices.iter().position(|(choice, ..)| choice == value).unwrap_or(0);
-    let wanted = (at + down).saturating_sub(up).min(choices.len().saturating_sub(1));
-    let Some((choice, ..)) = choices.get(wanted).filter(|_| wanted != at) else {
-        return false;
-    };
-    *value = choice.clone();
-    true
-}
-
 /// The heading of a group of rows, which opens and closes it.
 pub fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     group_open(ui, title, None, body);
@@ -429,14 +429,12 @@ pub fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
 
 /// The same, opened or closed by the program in this frame.
 pub fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOnce(&mut Ui)) {
-    let request = requested(ui)
-        .is_some_and(|requested| requested.group == title)
-        .then_some(true);
+    let is_requested = requested(ui).is_some_and(|requested| requested.group == title);
     let header = RichText::new(title).strong();
-    let shown = egui::CollapsingHeader::new(header)
+    let shown = CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(opens.unwrap_or(true))
-        .open(request.or(opens))
+        .open(is_requested.then_some(true).or(opens))
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);
@@ -446,12 +444,15 @@ pub fn group_open(ui: &mut Ui, title: &str, opens: Option<bool>, body: impl FnOn
 }
 
 /// A frame around what has the keys, where egui draws it as if it had not.
-fn show_focus(ui: &Ui, response: &Response) {
+pub fn show_focus(ui: &Ui, response: &Response) {
     if response.has_focus() {
-        let stroke = egui::Stroke::new(1.0, theme::accent(ui.visuals().dark_mode));
-        ui.painter()
-            .rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
+        frame(ui, response.rect);
     }
+}
+
+pub fn frame(ui: &Ui, rect: Rect) {
+    let stroke = Stroke::new(1.0, theme::accent(ui));
+    ui.painter().rect_stroke(rect, 3.0, stroke, StrokeKind::Inside);
 }
 
 /// Content that appears and disappears by itself, such as answers of other threads, above controls that stay. egui
@@ -470,50 +471,6 @@ pub fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
     result
 }
 
-/// An image with a name beside it, to choose.
-pub struct PictureRow<'a> {
-    pub name: &'a str,
-    /// What it is called where only one thing may have a name.
-    pub full_name: &'a str,
-    /// `None` until it is there.
-    pub picture: Option<&'a TextureHandle>,
-    /// Of the image, points.
-    pub size: Vec2,
-    /// Stands in for the image.
-    pub color: Color32,
-    pub is_current: bool,
-}
-
-impl PictureRow<'_> {
-    pub fn show(&self, ui: &mut Ui) -> Response {
-        let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.full_name));
-        let visuals = ui.style().interact_selectable(&response, self.is_current);
-        if self.is_current || response.hovered() || response.has_focus() {
-            ui.painter()
-                .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
-        }
-        let place = Rect::from_min_size(rect.left_top() + Vec2::new(4.0, 2.0), self.size);
-        match self.picture {
-            Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
-            None => {
-                let line = ui.visuals().widgets.noninteractive.bg_stroke;
-                ui.painter()
-                    .rect(place, 3.0, self.color, line, egui::StrokeKind::Inside);
-            }
-        }
-        let font = TextStyle::Body.resolve(ui.style());
-        let mut job = LayoutJob::simple_singleline(self.name.to_owned(), font, visuals.text_color());
-        let left = place.right() + 10.0;
-        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(1.0));
-        let galley = ui.painter().layout_job(job);
-        let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
-        ui.painter().galley(at, galley, visuals.text_color());
-        response
-    }
-}
-
 /// A field for a new name, which has the keys. `Some(None)`: left as it was.
 pub fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
     let is_done = text_field(ui, "New name", name)?;
@@ -523,10 +480,8 @@ pub fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
 
 /// A field for words, which has the keys. `Some`: whether they are to count.
 pub fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
-    let field = ui
-        .add(egui::TextEdit::singleline(text).desired_width(f32::INFINITY))
-        .accessible_name(name);
-    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+    let field = wide_field(ui, text, name);
+    if ui.input(|input| input.key_pressed(Key::Escape)) {
         return Some(false);
     }
     if field.lost_focus() {
@@ -539,16 +494,68 @@ pub fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
     None
 }
 
+/// A field for words over the width that is left, and what it is called.
+pub fn wide_field(ui: &mut Ui, text: &mut String, name: &str) -> Response {
+    let field = TextEdit::singleline(text).desired_width(f32::INFINITY);
+    ui.add(field).accessible_name(name)
+}
+
 /// Why work beside the window came to nothing, where it did.
-pub fn failure(ui: &mut Ui, why: Option<String>) {
-    if let Some(why) = why {
-        ui.add(egui::Label::new(RichText::new(why).color(ui.visuals().error_fg_color)).wrap());
+pub fn failure(ui: &mut Ui, why: impl Into<Option<String>>) {
+    if let Some(why) = why.into() {
+        ui.colored_label(ui.visuals().error_fg_color, why);
     }
+}
+
+/// What is to be looked at.
+pub fn warning(ui: &mut Ui, text: impl Into<String>) -> Response {
+    ui.colored_label(ui.visuals().warn_fg_color, text.into())
+}
+
+/// A text in one line, as far as it goes.
+pub fn line(ui: &mut Ui, text: impl Into<WidgetText>) -> Response {
+    ui.add(Label::new(text).truncate())
+}
+
+/// Says what something that is drawn by hand is.
+pub fn describe(response: &Response, role: Role, name: &str) {
+    response.widget_info(|| WidgetInfo::labeled(role, true, name));
+}
+
+/// Contents of which the identity does not follow from what stands before them, which comes and goes.
+pub fn known_by<R>(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let builder = UiBuilder::new().scope_id(Id::unique(id));
+    ui.scope_builder(builder, contents).inner
 }
 
 /// A button with help; whether it was pressed.
 pub fn pressed(ui: &mut Ui, text: impl Into<String>, help: &str) -> bool {
     ui.button(text.into()).on_hover_text(help).clicked()
+}
+
+/// A button that can be pressed where it is possible, and else says why not; whether it was pressed.
+pub fn pressed_if(ui: &mut Ui, is_possible: bool, text: impl Into<String>, help: &str, why_not: &str) -> bool {
+    let button = ui.add_enabled(is_possible, Button::new(text.into()));
+    let button = explained(button, help);
+    match why_not {
+        "" => button.clicked(),
+        _ => button.on_disabled_hover_text(why_not).clicked(),
+    }
+}
+
+/// An entry of a menu, which closes that, by the keyboard, too, for which egui waits for a click; whether it was chosen.
+pub fn entry(ui: &mut Ui, text: impl Into<String>, help: &str) -> bool {
+    let is_chosen = explained(ui.button(text.into()), help).clicked();
+    if is_chosen {
+        ui.close();
+    }
+    is_chosen
+}
+
+/// A button that brings a file back that was removed, where there is one; whether it was pressed.
+pub fn restores(ui: &mut Ui, removed: Option<&std::path::Path>) -> bool {
+    let name = removed.and_then(|path| path.file_stem());
+    name.is_some_and(|name| ui.button(format!("Restore {}", name.to_string_lossy())).clicked())
 }
 
 /// Contents of a row from its right end.
@@ -558,10 +565,27 @@ pub fn at_right<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
 
 /// The choices of a closed list.
 pub fn choices<T: Named>() -> Vec<(T, &'static str, &'static str)> {
-    T::ALL
-        .iter()
-        .map(|choice| (*choice, choice.label(), choice.help()))
-        .collect()
+    let choices = T::ALL.iter();
+    choices.map(|choice| (*choice, choice.label(), choice.help())).collect()
+}
+
+/// A colour, in a frame: one like the panel's would not be seen.
+pub fn swatch(ui: &mut Ui, size: Vec2, color: Color32) {
+    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    ui.painter().rect(place, 3.0, color, line, StrokeKind::Inside);
+}
+
+/// The rank to which parts fit into a room with all that rank before them, points.
+pub fn fitting<R: Ord + Copy>(mut parts: Vec<(R, f32)>, room: f32) -> Option<R> {
+    parts.sort_by_key(|(rank, _)| *rank);
+    let mut left = room;
+    let fits = |of_rank: &&[(R, f32)]| {
+        left -= of_rank.iter().map(|(_, width)| width).sum::<f32>();
+        left >= 0.0
+    };
+    let of_ranks = parts.chunk_by(|a, b| a.0 == b.0).take_while(fits);
+    of_ranks.last().map(|of_rank| of_rank[0].0)
 }
 
 /// A note in weak text.

@@ -30,15 +30,9 @@ pub fn about(seconds: f64) -> String {
         s if s < 100.0 => 10.0,
         _ => 60.0,
     };
-    duration_whole(((seconds / step).round() * step).max(1.0))
-}
-
-/// Whole seconds, minutes or hours.
-fn duration_whole(seconds: f64) -> String {
-    if seconds < 9.95 {
-        format!("{seconds:.0} s")
-    } else {
-        duration(seconds)
+    match ((seconds / step).round() * step).max(1.0) {
+        s if s < 9.95 => format!("{s:.0} s"),
+        s => duration(s),
     }
 }
 

@@ -1,14 +1,11 @@
 //! Error against time: how exact the image is, and what more would cost.
 
-use egui::{Color32, Ui};
-use egui_plot::{HLine, Line, LineStyle, PlotPoints, Points};
+use egui_plot::{HLine, LineStyle, Points};
 
-use super::Panel;
+use super::*;
 use crate::analysis::noise::Noise;
-use crate::app::desk::Desk;
-use crate::app::kit::charts::log_log;
+use crate::app::kit::charts::{line, log_log};
 use crate::app::kit::words::{duration, error, percent, percent_short};
-use crate::app::kit::{theme, widgets};
 use crate::document::RenderSettings;
 use crate::render::{Measurement, Progress};
 
@@ -20,7 +17,7 @@ const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 
 pub struct ConvergencePanel;
 
 impl Panel for ConvergencePanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let history = &desk.snapshot.history;
         let Some(last) = history.last() else {
             widgets::note(ui, unknown(&desk.document.render));
@@ -89,16 +86,14 @@ fn forecast(last: &Measurement, wanted: Option<f64>) -> Option<String> {
 }
 
 fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
-    let visible: Vec<&Measurement> = history
-        .iter()
-        .filter(|seen| seen.noise.relative > 0.0 && seen.engine_seconds > 0.0)
-        .collect();
+    let mut visible = history.to_vec();
+    visible.retain(|seen| seen.noise.relative > 0.0 && seen.engine_seconds > 0.0);
     let Some(last) = visible.last() else { return };
-    let accent = theme::accent(ui.visuals().dark_mode);
+    let accent = theme::accent(ui);
     let weak = ui.visuals().weak_text_color();
-    let points = |value: &dyn Fn(&Measurement) -> f64| -> Vec<[f64; 2]> {
-        let place = |seen: &&Measurement| [seen.engine_seconds.log10(), value(seen).log10()];
-        visible.iter().map(place).collect()
+    let points = |name: &'static str, value: &dyn Fn(&Noise) -> f64| {
+        let place = |seen: &Measurement| [seen.engine_seconds.log10(), value(&seen.noise).log10()];
+        (name, visible.iter().map(place).collect::<Vec<_>>())
     };
     // Over the time seen and a decade more.
     let law = [visible[0].engine_seconds, 10.0 * last.engine_seconds].map(|seconds| {
@@ -107,21 +102,16 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
     });
     let height = (0.7 * ui.available_width()).clamp(160.0, 420.0);
     let shown = log_log("convergence", ["Render time", "Relative error"], height, [0.04, 0.08]).show(ui, |plot_ui| {
-        let dashed = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
-            Line::new(name.to_owned(), PlotPoints::from(points))
-                .color(color)
-                .style(LineStyle::dashed_dense())
-        };
-        plot_ui.line(dashed("1/√t", law.to_vec(), weak));
+        let dashed = LineStyle::dashed_dense();
+        plot_ui.line(line("1/√t", law.to_vec(), weak, 1.5).style(dashed));
         for (name, end) in [
-            ("upper end", points(&|seen| seen.noise.high)),
-            ("lower end", points(&|seen| seen.noise.low)),
+            points("upper end", &|noise| noise.high),
+            points("lower end", &|noise| noise.low),
         ] {
-            let color = accent.gamma_multiply(0.5);
-            plot_ui.line(Line::new(name, PlotPoints::from(end)).color(color).width(1.0));
+            plot_ui.line(line(name, end, accent.gamma_multiply(0.5), 1.0));
         }
-        let errors = points(&|seen| seen.noise.relative);
-        plot_ui.points(Points::new("error", PlotPoints::from(errors)).color(accent).radius(2.5));
+        let (name, errors) = points("error", &|noise| noise.relative);
+        plot_ui.points(Points::new(name, errors).color(accent).radius(2.5));
         if let Some(wanted) = wanted {
             plot_ui.hline(HLine::new("to reach", wanted.log10()).color(weak).width(1.0));
         }

@@ -2,29 +2,20 @@
 
 use std::time::Instant;
 
-use egui::{RichText, Ui};
-
-use super::Panel;
-use crate::app::desk::Desk;
-use crate::app::kit::widgets;
-use crate::render::worker::Level;
+use super::*;
 
 /// What was said, newest first.
 #[derive(Default)]
 pub struct LogPanel;
 
 impl Panel for LogPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         if desk.shared.messages.is_empty() {
             widgets::note(ui, "Nothing to report.");
         }
         for entry in desk.shared.messages.iter().rev() {
-            let color = match entry.level {
-                Level::Error => ui.visuals().error_fg_color,
-                Level::Warning => ui.visuals().warn_fg_color,
-                Level::Info => ui.visuals().text_color(),
-            };
-            ui.add(egui::Label::new(RichText::new(&entry.text).color(color)).wrap());
+            let color = theme::level_color(ui.visuals(), entry.level);
+            ui.colored_label(color, &entry.text);
             widgets::note(ui, age(entry.at));
             ui.add_space(4.0);
         }

@@ -1,19 +1,25 @@
 //! The panels, one a file, listed in [`crate::app::pane`]. A panel keeps its state to itself: it sees the desk and no
 //! other panel.
 
-use egui::Ui;
+// What most panels use: they take it all.
+use std::sync::Arc;
 
-use super::actions::Command;
+use egui::*;
+
+use super::actions::{Action, Command};
 use super::desk::Desk;
+use super::kit::icons::{self, Icon};
+use super::kit::theme;
+use super::kit::widgets::{self, NumberStyle};
 use super::pane::Pane;
 
 /// A panel: what it remembers, and how it is drawn.
 pub trait Panel {
     /// Draws it and takes what the user does with it.
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>);
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk);
 
     /// Runs once a frame before anything is drawn, whether the panel is seen or not.
-    fn tick(&mut self, _desk: &mut Desk<'_>) {}
+    fn tick(&mut self, _desk: &mut Desk) {}
 
     /// Hears of a command that was chosen somewhere else and concerns a panel.
     fn on_command(&mut self, _command: Command) {}
@@ -37,14 +43,14 @@ crate::app::pane::list!(panels);
 pub struct Panels(Vec<(Pane, Box<dyn Panel>)>);
 
 impl Panels {
-    pub fn show(&mut self, pane: Pane, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, pane: Pane, ui: &mut Ui, desk: &mut Desk) {
         if let Some((_, panel)) = self.0.iter_mut().find(|(of, _)| *of == pane) {
             panel.show(ui, desk);
         }
     }
 
     /// See [`Panel::tick`].
-    pub fn tick(&mut self, desk: &mut Desk<'_>) {
+    pub fn tick(&mut self, desk: &mut Desk) {
         self.0.iter_mut().for_each(|(_, panel)| panel.tick(desk));
     }
 

@@ -1,11 +1,6 @@
 //! Renders that go on beside the window: what waits, how far it is, and what came of it.
 
-use egui::{Align, Layout, RichText, Ui};
-
-use super::Panel;
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
-use crate::app::kit::{theme, widgets};
+use super::*;
 use crate::render::queue::{Entry, State};
 
 /// The renders beside the window.
@@ -13,7 +8,7 @@ use crate::render::queue::{Entry, State};
 pub struct QueuePanel;
 
 impl Panel for QueuePanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         ui.horizontal_wrapped(|ui| {
             for command in [Command::QueuePicture, Command::Turntable] {
                 desk.button(ui, command);
@@ -24,15 +19,11 @@ impl Panel for QueuePanel {
         ui.horizontal_wrapped(|ui| {
             let mut is_paused = queue.is_paused();
             let help = "What is being rendered stays where it is, until this is switched off.";
-            if ui
-                .checkbox(&mut is_paused, "Pause the queue")
-                .on_hover_text(help)
-                .changed()
-            {
+            let pause = ui.checkbox(&mut is_paused, "Pause the queue");
+            if pause.on_hover_text(help).changed() {
                 queue.pause(is_paused);
             }
-            let clear = egui::Button::new("Clear finished");
-            if ui.add_enabled(entries.iter().any(Entry::is_over), clear).clicked() {
+            if widgets::pressed_if(ui, entries.iter().any(Entry::is_over), "Clear finished", "", "") {
                 queue.remove_over();
             }
         });
@@ -48,15 +39,13 @@ impl Panel for QueuePanel {
         for (index, entry) in entries.iter().enumerate() {
             let can_be_first = entry.state == State::Waiting && first.is_some_and(|first| first < index);
             // By its number: those above come to their ends and go.
-            let id = egui::Id::unique(("queue", entry.id));
-            let apart = egui::UiBuilder::new().scope_id(id);
-            ui.scope_builder(apart, |ui| row(ui, desk, entry, can_be_first));
+            widgets::known_by(ui, ("queue", entry.id), |ui| row(ui, desk, entry, can_be_first));
         }
     }
 }
 
 /// A task: its name with what can be done with it, and how it stands.
-fn row(ui: &mut Ui, desk: &Desk<'_>, entry: &Entry, can_be_first: bool) {
+fn row(ui: &mut Ui, desk: &Desk, entry: &Entry, can_be_first: bool) {
     let queue = &desk.shared.queue;
     let name = &entry.name;
     ui.horizontal(|ui| {
@@ -66,30 +55,26 @@ fn row(ui: &mut Ui, desk: &Desk<'_>, entry: &Entry, can_be_first: bool) {
                 queue.remove(entry.id);
             }
             if entry.state == State::Waiting {
-                let button = ui.add_enabled(can_be_first, egui::Button::new("Next"));
+                let button = ui.add_enabled(can_be_first, Button::new("Next"));
                 let button = button.accessible_name(format!("Next {name}"));
-                if button
-                    .on_hover_text("Renders it before all others that wait.")
-                    .clicked()
-                {
+                let help = "Renders it before all others that wait.";
+                if button.on_hover_text(help).clicked() {
                     queue.put_first(entry.id);
                 }
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(RichText::new(name).strong()).truncate());
+                widgets::line(ui, RichText::new(name).strong());
             });
         });
     });
     match &entry.state {
         State::Waiting => widgets::note(ui, "waiting"),
         State::Rendering(share) => {
-            let bar = ui.add(egui::ProgressBar::new(*share as f32).show_percentage());
+            let bar = ui.add(ProgressBar::new(*share as f32).show_percentage());
             bar.accessible_name(format!("Progress of {name}"));
         }
         State::Done(words) | State::Cancelled(words) => widgets::note(ui, words),
-        State::Failed(why) => {
-            ui.add(egui::Label::new(RichText::new(why).color(ui.visuals().error_fg_color)).wrap());
-        }
+        State::Failed(why) => widgets::failure(ui, why.clone()),
     }
     ui.add_space(theme::GAP);
 }

@@ -1,20 +1,16 @@
 //! The race: techniques against each other on this view, and the one that is worth its time.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
-use egui_plot::{Line, PlotPoint, PlotPoints, PlotResponse, Points, Text};
+use egui_plot::{PlotPoint, PlotResponse, Points, Text};
 
-use super::Panel;
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
-use crate::app::kit::charts::log_log;
-use crate::app::kit::widgets::{self, Name, NumberStyle};
+use super::*;
+use crate::app::kit::charts::{line, log_log, nearest};
+use crate::app::kit::tile::pixels;
 use crate::app::kit::words::{about, duration, percent};
-use crate::app::kit::{theme, widgets::RowResponse};
 use crate::app::study::{StudyWorker, engine, small_document};
 use crate::document::ViewSettings;
+use crate::job::film::Image;
 use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::study::race::{Race, RaceOptions, Runner, race};
@@ -24,10 +20,10 @@ use crate::study::technique::{GROUPS, Technique};
 const SIDE_MAX: u32 = 160;
 /// Width of a thumbnail, points.
 const THUMBNAIL: f32 = 112.0;
-/// How near to a point a click must be, points.
-const REACH: f32 = 14.0;
 /// Kinds that are chosen at first.
 const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
+/// How long each technique renders at first.
+const SECONDS: f64 = 2.0;
 /// References are rendered for up to this many times each technique's racing time.
 const REFERENCE_TIMES: f64 = 4.0;
 
@@ -43,8 +39,8 @@ pub struct RacePanel {
 /// The thumbnails of a race.
 struct Pictured {
     race: Arc<Race>,
-    equal_time: Vec<TextureHandle>,
-    equal_error: Vec<TextureHandle>,
+    /// Of equal time, and of equal error.
+    textures: [Vec<TextureHandle>; 2],
 }
 
 impl Default for RacePanel {
@@ -52,7 +48,7 @@ impl Default for RacePanel {
         Self {
             worker: StudyWorker::default(),
             chosen: CHOSEN.to_vec(),
-            seconds: 2.0,
+            seconds: SECONDS,
             shows_equal_error: false,
             pictured: None,
         }
@@ -60,7 +56,7 @@ impl Default for RacePanel {
 }
 
 impl Panel for RacePanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let state = self;
         choices(ui, state);
         let help = "Renders each technique in turn; measures noise and bias.";
@@ -71,11 +67,8 @@ impl Panel for RacePanel {
         });
         state.worker.controls(ui, desk, ("Run the race", help), takes, |desk| {
             let document = small_document(desk, SIDE_MAX);
-            let plan = desk
-                .snapshot
-                .scene
-                .as_ref()
-                .map_or_else(Plan::general, |scene| scene.job.plan.clone());
+            let scene = desk.snapshot.scene.as_ref();
+            let plan = scene.map_or_else(Plan::general, |scene| scene.job.plan.clone());
             let options = RaceOptions {
                 seconds,
                 slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
@@ -94,7 +87,7 @@ impl Panel for RacePanel {
         }
     }
 
-    fn tick(&mut self, desk: &mut Desk<'_>) {
+    fn tick(&mut self, desk: &mut Desk) {
         self.worker.tick(desk);
     }
 
@@ -121,32 +114,23 @@ fn seconds_at_most(techniques: &[Technique], seconds: f64) -> f64 {
 fn choices(ui: &mut Ui, state: &mut RacePanel) {
     for group in GROUPS {
         let mut is_chosen = state.chosen.contains(&group.name);
-        if ui
-            .checkbox(&mut is_chosen, group.label)
-            .on_hover_text(group.help)
-            .changed()
-        {
-            state.chosen.retain(|name| *name != group.name);
-            if is_chosen {
-                state.chosen.push(group.name);
+        let choice = ui.checkbox(&mut is_chosen, group.label).on_hover_text(group.help);
+        if choice.changed() {
+            match is_chosen {
+                true => state.chosen.push(group.name),
+                false => state.chosen.retain(|name| *name != group.name),
             }
         }
     }
     let style = NumberStyle::plain(0.01..=600.0, " s", 0.1, 2);
-    let name = Name::new(
-        "Time per technique",
-        "Time per technique",
-        "How long each of them renders.",
-    );
-    let RowResponse { reset, .. } = widgets::row(ui, name, |ui| widgets::number(ui, &mut state.seconds, &style));
-    if reset {
-        state.seconds = RacePanel::default().seconds;
-    }
+    let label = "Time per technique";
+    let name = [label, label, "How long each of them renders."];
+    widgets::number_row(ui, name, &mut state.seconds, SECONDS, &style);
 }
 
-fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
+fn outcome(ui: &mut Ui, desk: &mut Desk, state: &mut RacePanel, race: &Arc<Race>) {
     let is_stale = state.worker.is_stale(desk);
-    let mut taken = chart(ui, race);
+    let charted = chart(ui, race);
     widgets::note(
         ui,
         format!(
@@ -155,18 +139,15 @@ fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<R
             percent(race.noise)
         ),
     );
-    taken = table(ui, race, is_stale).or(taken);
+    let taken = table(ui, race, is_stale).or(charted);
     if let Some(index) = taken.filter(|_| !is_stale) {
-        take(desk, &race.runners[index].technique, &race.runners[index].label);
+        // Undo takes the settings back.
+        let Runner { technique, label, .. } = &race.runners[index];
+        *desk.document = technique.apply(desk.document);
+        desk.edits.note(format!("Use the race's {}", label.to_lowercase()), "");
         state.worker.holds_for(desk.document);
     }
     pictures(ui, desk, state, race);
-}
-
-/// Gives the document a technique's settings; undo takes them back.
-fn take(desk: &mut Desk<'_>, technique: &Technique, label: &str) {
-    *desk.document = technique.apply(desk.document);
-    desk.edits.note(format!("Use the race's {}", label.to_lowercase()), "");
 }
 
 /// The runners by time to the noise against bias; the one that was clicked.
@@ -179,49 +160,31 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
         ]
     };
     let places: Vec<[f64; 2]> = race.runners.iter().map(place).collect();
-    let mut best: Vec<[f64; 2]> = std::iter::zip(&race.runners, &places)
-        .filter(|(runner, _)| runner.is_on_front)
-        .map(|(_, place)| *place)
-        .collect();
+    let front = race.runners.iter().filter(|runner| runner.is_on_front);
+    let mut best: Vec<[f64; 2]> = front.map(place).collect();
     best.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let accent = theme::accent(ui.visuals().dark_mode);
+    let accent = theme::accent(ui);
     let weak = ui.visuals().weak_text_color();
     let height = (0.8 * ui.available_width()).clamp(180.0, 420.0);
     let time = format!("Time to a noise of {}", percent(race.noise));
     let shown: PlotResponse<()> = log_log("race", [&time, "Bias"], height, [0.2, 0.12]).show(ui, |plot_ui| {
-        plot_ui.line(Line::new("best", PlotPoints::from(best)).color(accent.gamma_multiply(0.6)));
+        plot_ui.line(line("best", best, accent.gamma_multiply(0.6), 1.5));
         for (runner, place) in std::iter::zip(&race.runners, &places) {
             let color = if runner.is_on_front { accent } else { weak };
-            let name = runner.label.clone();
-            plot_ui.points(
-                Points::new(name.clone(), PlotPoints::from(vec![*place]))
-                    .color(color)
-                    .radius(4.0),
-            );
+            let name = &runner.label;
+            plot_ui.points(Points::new(name, *place).color(color).radius(4.0));
             if runner.is_on_front {
                 let at = PlotPoint::new(place[0], place[1]);
-                let text = Text::new(name.clone(), at, format!(" {name}")).color(color);
-                plot_ui.text(text.anchor(egui::Align2::LEFT_BOTTOM));
+                let text = Text::new(name, at, format!(" {name}")).color(color);
+                plot_ui.text(text.anchor(Align2::LEFT_BOTTOM));
             }
         }
     });
-    shown.response.clone().accessible_name("Time against bias");
-    let at = shown
-        .response
-        .interact_pointer_pos()
-        .filter(|_| shown.response.clicked())?;
-    let distance = |place: &[f64; 2]| {
-        let point = PlotPoint::new(place[0], place[1]);
-        shown.transform.position_from_point(&point).distance(at)
-    };
-    let nearest = places
-        .iter()
-        .map(distance)
-        .enumerate()
-        .min_by(|(_, a), (_, b)| a.total_cmp(b));
-    nearest
-        .filter(|(index, distance)| *distance < REACH && is_setting(&race.runners[*index]))
-        .map(|(index, _)| index)
+    let (response, transform) = (shown.response, shown.transform);
+    let at = response.interact_pointer_pos().filter(|_| response.clicked());
+    response.accessible_name("Time against bias");
+    let nearest = nearest(&places, &transform, at?)?;
+    is_setting(&race.runners[nearest]).then_some(nearest)
 }
 
 /// Whether it can become a document's.
@@ -231,22 +194,17 @@ fn is_setting(runner: &Runner) -> bool {
 
 /// The same as a table, the soonest first; the one that was chosen.
 fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
-    let mut order: Vec<usize> = (0..race.runners.len()).collect();
-    order.sort_by(|a, b| {
-        race.runners[*a]
-            .time_to_noise
-            .total_cmp(&race.runners[*b].time_to_noise)
-    });
+    let mut order: Vec<(usize, &Runner)> = race.runners.iter().enumerate().collect();
+    order.sort_by(|(_, a), (_, b)| a.time_to_noise.total_cmp(&b.time_to_noise));
     let mut taken = None;
-    egui::Grid::new("runners").num_columns(4).striped(true).show(ui, |ui| {
+    Grid::new("runners").striped(true).show(ui, |ui| {
         let to_noise = format!("To {}", percent(race.noise));
         for heading in ["", to_noise.as_str(), "Bias", ""] {
             ui.weak(heading);
         }
         ui.end_row();
-        for index in order {
-            let runner = &race.runners[index];
-            let text = egui::RichText::new(&runner.label);
+        for (index, runner) in order {
+            let text = RichText::new(&runner.label);
             ui.label(if runner.is_on_front { text.strong() } else { text });
             let time = ui.label(duration(runner.time_to_noise));
             time.on_hover_text(format!(
@@ -259,18 +217,17 @@ fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
                 runner.samples_per_pixel
             ));
             ui.label(bias(runner));
-            let is_usable = is_setting(runner) && !is_stale;
-            let button = ui.add_enabled(is_usable, egui::Button::new("Use").small());
+            let button = ui.add_enabled(is_setting(runner) && !is_stale, Button::new("Use").small());
             let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
             let button = button.on_disabled_hover_text(if is_stale {
                 "The race was run before the last changes: run it again."
             } else {
                 "Not a setting of a document."
             });
-            button.clone().accessible_name(format!("Use {}", runner.label));
             if button.clicked() {
                 taken = Some(index);
             }
+            button.accessible_name(format!("Use {}", runner.label));
             ui.end_row();
         }
     });
@@ -288,24 +245,15 @@ fn bias(runner: &Runner) -> String {
 }
 
 /// The thumbnails of equal time or of equal error.
-fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
+fn pictures(ui: &mut Ui, desk: &Desk, state: &mut RacePanel, race: &Arc<Race>) {
     ui.horizontal(|ui| {
         ui.selectable_value(&mut state.shows_equal_error, false, "Equal time");
         ui.selectable_value(&mut state.shows_equal_error, true, "Equal error");
     });
-    if state
-        .pictured
-        .as_ref()
-        .is_none_or(|pictured| !Arc::ptr_eq(&pictured.race, race))
-    {
-        state.pictured = Some(pictured(ui, race, &desk.document.view));
-    }
-    let Some(pictured) = &state.pictured else { return };
-    let textures = if state.shows_equal_error {
-        &pictured.equal_error
-    } else {
-        &pictured.equal_time
-    };
+    let pictured = state.pictured.take_if(|pictured| Arc::ptr_eq(&pictured.race, race));
+    let pictured = pictured.unwrap_or_else(|| pictured_now(ui, race, &desk.document.view));
+    let pictured = state.pictured.insert(pictured);
+    let textures = &pictured.textures[usize::from(state.shows_equal_error)];
     ui.horizontal_wrapped(|ui| {
         for (runner, texture) in std::iter::zip(&race.runners, textures) {
             ui.vertical(|ui| {
@@ -317,21 +265,23 @@ fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RacePanel, race: &Arc<Race
                     (runner.error.value, runner.seconds)
                 };
                 let text = format!("{}: {} in {}", runner.label, percent(error), duration(seconds));
-                ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap());
+                ui.small(text);
             });
         }
     });
 }
 
-fn pictured(ui: &Ui, race: &Arc<Race>, view: &ViewSettings) -> Pictured {
-    let load = |image: &crate::job::film::Image| {
-        let size = [image.width as usize, image.height as usize];
-        let pixels = ColorImage::from_rgba_unmultiplied(size, &display(image, view));
-        ui.ctx().load_texture("race", pixels, TextureOptions::LINEAR)
+fn pictured_now(ui: &Ui, race: &Arc<Race>, view: &ViewSettings) -> Pictured {
+    let load = |of_runner: fn(&Runner) -> &Image| {
+        let images = race.runners.iter().map(of_runner);
+        let textures = images.map(|image| {
+            let pixels = pixels([image.width, image.height], &display(image, view));
+            ui.ctx().load_texture("race", pixels, TextureOptions::LINEAR)
+        });
+        textures.collect()
     };
     Pictured {
         race: race.clone(),
-        equal_time: race.runners.iter().map(|runner| load(&runner.equal_time)).collect(),
-        equal_error: race.runners.iter().map(|runner| load(&runner.equal_error)).collect(),
+        textures: [load(|runner| &runner.equal_time), load(|runner| &runner.equal_error)],
     }
 }

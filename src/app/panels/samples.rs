@@ -1,15 +1,9 @@
 //! What the renderer draws: the samples of the selected material's lobe, out of the engine's own function.
 
-use std::sync::Arc;
+use egui_plot::{Bar, BarChart, Legend};
 
-use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2};
-use egui_plot::{Bar, BarChart, Legend, Line, PlotPoints};
-
-use super::Panel;
-use crate::app::desk::Desk;
-use crate::app::kit::charts::{short, still};
-use crate::app::kit::theme;
-use crate::app::kit::widgets::{self, Name};
+use super::*;
+use crate::app::kit::charts::{line, short, still};
 use crate::app::kit::words::short_number;
 use crate::app::services::beside::started;
 use crate::job::scatter::ScatterRequest;
@@ -58,15 +52,13 @@ pub struct SamplesPanel {
 /// The points as an image, and of what.
 struct Drawn {
     report: Arc<SampleReport>,
-    look: Look,
-    side: usize,
-    color: Color32,
+    look: (Look, usize, Color32),
     reach: f32,
     texture: TextureHandle,
 }
 
 impl Panel for SamplesPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let Some(query) = query(self, desk) else {
             widgets::note(ui, "The engine is being opened.");
             return;
@@ -84,12 +76,10 @@ impl Panel for SamplesPanel {
         widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
         match worker.latest() {
             None if worker.is_busy() => {
-                ui.add(egui::Spinner::new());
+                ui.add(Spinner::new());
             }
             None => {}
-            Some(Err(why)) => {
-                ui.colored_label(ui.visuals().error_fg_color, why);
-            }
+            Some(Err(why)) => widgets::failure(ui, why),
             Some(Ok(report)) => {
                 if state.look == Look::Angle {
                     angle_plot(ui, &report);
@@ -103,7 +93,7 @@ impl Panel for SamplesPanel {
 }
 
 /// What the plots are of: the selected material's specular lobe.
-fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
+fn query(state: &SamplesPanel, desk: &Desk) -> Option<SampleQuery> {
     let engine = desk.snapshot.engine.as_ref()?;
     let material = desk.material();
     let mut model = LobeModel {
@@ -115,7 +105,7 @@ fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     }
     let request = ScatterRequest {
         model,
-        view_angle_deg: desk.shared.lobe_plots.view_angle_deg,
+        view_angle_deg: desk.shared.view_angle_deg,
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
     };
@@ -126,7 +116,7 @@ fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     })
 }
 
-fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut SamplesPanel) {
+fn controls(ui: &mut Ui, desk: &mut Desk, state: &mut SamplesPanel) {
     ui.horizontal_wrapped(|ui| {
         for &look in Look::ALL {
             let label = ui.selectable_label(state.look == look, look.label());
@@ -137,65 +127,53 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut SamplesPanel) {
     });
     desk.view_angle_row(ui);
     let mut count = state.count.unwrap_or(COUNTS[1].0);
-    let name = Name::new("Samples drawn", "Samples", "How many are drawn for the plot.");
-    if widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS)).changed {
-        state.count = Some(count);
-    }
+    let name = ["Samples drawn", "Samples", "How many are drawn for the plot."];
+    widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS));
+    state.count = Some(count);
     if state.look == Look::Angle {
         let help = "Looks for the roughness at which Phong and GGX come closest, by the total variation distance.";
-        widgets::row(ui, Name::new("Compare lobes", "Phong and GGX", help), |ui| {
-            ui.checkbox(&mut state.compare, "")
-        });
+        let name = ["Compare lobes", "Phong and GGX", help];
+        widgets::row(ui, name, |ui| ui.checkbox(&mut state.compare, ""));
     }
     ui.add_space(4.0);
 }
 
-/// Where a direction lies in a view, in [−1, 1]² (x to the right, y up).
-fn project(look: Look, direction: Vec3<f32>, mirror: Vec3<f32>) -> [f32; 2] {
-    match look {
-        Look::Above => [direction.x, direction.y],
-        Look::Side => [direction.x, direction.z],
-        Look::Mirror | Look::Angle => {
-            // To the right: away from the normal, in the plane of incidence.
-            let across = Vec3::from_f32([mirror.z, 0.0, -mirror.x]);
-            [across.dot(direction), direction.y]
-        }
-    }
+fn mirror(report: &SampleReport) -> Vec3<f32> {
+    Vec3::from_f32(report.query.request.middle().to_f32())
+}
+
+/// Where the samples lie in a view, in [−1, 1]² (x to the right, y up).
+fn projected(report: &SampleReport, look: Look) -> impl Iterator<Item = [f32; 2]> {
+    let mirror = mirror(report);
+    let samples = report.cloud.samples.iter();
+    samples.map(move |&[x, y, z, _]| match look {
+        Look::Above => [x, y],
+        Look::Side => [x, z],
+        // To the right: away from the normal, in the plane of incidence.
+        Look::Mirror | Look::Angle => [mirror.z * x - mirror.x * z, y],
+    })
 }
 
 fn cloud(ui: &mut Ui, state: &mut SamplesPanel, report: &Arc<SampleReport>) {
     let side = ui.available_width().min(420.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The samples"));
+    widgets::describe(&response, Role::Image, "The samples");
     ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
     let pixels = (side * ui.ctx().pixels_per_point()) as usize;
-    let color = theme::accent(ui.visuals().dark_mode);
-    let is_current = |drawn: &Drawn| {
-        Arc::ptr_eq(&drawn.report, report) && drawn.look == state.look && drawn.side == pixels && drawn.color == color
-    };
-    if !state.drawn.as_ref().is_some_and(is_current) {
+    let look = (state.look, pixels, theme::accent(ui));
+    let is_current = |drawn: &mut Drawn| Arc::ptr_eq(&drawn.report, report) && drawn.look == look;
+    let drawn = state.drawn.take_if(is_current).unwrap_or_else(|| {
         let reach = reach(report, state.look);
-        let image = splat(report, state.look, reach, pixels, color);
-        let texture = match state.drawn.take() {
-            Some(mut drawn) => {
-                drawn.texture.set(image, TextureOptions::LINEAR);
-                drawn.texture
-            }
-            None => ui.ctx().load_texture("samples", image, TextureOptions::LINEAR),
-        };
-        state.drawn = Some(Drawn {
+        let image = splat(report, look, reach);
+        Drawn {
             report: report.clone(),
-            look: state.look,
-            side: pixels,
-            color,
+            look,
             reach,
-            texture,
-        });
-    }
-    if let Some(drawn) = &state.drawn {
-        egui::Image::new(&drawn.texture).paint_at(ui, rect);
-        marks(ui, rect, drawn);
-    }
+            texture: ui.ctx().load_texture("samples", image, TextureOptions::LINEAR),
+        }
+    });
+    Image::new(&drawn.texture).paint_at(ui, rect);
+    marks(ui, rect, state.drawn.insert(drawn));
 }
 
 /// Half of what a view spans.
@@ -203,102 +181,77 @@ fn reach(report: &SampleReport, look: Look) -> f32 {
     if look != Look::Mirror {
         return 1.08;
     }
-    let mirror = Vec3::from_f32(report.query.request.middle().to_f32());
-    let extents = report.cloud.samples.iter().map(|&[x, y, z, _]| {
-        let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
-        x.abs().max(y.abs())
-    });
+    let extents = projected(report, look).map(|[x, y]| x.abs().max(y.abs()));
     (1.08 * extents.fold(0.02, f32::max)).min(1.08)
 }
 
 /// The points as an image whose opacity grows with their number.
-fn splat(report: &SampleReport, look: Look, reach: f32, side: usize, color: Color32) -> ColorImage {
-    let mirror = Vec3::from_f32(report.query.request.middle().to_f32());
+fn splat(report: &SampleReport, (look, side, color): (Look, usize, Color32), reach: f32) -> ColorImage {
     let mut counts = vec![0_u32; side * side];
-    for &[x, y, z, _] in &report.cloud.samples {
-        let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
-        let place = |t: f32| ((0.5 + 0.5 * t / reach) * side as f32) as isize;
+    for [x, y] in projected(report, look) {
+        let place = |t: f32| ((0.5 + 0.5 * t / reach) * side as f32).floor();
         let (column, row) = (place(x), place(-y));
-        if (0..side as isize).contains(&column) && (0..side as isize).contains(&row) {
+        if column.min(row) >= 0.0 && column.max(row) < side as f32 {
             counts[row as usize * side + column as usize] += 1;
         }
     }
     // A lone point is seen among few and does not drown many.
     let lone = (6000.0 / report.cloud.samples.len().max(1) as f32).clamp(0.03, 0.9);
     let opacity = |count: u32| 1.0 - (1.0 - lone).powi(count.min(10_000) as i32);
-    let pixels = counts.into_iter().map(|count| {
-        if count == 0 {
-            Color32::TRANSPARENT
-        } else {
-            color.gamma_multiply(opacity(count))
-        }
-    });
+    let pixels = counts.into_iter().map(|count| color.gamma_multiply(opacity(count)));
     ColorImage::new([side, side], pixels.collect())
 }
 
 /// Circles, lines and letters over the points.
 fn marks(ui: &Ui, rect: Rect, drawn: &Drawn) {
-    let request = &drawn.report.query.request;
-    let mirror = Vec3::from_f32(request.middle().to_f32());
+    let model = &drawn.report.query.request.model;
+    let mirror = mirror(&drawn.report);
+    let middle = rect.center();
     let scale = 0.5 * rect.width() / drawn.reach;
-    let at = |[x, y]: [f32; 2]| rect.center() + scale * vec2(x, -y);
+    let at = |x: f32, y: f32| middle + scale * vec2(x, -y);
     let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
-    let painter = ui.painter().with_clip_rect(rect);
-    let font = egui::TextStyle::Small.resolve(ui.style());
+    let painter = ui.painter_at(rect);
+    let font = TextStyle::Small.resolve(ui.style());
     let color = ui.visuals().text_color();
     let letter = |place: Pos2, text: &str| {
         painter.circle_filled(place, 2.0, color);
-        painter.text(
-            place + vec2(5.0, -5.0),
-            egui::Align2::LEFT_BOTTOM,
-            text,
-            font.clone(),
-            color,
-        );
+        let corner = place + vec2(5.0, -5.0);
+        painter.text(corner, Align2::LEFT_BOTTOM, text, font.clone(), color);
     };
-    match drawn.look {
+    let height = match drawn.look.0 {
         Look::Mirror | Look::Angle => {
-            if request.model.lobe.has_curves() {
-                painter.circle_stroke(rect.center(), scale * request.model.roughness as f32, stroke);
+            if model.lobe.has_curves() {
+                painter.circle_stroke(middle, scale * model.roughness as f32, stroke);
             }
-            letter(rect.center(), "r");
+            return letter(middle, "r");
         }
         Look::Above => {
-            painter.circle_stroke(rect.center(), scale, stroke);
-            letter(rect.center(), "n");
-            letter(at([mirror.x, mirror.y]), "r");
-            letter(at([-mirror.x, mirror.y]), "v");
+            letter(middle, "n");
+            mirror.y
         }
         Look::Side => {
-            painter.circle_stroke(rect.center(), scale, stroke);
-            painter.line_segment(
-                [pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)],
-                stroke,
-            );
-            letter(at([0.0, 1.0]), "n");
-            letter(at([mirror.x, mirror.z]), "r");
-            letter(at([-mirror.x, mirror.z]), "v");
+            painter.hline(rect.x_range(), middle.y, stroke);
+            letter(at(0.0, 1.0), "n");
+            mirror.z
         }
-    }
+    };
+    painter.circle_stroke(middle, scale, stroke);
+    letter(at(mirror.x, height), "r");
+    letter(at(-mirror.x, height), "v");
 }
 
 fn angle_plot(ui: &mut Ui, report: &SampleReport) {
     let visuals = ui.visuals().clone();
-    let accent = theme::accent(visuals.dark_mode);
-    let degrees = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
-        // Per degree, as the axis is.
-        line.iter()
-            .map(|[alpha_rad, density]| [alpha_rad.to_degrees(), density.to_radians()])
-            .collect()
-    };
+    let accent = theme::accent(ui);
+    // Per degree, as the axis is.
+    let degrees = |[alpha_rad, density]: &[f64; 2]| [alpha_rad.to_degrees(), density.to_radians()];
+    let degrees = |line: &[[f64; 2]]| line.iter().map(degrees).collect::<Vec<_>>();
     let counted = degrees(&report.angle.counted);
     let width = 180.0 / counted.len().max(1) as f64;
-    let bars: Vec<Bar> = counted.iter().map(|[x, y]| Bar::new(*x, *y).width(width)).collect();
-    let last = counted
-        .iter()
-        .rev()
-        .find(|[_, y]| *y > 0.0)
-        .map_or(90.0, |[x, _]| (1.15 * x).clamp(5.0, 180.0));
+    let bars = counted.iter().map(|[x, y]| Bar::new(*x, *y).width(width));
+    let bars = BarChart::new("drawn", bars.collect()).color(accent.gamma_multiply(0.45));
+    let last = counted.iter().rfind(|[_, y]| *y > 0.0);
+    let last = last.map_or(90.0, |[x, _]| (1.15 * x).clamp(5.0, 180.0));
     let height = (0.8 * ui.available_width()).clamp(160.0, 320.0);
     let margin = ANGLE_MARGIN * last;
     let shown = still("angle", height, [short, short])
@@ -308,22 +261,13 @@ fn angle_plot(ui: &mut Ui, report: &SampleReport) {
         .include_x(0.0)
         .show(ui, |plot_ui| {
             plot_ui.set_plot_bounds_x(-margin..=last + margin);
-            plot_ui.bar_chart(BarChart::new("drawn", bars).color(accent.gamma_multiply(0.45)));
-            let analytic = degrees(&report.angle.analytic);
+            plot_ui.bar_chart(bars);
             // Empty for a mirror: what stands below it in the legend stays where it is.
-            plot_ui.line(
-                Line::new("density", PlotPoints::from(analytic))
-                    .color(accent)
-                    .width(2.0),
-            );
+            plot_ui.line(line("density", degrees(&report.angle.analytic), accent, 2.0));
             let greys = [visuals.strong_text_color(), visuals.weak_text_color()];
             for (other, color) in report.angle.others.iter().zip(greys) {
                 let name = format!("{} {:.2}", other.lobe.label(), other.nearest.roughness);
-                plot_ui.line(
-                    Line::new(name, PlotPoints::from(degrees(&other.analytic)))
-                        .color(color)
-                        .width(1.5),
-                );
+                plot_ui.line(line(name, degrees(&other.analytic), color, 1.5));
             }
         });
     shown.response.accessible_name("How often each angle is drawn");

@@ -7,8 +7,10 @@ use std::time::{Duration, Instant};
 
 use crate::app::services::crash::Witness;
 use crate::document::Document;
-use crate::store::FileError;
-use crate::store::recovery::{self, Recovered, RecoveryFile};
+use crate::store::{
+    FileError,
+    recovery::{self, Recovered, RecoveryFile},
+};
 
 /// Shortest time between two copies of a document that keeps changing.
 pub const INTERVAL: Duration = Duration::from_secs(5);
@@ -30,19 +32,17 @@ pub struct Autosave {
     pub witness: Witness,
 }
 
-enum Order {
-    Keep(Box<Document>, Option<PathBuf>),
-    Forget,
-    /// A leftover goes, unless its contents, restored and saved again, could not be written.
-    Discard(usize),
-}
+type Order = Box<dyn FnOnce(&mut Files) -> Result<(), FileError> + Send>;
+/// What crashes left, or what can't be written or removed.
+type Report = Result<Vec<Leftover>, FileError>;
 
-/// A report of the thread.
-pub enum Report {
-    /// What crashes left.
-    Found(Vec<Leftover>),
-    /// Something can't be written or removed.
-    Failed(FileError),
+/// What the thread has.
+struct Files {
+    own: RecoveryFile,
+    leftovers: Vec<Option<RecoveryFile>>,
+    is_empty: bool,
+    /// The last document could be written.
+    is_kept: bool,
 }
 
 /// Something that a crash left.
@@ -68,7 +68,9 @@ impl Autosave {
                 let _ = sender.send(report);
                 ctx.request_repaint();
             };
-            work(&folder, &its_witness, &ordered, &report);
+            if let Err(error) = work(&folder, &its_witness, &ordered, &report) {
+                report(Err(error));
+            }
         })?;
         Ok(Self {
             orders: Some(orders),
@@ -91,8 +93,8 @@ impl Autosave {
     pub fn watch(&mut self, document: &Document, project: Option<&Path>, is_saved: bool) -> Option<Duration> {
         self.witness.see(document, project, is_saved);
         if is_saved {
-            if self.kept.take().is_some() {
-                self.order(Order::Forget);
+            if self.kept.is_some() {
+                self.end();
             }
             return None;
         }
@@ -109,26 +111,38 @@ impl Autosave {
 
     /// Puts a document aside at once.
     pub fn keep(&mut self, document: &Document, project: Option<&Path>) {
-        self.order(Order::Keep(Box::new(document.clone()), project.map(Path::to_owned)));
+        let (kept, project) = (document.clone(), project.map(Path::to_owned));
+        self.order(move |files| {
+            let saved = files.own.save(&kept, project.as_deref());
+            (files.is_kept, files.is_empty) = (saved.is_ok(), false);
+            saved
+        });
         self.kept = Some(document.clone());
         self.kept_at = Some(Instant::now());
     }
 
-    /// Removes a leftover, once everything saved before has been written.
+    /// Removes a leftover, once everything saved before has been written; not where its contents, restored and saved again,
+    /// could not be.
     pub fn discard(&self, index: usize) {
-        self.order(Order::Discard(index));
+        self.order(move |files| {
+            let leftover = files.leftovers.get_mut(index).filter(|_| files.is_kept);
+            leftover.and_then(Option::take).map_or(Ok(()), RecoveryFile::remove)
+        });
     }
 
-    /// The window is closed as it should be: nothing is left.
+    /// Nothing is left: the document is saved, or the window is closed as it should be.
     pub fn end(&mut self) {
         self.kept = None;
-        self.order(Order::Forget);
+        self.order(|files| {
+            files.is_empty = true;
+            files.own.clear()
+        });
     }
 
-    fn order(&self, order: Order) {
+    fn order(&self, order: impl FnOnce(&mut Files) -> Result<(), FileError> + Send + 'static) {
         if let Some(orders) = &self.orders {
             // The thread is gone where there is no file to write to, which has been said.
-            let _ = orders.send(order);
+            let _ = orders.send(Box::new(order));
         }
     }
 }
@@ -152,69 +166,38 @@ impl Drop for Autosave {
     }
 }
 
-fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
-    let begin = || -> Result<_, FileError> {
-        let leftovers: Vec<Option<RecoveryFile>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
-        let load = |(index, slot): (usize, &Option<RecoveryFile>)| {
-            let slot = slot.as_ref()?;
-            let load = || slot.load().map_err(crate::in_words);
-            Some(Leftover {
-                index,
-                contents: slot.has_document().then(load),
-                report: slot.report(),
-            })
-        };
-        let found: Vec<Leftover> = leftovers.iter().enumerate().filter_map(load).collect();
-        if !found.is_empty() {
-            report(Report::Found(found));
-        }
-        let slot = RecoveryFile::open(folder)?;
-        witness.put_copies_at(slot.path());
-        Ok((slot, leftovers))
+/// Says what crashes left, then carries out orders until the window is gone.
+fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dyn Fn(Report)) -> Result<(), FileError> {
+    let leftovers = recovery::leftovers(folder)?;
+    let load = |(index, file): (usize, &RecoveryFile)| Leftover {
+        index,
+        contents: file.has_document().then(|| file.load().map_err(crate::in_words)),
+        report: file.report(),
     };
-    match begin() {
-        Ok((slot, leftovers)) => obey(slot, leftovers, ordered, report),
-        Err(error) => report(Report::Failed(error)),
+    if !leftovers.is_empty() {
+        report(Ok(leftovers.iter().enumerate().map(load).collect()));
     }
-}
-
-/// Carries out orders until the window is gone.
-fn obey(
-    slot: RecoveryFile,
-    mut leftovers: Vec<Option<RecoveryFile>>,
-    ordered: &Receiver<Order>,
-    report: &dyn Fn(Report),
-) {
-    let mut is_kept = true;
-    let mut is_empty = true;
+    let mut files = Files {
+        own: RecoveryFile::open(folder)?,
+        leftovers: leftovers.into_iter().map(Some).collect(),
+        is_empty: true,
+        is_kept: true,
+    };
+    witness.known().copy = Some(files.own.path().to_owned());
     let mut has_failed = false;
     for order in ordered {
-        let done = match order {
-            Order::Keep(document, project) => {
-                let saved = slot.save(&document, project.as_deref());
-                is_kept = saved.is_ok();
-                is_empty = false;
-                saved
-            }
-            Order::Forget => {
-                is_empty = true;
-                slot.clear()
-            }
-            Order::Discard(index) => match leftovers.get_mut(index).filter(|_| is_kept).and_then(Option::take) {
-                Some(slot) => slot.remove(),
-                None => Ok(()),
-            },
-        };
+        let done = order(&mut files);
+        let fails = done.is_err();
         // Said once, not every few seconds for as long as a disk is full.
-        match done {
-            Err(error) if !has_failed => {
-                has_failed = true;
-                report(Report::Failed(error));
-            }
-            done => has_failed = done.is_err(),
+        if let (Err(error), false) = (done, has_failed) {
+            report(Err(error));
         }
+        has_failed = fails;
     }
-    if is_empty && let Err(error) = slot.remove() {
+    if files.is_empty
+        && let Err(error) = files.own.remove()
+    {
         log::debug!("{error}");
     }
+    Ok(())
 }

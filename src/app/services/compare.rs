@@ -4,15 +4,15 @@
 use std::sync::Arc;
 
 use crate::analysis::difference::difference;
-use crate::app::services::beside::started;
+use crate::app::services::beside::Beside;
 use crate::document::{Change, Document, MaterialSettings};
 use crate::matching::{lobe_of_material, matched_lobe};
 use crate::named::named;
-use crate::optics::lobe::Lobe;
-use crate::optics::lobe::model::LobeModel;
-use crate::render::EngineKind;
-use crate::render::background::Background;
-use crate::render::worker::{Picture, Snapshot, Worker};
+use crate::optics::lobe::{Lobe, model::LobeModel};
+use crate::render::{
+    EngineKind,
+    worker::{Picture, Snapshot, Worker},
+};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rival {
@@ -40,17 +40,7 @@ named! {
 }
 
 /// A lobe to match, and with which.
-#[derive(Clone, PartialEq)]
-struct MatchQuery {
-    model: LobeModel,
-    lobe: Lobe,
-}
-
-#[derive(Clone)]
-struct Matched {
-    query: MatchQuery,
-    found: Result<LobeModel, String>,
-}
+type MatchQuery = (LobeModel, Lobe);
 
 /// Two images to compare, and the scale that was chosen.
 #[derive(Clone)]
@@ -58,6 +48,12 @@ struct DifferenceQuery {
     a: Arc<Picture>,
     b: Arc<Picture>,
     scale: Option<f32>,
+}
+
+impl PartialEq for DifferenceQuery {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.a, &other.a) && Arc::ptr_eq(&self.b, &other.b) && self.scale == other.scale
+    }
 }
 
 /// How two images differ.
@@ -90,10 +86,8 @@ pub struct Compare {
     /// The difference with the full colour; `None` is automatic.
     pub scale: Option<f32>,
     pub renderer: Option<Renderer>,
-    matching: Option<Background<MatchQuery, Matched>>,
-    asked_match: Option<MatchQuery>,
-    differing: Option<Background<DifferenceQuery, Arc<Compared>>>,
-    asked_difference: Option<([u64; 3], Option<f32>)>,
+    matching: Beside<MatchQuery, (MatchQuery, Result<LobeModel, String>)>,
+    differing: Beside<DifferenceQuery, Arc<Compared>>,
     /// Counts B's renderers: serial numbers restart with each.
     pub generation: u64,
 }
@@ -116,10 +110,8 @@ impl Default for Compare {
             flicker_hz: 2.0,
             scale: None,
             renderer: None,
-            matching: None,
-            asked_match: None,
-            differing: None,
-            asked_difference: None,
+            matching: Beside::default(),
+            differing: Beside::default(),
             generation: 0,
         }
     }
@@ -137,7 +129,7 @@ impl Compare {
 
     /// How the latest images differ.
     pub fn compared(&self) -> Option<Arc<Compared>> {
-        self.differing.as_ref()?.latest()
+        self.differing.latest()
     }
 
     /// What B is called.
@@ -162,9 +154,8 @@ impl Compare {
 
     /// The lobe that was found for this material; the last one while another is looked for.
     fn matched(&self, material: &MaterialSettings, lobe: Lobe) -> Option<Result<LobeModel, String>> {
-        let matched = self.matching.as_ref()?.latest()?;
-        let is_same = matched.query.lobe == lobe && matched.query.model.lobe == material.lobe;
-        is_same.then_some(matched.found)
+        let ((model, with), found) = self.matching.latest()?;
+        (with == lobe && model.lobe == material.lobe).then_some(found)
     }
 
     /// The document with B's materials.
@@ -194,21 +185,12 @@ impl Compare {
         let mut model = lobe_of_material(material);
         // Another name is not another look.
         model.name.clear();
-        let query = MatchQuery { model, lobe };
-        if self.asked_match.as_ref() == Some(&query) {
-            return;
-        }
-        let matching = started(&mut self.matching, ctx, |repaint| {
-            Background::spawn("match lobes", repaint, |query: MatchQuery, responder| {
-                let found = matched_lobe(&query.model, query.lobe).map_err(crate::in_words);
-                responder.publish(Matched { query, found });
-            })
-        });
         // Without a thread B keeps A's roughness.
-        if let Some(matching) = matching {
-            matching.ask(query.clone());
-        }
-        self.asked_match = Some(query);
+        self.matching
+            .ask(ctx, "match lobes", (model, lobe), |query, responder| {
+                let found = matched_lobe(&query.0, query.1).map_err(crate::in_words);
+                responder.publish((query, found));
+            });
     }
 
     /// Requests the difference of the images if they are new and of the same size and view.
@@ -216,10 +198,6 @@ impl Compare {
         let (Some(a), Some(b)) = (a, self.picture()) else {
             return;
         };
-        let asked = ([a.serial, b.serial, self.generation], self.scale);
-        if self.asked_difference == Some(asked) {
-            return;
-        }
         let beside_materials = Change {
             materials: false,
             display: false,
@@ -229,32 +207,27 @@ impl Compare {
         if a.reduction != b.reduction || !beside_materials.is_none() {
             return;
         }
-        let differing = started(&mut self.differing, ctx, |repaint| {
-            let mut serial = 0;
-            Background::spawn("difference", repaint, move |query: DifferenceQuery, responder| {
-                let Some(found) = difference(&query.a.image, &query.b.image) else {
-                    return;
-                };
-                let scale = query.scale.unwrap_or_else(|| found.automatic_scale());
-                serial += 1;
-                responder.publish(Arc::new(Compared {
-                    size: [found.width as usize, found.height as usize],
-                    rgba: found.rgba(scale),
-                    scale,
-                    rms: found.rms_relative,
-                    samples: [query.a.samples_per_pixel, query.b.samples_per_pixel],
-                    serial,
-                }));
-            })
+        let mut serial = 0;
+        let query = DifferenceQuery {
+            a: a.clone(),
+            b,
+            scale: self.scale,
+        };
+        self.differing.ask(ctx, "difference", query, move |query, responder| {
+            let Some(found) = difference(&query.a.image, &query.b.image) else {
+                return;
+            };
+            let scale = query.scale.unwrap_or_else(|| found.automatic_scale());
+            serial += 1;
+            responder.publish(Arc::new(Compared {
+                size: [found.width as usize, found.height as usize],
+                rgba: found.rgba(scale),
+                scale,
+                rms: found.rms_relative,
+                samples: [query.a.samples_per_pixel, query.b.samples_per_pixel],
+                serial,
+            }));
         });
-        if let Some(differing) = differing {
-            differing.ask(DifferenceQuery {
-                a: a.clone(),
-                b,
-                scale: self.scale,
-            });
-        }
-        self.asked_difference = Some(asked);
     }
 
     /// Ends B's renderer, beside the window: its thread may have to finish a step.
@@ -265,6 +238,6 @@ impl Compare {
                 .name("farewell".to_owned())
                 .spawn(move || drop(renderer));
         }
-        (self.asked_difference, self.differing) = (None, None);
+        self.differing = Beside::default();
     }
 }

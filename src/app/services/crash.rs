@@ -4,7 +4,6 @@
 //! both when any thread panics, before the thread unwinds: the next start offers them.
 
 use std::collections::VecDeque;
-use std::fmt::Write as _;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -14,7 +13,7 @@ use std::thread::ThreadId;
 use crate::document::Document;
 use crate::panics;
 use crate::panics::lock;
-use crate::store::recovery;
+use crate::store::{FileError, recovery};
 
 /// Most actions that a report lists.
 const ACTIONS: usize = 40;
@@ -28,17 +27,17 @@ static WITNESSES: Mutex<Vec<Weak<Mutex<Known>>>> = Mutex::new(Vec::new());
 #[derive(Clone)]
 pub struct Witness(Arc<Mutex<Known>>);
 
-struct Known {
+pub struct Known {
     /// The document where it is unsaved, and the file that it belongs to.
     unsaved: Option<(Document, Option<PathBuf>)>,
     /// Where the copy goes; a report stands beside it. `None` where nothing is saved for recovery.
-    copy: Option<PathBuf>,
+    pub copy: Option<PathBuf>,
     /// What renders.
-    engine: String,
+    pub engine: String,
     /// What was done last, with how often in a row; the latest last.
     actions: VecDeque<(String, u32)>,
-    /// What is to be said in the window.
-    reported: Vec<String>,
+    /// What is to be said in the window of panics in threads beside it.
+    pub reported: Vec<String>,
     /// Whose panic ends the window.
     window: ThreadId,
 }
@@ -61,7 +60,7 @@ impl Default for Witness {
 }
 
 impl Witness {
-    fn known(&self) -> MutexGuard<'_, Known> {
+    pub fn known(&self) -> MutexGuard<'_, Known> {
         lock(&self.0)
     }
 
@@ -76,19 +75,6 @@ impl Witness {
         }
     }
 
-    /// Where copies go, once there is such a place.
-    pub fn put_copies_at(&self, path: &Path) {
-        self.known().copy = Some(path.to_owned());
-    }
-
-    /// What renders.
-    pub fn see_engine(&self, engine: &str) {
-        let known = &mut *self.known();
-        if known.engine != engine {
-            engine.clone_into(&mut known.engine);
-        }
-    }
-
     /// Records an action.
     pub fn note(&self, action: impl Into<String>) {
         let action: String = action.into().chars().take(ACTION_LENGTH).collect();
@@ -100,11 +86,6 @@ impl Witness {
         if actions.len() > ACTIONS {
             actions.pop_front();
         }
-    }
-
-    /// What is to be said of panics in threads beside the window's.
-    pub fn take_reported(&self) -> Vec<String> {
-        std::mem::take(&mut self.known().reported)
     }
 }
 
@@ -130,16 +111,14 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
         Err(TryLockError::WouldBlock) => return,
     };
     let Some(copy) = known.copy.clone() else { return };
-    let mut failures = Vec::new();
-    if let Some((document, project)) = &known.unsaved
-        && let Err(error) = recovery::save_for_recovery(&copy, document, project.as_deref())
-    {
-        failures.push(error.to_string());
-    }
+    let unsaved = known.unsaved.as_ref();
+    let save = |(document, project): &(Document, Option<PathBuf>)| {
+        recovery::save_for_recovery(&copy, document, project.as_deref()).err()
+    };
+    let failure = unsaved.and_then(save);
     let report = recovery::report_path(&copy);
-    let text = report_text(&known, panic, &failures);
-    let mut options = OpenOptions::new();
-    let file = options.create(true).append(true).open(&report);
+    let text = report_text(&known, panic, failure);
+    let file = OpenOptions::new().create(true).append(true).open(&report);
     let written = file.and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
     let thread = std::thread::current();
     if thread.id() != known.window {
@@ -147,48 +126,37 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
             Ok(()) => format!("{} has more", report.display()),
             Err(error) => format!("no report could be written: {error}"),
         };
-        let name = thread.name().unwrap_or("a thread without a name").to_owned();
+        let name = thread.name().unwrap_or("a thread without a name");
         let what = panics::message(panic.payload());
-        known
-            .reported
-            .push(format!("an internal error in \"{name}\": {what}; {place}"));
+        let text = format!("an internal error in \"{name}\": {what}; {place}");
+        known.reported.push(text);
     }
 }
 
 /// The report; [`recovery::RecoveryFile::report`] finds the line of the message.
-fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failures: &[String]) -> String {
+fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failure: Option<FileError>) -> String {
     let thread = std::thread::current();
-    let mut text = String::new();
-    let mut line = |name: &str, value: &dyn std::fmt::Display| {
-        // Writing to a string does not fail.
-        let _ = writeln!(text, "{name}: {value}");
-    };
-    line("Glossmith", &env!("CARGO_PKG_VERSION"));
-    line(
-        "System",
-        &format_args!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+    let thread = thread.name().unwrap_or("without a name");
+    let (system, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
+    let message = panics::message(panic.payload()).replace('\n', " ");
+    let version = env!("CARGO_PKG_VERSION");
+    let mut text = format!(
+        "Glossmith: {version}\nSystem: {system} {architecture}\nEngine: {}\n",
+        known.engine
     );
-    line("Engine", &known.engine);
-    line("Thread", &thread.name().unwrap_or("without a name"));
-    line(recovery::MESSAGE, &panics::message(panic.payload()).replace('\n', " "));
+    text += &format!("Thread: {thread}\n{}: {message}\n", recovery::MESSAGE);
     if let Some(place) = panic.location() {
-        line("Place", place);
+        text += &format!("Place: {place}\n");
     }
-    for failure in failures {
-        line("The document could not be saved for recovery", failure);
+    if let Some(failure) = failure {
+        text += &format!("The document could not be saved for recovery: {failure}\n");
     }
-    line("Done last", &"");
+    text += "Done last: \n";
     for (action, count) in &known.actions {
-        let times = if *count > 1 {
-            format!(" × {count}")
-        } else {
-            String::new()
+        text += &match count {
+            1 => format!("  : {action}\n"),
+            count => format!("  : {action} × {count}\n"),
         };
-        line("  ", &format_args!("{action}{times}"));
     }
-    line(
-        "Backtrace",
-        &format_args!("\n{}\n", std::backtrace::Backtrace::force_capture()),
-    );
-    text
+    text + &format!("Backtrace: \n{}\n\n", std::backtrace::Backtrace::force_capture())
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::render::worker::Level;
-use crate::scene::{Fate, ImportReport};
+use crate::scene::{Fate, ImportReport, path_text::file_name};
 
 /// Most entries that are kept.
 const LIMIT: usize = 500;
@@ -16,37 +16,6 @@ pub enum Offer {
     ImportReport,
     /// Rendering to the end what was saved unfinished.
     Render,
-}
-
-/// Something that was done as asked, for a note.
-#[derive(Debug)]
-pub struct Success {
-    text: String,
-    file: Option<PathBuf>,
-    offer: Option<Offer>,
-}
-
-impl Success {
-    pub fn new(text: String) -> Self {
-        let (file, offer) = (None, None);
-        Self { text, file, offer }
-    }
-
-    /// About a file: what was done, the file's name, and details if there are any.
-    pub fn with_file(done: &str, path: &Path, details: &str) -> Self {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let separator = if details.is_empty() { "" } else { ": " };
-        Self {
-            file: Some(path.to_owned()),
-            ..Self::new(format!("{done} {name}{separator}{details}"))
-        }
-    }
-
-    /// Offers to render to the end what is not finished.
-    pub fn finished(self, is_finished: bool) -> Self {
-        let offer = (!is_finished).then_some(Offer::Render);
-        Self { offer, ..self }
-    }
 }
 
 /// Something said.
@@ -64,47 +33,60 @@ pub struct Entry {
     pub offer: Option<Offer>,
 }
 
-/// Adds an entry; one that says the same as the last stays that one, and is new again.
-pub fn add(log: &mut Vec<Entry>, level: Level, text: String) {
-    match level {
-        Level::Error => log::error!("{text}"),
-        Level::Warning => log::warn!("{text}"),
-        Level::Info => log::info!("{text}"),
-    }
-    push(log, level, Success::new(text), level != Level::Info);
-}
-
-/// Adds what was done as asked.
-pub fn add_success(log: &mut Vec<Entry>, success: Success) {
-    match &success.file {
-        Some(file) => log::info!("{} ({})", success.text, file.display()),
-        None => log::info!("{}", success.text),
-    }
-    push(log, Level::Info, success, true);
-}
-
-fn push(log: &mut Vec<Entry>, level: Level, said: Success, is_open: bool) {
-    let Success { text, file, offer } = said;
-    let number = match log.last() {
-        Some(last) if last.text == text => {
-            let number = last.number;
-            log.pop();
-            number
+impl Entry {
+    pub fn new(level: Level, text: String) -> Self {
+        Self {
+            number: 0,
+            is_open: level != Level::Info,
+            level,
+            text,
+            at: Instant::now(),
+            file: None,
+            offer: None,
         }
-        last => last.map_or(0, |last| last.number + 1),
-    };
+    }
+
+    /// Something that was done as asked.
+    pub fn done(text: String) -> Self {
+        Self {
+            is_open: true,
+            ..Self::new(Level::Info, text)
+        }
+    }
+
+    /// The same about a file: what was done, the file's name, and details if there are any.
+    pub fn done_with(done: &str, path: &Path, details: &str) -> Self {
+        let separator = if details.is_empty() { "" } else { ": " };
+        Self {
+            file: Some(path.to_owned()),
+            ..Self::done(format!("{done} {}{separator}{details}", file_name(path)))
+        }
+    }
+
+    /// Offers to render to the end what is not finished.
+    pub fn finished(self, is_finished: bool) -> Self {
+        let offer = (!is_finished).then_some(Offer::Render);
+        Self { offer, ..self }
+    }
+}
+
+/// Adds an entry; one that says the same as the last stays that one, and is new again.
+pub fn add(log: &mut Vec<Entry>, mut entry: Entry) {
+    let text = &entry.text;
+    match (entry.level, &entry.file) {
+        (Level::Error, _) => log::error!("{text}"),
+        (Level::Warning, _) => log::warn!("{text}"),
+        (Level::Info, Some(file)) => log::info!("{text} ({})", file.display()),
+        (Level::Info, None) => log::info!("{text}"),
+    }
+    entry.number = log.last().map_or(0, |last| last.number + 1);
+    if let Some(same) = log.pop_if(|last| last.text == entry.text) {
+        entry.number = same.number;
+    }
     if log.len() >= LIMIT {
         log.remove(0);
     }
-    log.push(Entry {
-        number,
-        level,
-        text,
-        at: Instant::now(),
-        is_open,
-        file,
-        offer,
-    });
+    log.push(entry);
 }
 
 /// Adds what became of a model's file where that is not all as the file says.
@@ -128,12 +110,13 @@ pub fn add_import(log: &mut Vec<Entry>, name: &str, report: &ImportReport) {
         [only] => format!(", in {only}"),
         [first, rest @ ..] => format!(", in {first} and {} more", rest.len()),
     };
+    let text = format!("{name}: {}{parts} – {meaning}.{more}", worst.what);
+    let offer = Some(Offer::ImportReport);
     add(
         log,
-        Level::Warning,
-        format!("{name}: {}{parts} – {meaning}.{more}", worst.what),
+        Entry {
+            offer,
+            ..Entry::new(Level::Warning, text)
+        },
     );
-    if let Some(entry) = log.last_mut() {
-        entry.offer = Some(Offer::ImportReport);
-    }
 }

@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::document::MaterialSettings;
-use crate::scene::ModelSource;
-use crate::scene::texture::TextureTarget;
+use crate::scene::{ModelSource, texture::TextureTarget};
 
 /// A part of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

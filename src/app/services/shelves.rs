@@ -4,19 +4,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
-use crate::app::services::beside::started;
-use crate::app::services::environments::environment_label;
-use crate::app::services::library::Library;
+use crate::app::services::beside::Beside;
 use crate::document::MaterialSettings;
-use crate::render::background::Background;
-use crate::render::thumbnails;
-use crate::scene::environment::EnvironmentSource;
-use crate::store::preset::command_line_name;
-use crate::store::shelf::{Contents, ItemKind, Shelf};
+use crate::scene::{environment::EnvironmentSource, path_text::file_name};
+use crate::store::{
+    preset::command_line_name,
+    shelf::{Contents, Shelf},
+};
 
 /// From one look into the watched folders to the next, while they are seen.
 const INTERVAL: Duration = Duration::from_secs(2);
@@ -38,6 +36,14 @@ pub struct KeptShelves {
 /// The key of a shipped material.
 pub fn preset_key(material: &MaterialSettings) -> String {
     format!("preset:{}", command_line_name(&material.name))
+}
+
+/// What to call an environment in a menu.
+pub fn environment_label(source: &EnvironmentSource) -> String {
+    match source {
+        EnvironmentSource::File(path) => file_name(path),
+        other => other.built_in().map_or("", |built_in| built_in.label).to_owned(),
+    }
 }
 
 /// The key of an environment.
@@ -99,12 +105,9 @@ impl KeptShelves {
 #[derive(Default)]
 pub struct Shelves {
     pub kept: KeptShelves,
-    worker: Option<Background<Vec<PathBuf>, Arc<Vec<Contents>>>>,
-    has_failed: bool,
-    asked: Option<(Instant, Vec<PathBuf>)>,
-    contents: Arc<Vec<Contents>>,
-    /// The keys of the images of the materials, in the order of folders and items; 0 for what is no material.
-    picture_keys: Vec<Vec<u64>>,
+    worker: Beside<(u64, Vec<PathBuf>), Arc<Vec<Contents>>>,
+    /// What the folders hold.
+    pub contents: Arc<Vec<Contents>>,
 }
 
 impl Shelves {
@@ -122,60 +125,18 @@ impl Shelves {
         }
     }
 
-    /// Looks into the folders now and then, and has images made of the materials that lie there. To be called while they
-    /// are seen.
-    pub fn look(&mut self, ctx: &egui::Context, library: &mut Library) {
-        if self.kept.folders.is_empty() && self.asked.is_none() || self.has_failed {
+    /// Looks into the folders now and then. To be called while they are seen.
+    pub fn look(&mut self, ctx: &egui::Context) {
+        if self.kept.folders.is_empty() && self.contents.is_empty() {
             return;
         }
-        let worker = started(&mut self.worker, ctx, |repaint| {
-            let mut shelf = Shelf::default();
-            let mut last = Arc::default();
-            Background::spawn("folders", repaint, move |folders: Vec<PathBuf>, responder| {
-                let contents = shelf.list(&folders);
-                if contents != *last {
-                    last = Arc::new(contents);
-                    responder.publish(last.clone());
-                }
-            })
+        let turn = (ctx.input(|input| input.time) / INTERVAL.as_secs_f64()) as u64;
+        let mut shelf = Shelf::default();
+        let query = (turn, self.kept.folders.clone());
+        let contents = self.worker.ask(ctx, "folders", query, move |(_, folders), responder| {
+            responder.publish(Arc::new(shelf.list(&folders)));
         });
-        let Some(worker) = worker else {
-            self.has_failed = true;
-            return;
-        };
-        let is_asked =
-            |(when, folders): &(Instant, Vec<PathBuf>)| when.elapsed() < INTERVAL && *folders == self.kept.folders;
-        if !self.asked.as_ref().is_some_and(is_asked) {
-            worker.ask(self.kept.folders.clone());
-            self.asked = Some((Instant::now(), self.kept.folders.clone()));
-        }
+        self.contents = contents.unwrap_or_default();
         ctx.request_repaint_after(INTERVAL);
-        let Some(latest) = worker.latest().filter(|latest| !Arc::ptr_eq(latest, &self.contents)) else {
-            return;
-        };
-        let materials = |contents: &Contents| -> Vec<u64> {
-            let items = contents.items.iter().flatten();
-            items
-                .map(|item| match &item.kind {
-                    ItemKind::Material(Ok(material)) => thumbnails::key(material),
-                    _ => 0,
-                })
-                .collect()
-        };
-        self.picture_keys = latest.iter().map(materials).collect();
-        let items = latest.iter().flat_map(|contents| contents.items.iter().flatten());
-        library.watched = items
-            .filter_map(|item| match &item.kind {
-                ItemKind::Material(Ok(material)) => Some((**material).clone()),
-                _ => None,
-            })
-            .collect();
-        library.is_asked = false;
-        self.contents = latest;
-    }
-
-    /// What the folders hold, each with the keys of its images.
-    pub fn contents(&self) -> (Arc<Vec<Contents>>, Vec<Vec<u64>>) {
-        (self.contents.clone(), self.picture_keys.clone())
     }
 }

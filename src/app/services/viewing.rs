@@ -1,7 +1,7 @@
-//! How the viewport shows the render, and what a click in it is for.
+//! What renders the viewport, how it shows that, and what a click in it is for.
 
 use crate::named::named;
-use crate::render::shown::Shown;
+use crate::render::{EngineChoice, RayQueries, shown::Shown};
 
 /// How the viewport shows the render.
 #[derive(Clone, Debug, Default)]
@@ -35,4 +35,17 @@ named! {
         Half, "Half", "Fill, half", "Fills the viewport with half as many pixels each way.";
         Document, "Document", "Image size", "Width and height as set below, for any shape of the viewport.";
     }
+}
+
+/// The engine that renders, and when it rests.
+pub struct Rendering {
+    /// The engine that was asked for, and the one that is remembered: the command line's is not.
+    pub engine: EngineChoice,
+    pub kept_engine: EngineChoice,
+    /// Whether the GPU's engine uses ray queries, as it is remembered.
+    pub kept_ray_queries: RayQueries,
+    /// Rendering was stopped by hand.
+    pub is_paused: bool,
+    /// A study measures, for which it rests.
+    pub is_measuring: bool,
 }

@@ -1,74 +1,62 @@
 //! Files that other programs may save while they are shown. They are looked at now and then: that works on every disk, and
 //! for programs that replace a file as well as for those that write into it.
 
-use crate::panics::lock;
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex, Weak};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, SystemTime};
 
+use crate::panics::lock;
+
 /// From one look to the next. A file counts as saved when it was the same at two looks.
-pub const INTERVAL: Duration = Duration::from_millis(500);
+const INTERVAL: Duration = Duration::from_millis(500);
 
 /// When a file was changed, and its length; nothing where it is not there.
 type Stamp = Option<(SystemTime, u64)>;
 
 /// The files that are looked at.
-pub struct Watched(Arc<Mutex<Vec<File>>>);
+pub struct Watched(Arc<Mutex<Files>>);
 
-struct File {
-    path: PathBuf,
-    /// As it was read.
-    read: Stamp,
-    /// At the last look.
-    seen: Stamp,
-    has_changed: bool,
+#[derive(Default)]
+struct Files {
+    /// As each was read, and at the last look.
+    stamps: HashMap<PathBuf, [Stamp; 2]>,
+    have_changed: bool,
 }
 
-impl File {
-    fn new(path: PathBuf) -> Self {
-        let read = stamp(&path);
-        Self {
-            path,
-            read,
-            seen: read,
-            has_changed: false,
-        }
-    }
-
-    /// Looks at it; true where it has been saved.
+impl Files {
+    /// Whether one of them has been saved.
     fn look(&mut self) -> bool {
-        let now = stamp(&self.path);
-        // While it is being replaced it is not there, while it is being written it grows.
-        let is_settled = now.is_some() && now == self.seen;
-        self.seen = now;
-        if is_settled && now != self.read {
-            self.read = now;
-            self.has_changed = true;
-            return true;
+        let mut is_news = false;
+        for (path, [read, seen]) in &mut self.stamps {
+            let now = stamp(path);
+            // While it is being replaced it is not there, while it is being written it grows.
+            if now.is_some() && now == *seen && now != *read {
+                *read = now;
+                is_news = true;
+            }
+            *seen = now;
         }
-        false
+        self.have_changed |= is_news;
+        is_news
     }
 }
 
-fn stamp(path: &PathBuf) -> Stamp {
+fn stamp(path: &Path) -> Stamp {
     let metadata = std::fs::metadata(path).ok()?;
     Some((metadata.modified().ok()?, metadata.len()))
 }
 
 impl Watched {
     /// Starts the thread, which ends with this value. `repaint` is called when a file was saved.
-    pub fn new(interval: Duration, repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let files = Arc::new(Mutex::new(Vec::new()));
-        let of_thread: Weak<Mutex<Vec<File>>> = Arc::downgrade(&files);
+    pub fn new(repaint: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let files = Arc::new(Mutex::new(Files::default()));
+        let of_thread = Arc::downgrade(&files);
         std::thread::Builder::new().name("watched".to_owned()).spawn(move || {
             loop {
-                std::thread::sleep(interval);
+                std::thread::sleep(INTERVAL);
                 let Some(files) = of_thread.upgrade() else { return };
-                let mut is_news = false;
-                for file in lock(&files).iter_mut() {
-                    is_news |= file.look();
-                }
-                if is_news {
+                if lock(&files).look() {
                     repaint();
                 }
             }
@@ -76,27 +64,16 @@ impl Watched {
         Ok(Self(files))
     }
 
-    /// Watches these files from now on; those already watched keep their state.
-    pub fn watch(&self, paths: &[PathBuf]) {
+    /// Watches these files from now on; those already watched keep their state. Whether one was saved since this was last
+    /// called.
+    pub fn watch(&self, paths: Vec<PathBuf>) -> bool {
         let mut files = lock(&self.0);
-        let is_same = files.len() == paths.len() && files.iter().zip(paths).all(|(file, path)| file.path == *path);
-        if is_same {
-            return;
-        }
-        let mut known = std::mem::take(&mut *files);
-        *files = paths
-            .iter()
-            .map(|path| match known.iter().position(|file| file.path == *path) {
-                Some(place) => known.swap_remove(place),
-                None => File::new(path.clone()),
-            })
-            .collect();
-    }
-
-    /// Those that were saved since this was last called.
-    pub fn take_changed(&self) -> Vec<PathBuf> {
-        let mut files = lock(&self.0);
-        let taken = |file: &mut File| std::mem::take(&mut file.has_changed).then(|| file.path.clone());
-        files.iter_mut().filter_map(taken).collect()
+        let mut known = std::mem::take(&mut files.stamps);
+        let with_stamps = |path: PathBuf| {
+            let stamps = known.remove(&path).unwrap_or_else(|| [stamp(&path); 2]);
+            (path, stamps)
+        };
+        files.stamps = paths.into_iter().map(with_stamps).collect();
+        std::mem::take(&mut files.have_changed)
     }
 }

@@ -1,30 +1,27 @@
 //! The manual: pages of the [`book`](crate::app::book) in a window beside the panels, so that one can follow a tutorial.
 
-use egui::{Align, Order, RichText, ScrollArea, Ui};
 use egui_commonmark::{CommonMarkCache, CommonMarkViewer};
 
+use super::*;
 use crate::app::book::{self, CONTENTS, Pages, SCHEME, Section};
-use crate::app::kit::theme;
 
 /// Size of the window at first, points.
 const SIZE: [f32; 2] = [480.0, 560.0];
-/// Sizes of the headings of a page, of its parts, and of theirs, points.
-const HEADING_SIZES: [f32; 3] = [20.0, 16.0, 14.0];
 /// For how many frames a heading is brought into view: texts above it are laid out in the first.
 const SCROLL_FRAMES: u32 = 3;
 
-fn asked_id() -> egui::Id {
-    egui::Id::unique("asked page of the manual")
+fn asked_id() -> Id {
+    Id::unique("asked page of the manual")
 }
 
 /// Opens the manual at an address in this frame.
-pub fn ask(ctx: &egui::Context, address: &'static str) {
+pub fn ask(ctx: &Context, address: &'static str) {
     ctx.data_mut(|data| data.insert_temp(asked_id(), address));
 }
 
 /// A button that opens the manual at an address.
 pub fn help_button(ui: &mut Ui, about: &str, address: &'static str) {
-    let button = ui.add(egui::Button::new("?").frame(false));
+    let button = ui.add(Button::new("?").frame(false));
     let button = button.accessible_name(format!("Manual: {about}"));
     if button.on_hover_text("Opens the manual at this page (F1).").clicked() {
         ask(ui.ctx(), address);
@@ -63,11 +60,11 @@ impl Manual {
         let (page, _) = book::parts(&address);
         self.sections = book::sections(self.pages, page);
         self.cache = CommonMarkCache::default();
-        for link in self
+        let links = self
             .sections
             .iter()
-            .flat_map(|section| section.text.split("](").skip(1))
-        {
+            .flat_map(|section| section.text.split("](").skip(1));
+        for link in links {
             let target = link.split(')').next().unwrap_or_default();
             if target.starts_with(SCHEME) {
                 self.cache.add_link_hook(target);
@@ -78,7 +75,7 @@ impl Manual {
     }
 
     /// Shows it where it is open, over the sheets if one covers the window.
-    pub fn show(&mut self, ctx: &egui::Context, is_covered: bool) {
+    pub fn show(&mut self, ctx: &Context, is_covered: bool) {
         if let Some(address) = ctx.data_mut(|data| data.remove_temp::<&'static str>(asked_id())) {
             self.open(address.to_owned());
         }
@@ -87,11 +84,11 @@ impl Manual {
         };
         let mut is_open = true;
         let area = ctx.content_rect();
-        let shown = egui::Window::new("Manual")
+        let shown = Window::new("Manual")
             .open(&mut is_open)
             .order(if is_covered { Order::Tooltip } else { Order::Middle })
             .default_size(SIZE)
-            .default_pos(area.right_top() + egui::vec2(-SIZE[0] - 24.0, 48.0))
+            .default_pos(area.right_top() + vec2(-SIZE[0] - 24.0, 48.0))
             .show(ctx, |ui| self.page(ui, &address));
         if let Some(address) = shown.and_then(|shown| shown.inner.flatten()) {
             self.open(address);
@@ -108,8 +105,8 @@ impl Manual {
             if ui.button("Contents").clicked() {
                 next = Some(CONTENTS.to_owned());
             }
-            let back = ui.add_enabled(self.addresses.len() > 1, egui::Button::new("Back"));
-            if back.on_hover_text("Goes to the page before.").clicked() {
+            let has_before = self.addresses.len() > 1;
+            if widgets::pressed_if(ui, has_before, "Back", "Goes to the page before.", "") {
                 self.addresses.pop();
                 next = self.addresses.pop();
             }
@@ -124,7 +121,7 @@ impl Manual {
             .show(ui, |ui| {
                 for (number, section) in self.sections.iter().enumerate() {
                     ui.push_id(number, |ui| {
-                        let size = HEADING_SIZES[(section.level - 1).min(2)];
+                        let size = [20.0, 16.0, 14.0][(section.level - 1).min(2)];
                         let heading = ui.label(RichText::new(&section.heading).heading().size(size));
                         if scrolls && !anchor.is_empty() && section.anchor == anchor {
                             heading.scroll_to_me(Some(Align::TOP));

@@ -1,14 +1,12 @@
 //! Choosing files: the system's dialog on a thread of its own, or a sheet to type a path into: where there is no dialog,
 //! where one does not answer, and where it was asked for.
 
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path};
 use std::pin::Pin;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
-use egui::{Key, Ui};
-
-use crate::app::kit::{theme, widgets};
+use super::*;
 use crate::app::sheets::question;
 use crate::render::output::FORMATS;
 use crate::scene::texture::TextureTarget;
@@ -23,7 +21,7 @@ const COMPLETIONS: usize = 12;
 const FOLDERS: usize = 6;
 
 /// What a file is chosen for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum Purpose {
     Open,
     SaveProject,
@@ -98,15 +96,18 @@ pub struct Dialogs {
     typed: Option<Why>,
 }
 
+/// The system's dialog's, on a thread of its own.
+type Answer = Receiver<Option<PathBuf>>;
+
 struct Pending {
     purpose: Purpose,
     suggestion: String,
-    answer: Receiver<Option<PathBuf>>,
+    answer: Answer,
     since: Instant,
 }
 
 /// Why a path is typed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 enum Why {
     /// It was asked for.
     Asked,
@@ -154,10 +155,7 @@ impl Dialogs {
 
     /// Changes between typed paths and the system's dialogs; true where paths are typed from now on.
     pub fn toggle_typed(&mut self) -> bool {
-        self.typed = match self.typed {
-            None => Some(Why::Asked),
-            Some(_) => None,
-        };
+        self.typed = self.typed.is_none().then_some(Why::Asked);
         self.typed.is_some()
     }
 
@@ -178,35 +176,27 @@ impl Dialogs {
 
     /// Asks for a file; `suggestion` is a file's name to save under. While the system's dialog is open, or does as if it
     /// were, the path field opens beside it.
-    pub fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
+    pub fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &Context) {
         if self.field.is_some() {
             return;
         }
         let waits = self.pending.is_some().then_some(Why::Waiting);
         if let Some(why) = waits.or(self.typed) {
-            self.open_field(purpose, &suggestion, why);
-            return;
+            return self.open_field(purpose, &suggestion, why);
         }
-        match self.open_dialog(purpose, &suggestion, ctx) {
-            Some(answer) => {
-                self.pending = Some(Pending {
-                    purpose,
-                    suggestion,
-                    answer,
-                    since: Instant::now(),
-                });
-            }
-            None => self.open_field(purpose, &suggestion, Why::Missing),
-        }
+        let Some(answer) = self.open_dialog(purpose, &suggestion, ctx) else {
+            return self.open_field(purpose, &suggestion, Why::Missing);
+        };
+        self.pending = Some(Pending {
+            purpose,
+            suggestion,
+            answer,
+            since: Instant::now(),
+        });
     }
 
     /// Opens the system's dialog, which answers on a thread of its own; `None` where there can be no thread.
-    fn open_dialog(
-        &self,
-        purpose: Purpose,
-        suggestion: &str,
-        ctx: &egui::Context,
-    ) -> Option<Receiver<Option<PathBuf>>> {
+    fn open_dialog(&self, purpose: Purpose, suggestion: &str, ctx: &Context) -> Option<Answer> {
         let (name, endings) = purpose.kinds();
         let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
         if !endings.is_empty() {
@@ -235,16 +225,10 @@ impl Dialogs {
     }
 
     fn open_field(&mut self, purpose: Purpose, suggestion: &str, why: Why) {
-        let folder = self
-            .folder
-            .clone()
-            .or_else(|| std::env::current_dir().ok())
-            .unwrap_or_default();
-        let mut text = folder.join("").display().to_string();
-        text.push_str(suggestion);
+        let folder = self.folder.clone().or_else(|| std::env::current_dir().ok());
         self.field = Some(PathField {
             purpose,
-            text,
+            text: in_folder(&folder.unwrap_or_default(), suggestion),
             why,
             folders: Vec::new(),
             has_had_focus: false,
@@ -254,9 +238,7 @@ impl Dialogs {
     /// Shows the path field where it is open. What a file was chosen for, in either way, with the file; without one
     /// where the system's dialog was left without a choice. `recent` are the folders of files opened and saved last.
     pub fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
-        let chosen = self
-            .poll()
-            .or_else(|| self.show_field(ui, recent).map(|(purpose, path)| (purpose, Some(path))))?;
+        let chosen = self.poll().or_else(|| self.show_field(ui, recent))?;
         if let Some(folder) = chosen.1.as_ref().and_then(|path| path.parent()) {
             self.folder = Some(folder.to_owned());
         }
@@ -286,7 +268,7 @@ impl Dialogs {
         Some((pending.purpose, path))
     }
 
-    fn show_field(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, PathBuf)> {
+    fn show_field(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
         let field = self.field.as_mut()?;
         if !field.has_had_focus {
             field.folders = to_begin_with(self.folder.as_deref(), recent);
@@ -297,7 +279,7 @@ impl Dialogs {
         })?;
         let purpose = field.purpose;
         self.field = None;
-        chosen.map(|path| (purpose, path))
+        chosen.map(|path| (purpose, Some(path)))
     }
 }
 
@@ -323,6 +305,16 @@ fn path_of(text: &str) -> PathBuf {
     }
 }
 
+/// The folder that a text begins with, with its separator, and what follows.
+fn parted(text: &str) -> (&str, &str) {
+    text.split_at(text.rfind(['/', MAIN_SEPARATOR]).map_or(0, |end| end + 1))
+}
+
+/// The text of a file's path.
+fn in_folder(folder: &Path, file: &str) -> String {
+    folder.join("").display().to_string() + file
+}
+
 impl PathField {
     /// `Some(None)`: cancelled.
     fn show(&mut self, ui: &mut Ui) -> Option<Option<PathBuf>> {
@@ -332,113 +324,86 @@ impl PathField {
         let (_, endings) = self.purpose.kinds();
         let completions = completions(&self.text, &endings);
         let id = ui.make_persistent_id("path");
-        let completes = ui.memory(|memory| memory.has_focus(id))
-            && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Tab));
-        if completes && let Some(first) = completions.first() {
+        // The field is to have the keys, behind its text.
+        let mut is_continued = false;
+        let completes =
+            ui.memory(|memory| memory.has_focus(id)) && ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Tab));
+        if let Some(first) = completions.first().filter(|_| completes) {
             self.text.clone_from(first);
-            move_cursor_to_end(ui.ctx(), id, &self.text);
+            is_continued = true;
         }
-        let edit = egui::TextEdit::singleline(&mut self.text)
-            .id(id)
-            .desired_width(f32::INFINITY)
-            .lock_focus(true);
-        let response = ui.add(edit).accessible_name("Path");
+        let edit = TextEdit::singleline(&mut self.text).id(id).lock_focus(true);
+        let response = ui.add(edit.desired_width(f32::INFINITY)).accessible_name("Path");
         if !self.has_had_focus && response.has_focus() {
             self.has_had_focus = true;
             log::debug!("no file dialog: a path is asked for");
         } else if !self.has_had_focus {
-            response.request_focus();
-            move_cursor_to_end(ui.ctx(), id, &self.text);
+            is_continued = true;
             ui.ctx().request_repaint();
         }
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-        if self.begin_in(ui) {
-            response.request_focus();
-            move_cursor_to_end(ui.ctx(), id, &self.text);
-        }
-        let height = 22.0 * COMPLETIONS as f32;
-        egui::ScrollArea::vertical()
-            .max_height(height)
-            .min_scrolled_height(height)
-            .show(ui, |ui| {
-                ui.set_min_size(egui::vec2(ui.available_width(), height));
-                for completion in &completions {
-                    let name = completion.trim_end_matches(std::path::MAIN_SEPARATOR);
-                    let name = Path::new(name)
-                        .file_name()
-                        .and_then(|name| name.to_str())
-                        .unwrap_or(name);
-                    let is_folder = completion.ends_with(std::path::MAIN_SEPARATOR);
-                    let label = if is_folder { format!("{name}/") } else { name.to_owned() };
-                    if ui.selectable_label(false, label).clicked() {
-                        self.text.clone_from(completion);
-                        response.request_focus();
-                        move_cursor_to_end(ui.ctx(), id, &self.text);
-                    }
-                }
-            });
-        let mut outcome = None;
-        let path = path_of(&self.text);
-        // A bare name stands for one in the current folder.
-        let has_folder = path
-            .parent()
-            .is_some_and(|folder| folder.as_os_str().is_empty() || folder.is_dir());
-        let is_usable = if self.purpose.is_saving() {
-            path.file_name().is_some() && !path.is_dir() && has_folder
-        } else if self.purpose == Purpose::WatchFolder {
-            path.is_dir()
-        } else {
-            path.is_file()
-        };
-        ui.horizontal(|ui| {
-            let verb = match self.purpose {
-                Purpose::WatchFolder => "Watch",
-                purpose if purpose.is_saving() => "Save",
-                _ => "Open",
-            };
-            let confirmed = ui.add_enabled(is_usable, egui::Button::new(verb)).clicked() || (is_entered && is_usable);
-            if confirmed {
-                outcome = Some(Some(path.clone()));
-            }
-            if ui.button("Cancel").clicked() {
-                outcome = Some(None);
-            }
-            if self.purpose.is_saving() && path.is_file() {
-                ui.colored_label(ui.visuals().warn_fg_color, "This file will be replaced");
-            } else if !has_folder {
-                ui.colored_label(ui.visuals().warn_fg_color, "There is no such folder");
-            }
-        });
-        if is_entered && outcome.is_none() {
-            response.request_focus();
-        }
-        outcome
-    }
-
-    /// Folders to begin with; true where one was chosen. The file's name stays.
-    fn begin_in(&mut self, ui: &mut Ui) -> bool {
-        let mut is_chosen = false;
+        // Folders to begin with: the file's name stays.
         ui.horizontal_wrapped(|ui| {
             for folder in &self.folders {
                 let full = folder.display().to_string();
                 let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy();
                 let button = ui.small_button(name).on_hover_text(&full);
                 if button.clicked() {
-                    let file = match self.text.rfind(['/', std::path::MAIN_SEPARATOR]) {
-                        Some(end) => self.text[end + 1..].to_owned(),
-                        None => self.text.clone(),
-                    };
-                    self.text = folder.join("").display().to_string() + &file;
-                    is_chosen = true;
+                    self.text = in_folder(folder, parted(&self.text).1);
+                    is_continued = true;
                 }
                 button.accessible_name(format!("Begin in {full}"));
             }
         });
-        is_chosen
+        let height = 22.0 * COMPLETIONS as f32;
+        let area = ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+        area.show(ui, |ui| {
+            ui.set_min_size(vec2(ui.available_width(), height));
+            for completion in completions {
+                let name = completion.trim_end_matches(MAIN_SEPARATOR);
+                let end = if name == completion { "" } else { "/" };
+                if ui.selectable_label(false, format!("{}{end}", parted(name).1)).clicked() {
+                    self.text = completion;
+                    is_continued = true;
+                }
+            }
+        });
+        let outcome = self.outcome(ui, is_entered);
+        if is_continued || (is_entered && outcome.is_none()) {
+            response.request_focus();
+            move_cursor_to_end(ui.ctx(), id, &self.text);
+        }
+        outcome
+    }
+
+    /// The buttons, and what is to be known of the path.
+    fn outcome(&self, ui: &mut Ui, is_entered: bool) -> Option<Option<PathBuf>> {
+        let path = path_of(&self.text);
+        // A bare name stands for one in the current folder.
+        let is_folder = |folder: &Path| folder.as_os_str().is_empty() || folder.is_dir();
+        let has_folder = path.parent().is_some_and(is_folder);
+        let (verb, is_usable) = match self.purpose {
+            Purpose::WatchFolder => ("Watch", path.is_dir()),
+            purpose if purpose.is_saving() => ("Save", path.file_name().is_some() && !path.is_dir() && has_folder),
+            _ => ("Open", path.is_file()),
+        };
+        let replaces = self.purpose.is_saving() && path.is_file();
+        let buttons = |ui: &mut Ui| {
+            let confirms = widgets::pressed_if(ui, is_usable, verb, "", "") || (is_entered && is_usable);
+            let cancels = ui.button("Cancel").clicked();
+            let warning = match (replaces, has_folder) {
+                (true, _) => "This file will be replaced",
+                (_, false) => "There is no such folder",
+                _ => "",
+            };
+            widgets::warning(ui, warning);
+            (confirms || cancels).then(|| Some(path).filter(|_| !cancels))
+        };
+        ui.horizontal(buttons).inner
     }
 }
 
-fn move_cursor_to_end(ctx: &egui::Context, id: egui::Id, text: &str) {
+fn move_cursor_to_end(ctx: &Context, id: Id, text: &str) {
     use egui::text::{CCursor, CCursorRange};
     let mut state = egui::text_edit::TextEditState::load(ctx, id).unwrap_or_default();
     let end = CCursor::new(text.chars().count());
@@ -448,35 +413,28 @@ fn move_cursor_to_end(ctx: &egui::Context, id: egui::Id, text: &str) {
 
 /// Folders, and files with one of the endings, that begin with a path.
 fn completions(text: &str, endings: &[&str]) -> Vec<String> {
-    let (folder, start) = match text.rfind(['/', std::path::MAIN_SEPARATOR]) {
-        Some(end) => text.split_at(end + 1),
-        None => ("", text),
-    };
+    let (folder, start) = parted(text);
+    let start = start.to_lowercase();
     let folder_path = if folder.is_empty() {
         PathBuf::from(".")
     } else {
         path_of(folder)
     };
-    let Ok(entries) = std::fs::read_dir(folder_path) else {
-        return Vec::new();
-    };
-    let start = start.to_lowercase();
-    let mut found: Vec<String> = entries
-        .flatten()
-        .filter_map(|entry| {
-            let name = entry.file_name().into_string().ok()?;
-            let is_hidden = name.starts_with('.') && !start.starts_with('.');
-            if is_hidden || !name.to_lowercase().starts_with(&start) {
-                return None;
-            }
-            if entry.path().is_dir() {
-                return Some(format!("{folder}{name}{}", std::path::MAIN_SEPARATOR));
-            }
-            let ending = Path::new(&name).extension()?.to_str()?.to_lowercase();
-            endings.contains(&ending.as_str()).then(|| format!("{folder}{name}"))
-        })
-        .collect();
-    found.sort_by_key(|path| (!path.ends_with(std::path::MAIN_SEPARATOR), path.to_lowercase()));
+    let entries = std::fs::read_dir(folder_path).into_iter().flatten().flatten();
+    let found = entries.filter_map(|entry| {
+        let name = entry.file_name().into_string().ok()?;
+        let is_hidden = name.starts_with('.') && !start.starts_with('.');
+        if is_hidden || !name.to_lowercase().starts_with(&start) {
+            return None;
+        }
+        if entry.path().is_dir() {
+            return Some(format!("{folder}{name}{MAIN_SEPARATOR}"));
+        }
+        let ending = Path::new(&name).extension()?.to_str()?.to_lowercase();
+        endings.contains(&ending.as_str()).then(|| format!("{folder}{name}"))
+    });
+    let mut found: Vec<String> = found.collect();
+    found.sort_by_key(|path| (!path.ends_with(MAIN_SEPARATOR), path.to_lowercase()));
     found.truncate(COMPLETIONS);
     found
 }

@@ -1,9 +1,8 @@
 //! The sheet that shows what another program's file loses, before it is written.
 
-use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui, vec2};
-
+use super::*;
 use crate::app::book::EXPORT;
-use crate::app::kit::{theme, widgets};
+use crate::app::kit::tile::rgb_pixels;
 use crate::app::services::export::Ready;
 use crate::app::sheets::{answers, book, question, scrolled};
 use crate::render::looks::Compared;
@@ -12,8 +11,6 @@ use crate::store::exchange::report::{MaterialReport, Outcome};
 
 /// Points that the side of an image takes.
 const PICTURE: f32 = 176.0;
-/// Width of the sheet, points: three of them beside each other.
-const SHEET: f32 = 580.0;
 /// What the images of a ball show.
 const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference"];
 
@@ -24,17 +21,16 @@ pub struct ExportSheet {
     textures: Vec<Option<[TextureHandle; 3]>>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(PartialEq)]
 pub enum Answer {
     Write,
     Cancel,
 }
 
 impl ExportSheet {
-    pub fn ask(&mut self, ctx: &egui::Context, ready: Ready) {
+    pub fn ask(&mut self, ctx: &Context, ready: Ready) {
         let texture = |(name, picture): (&&str, &image::RgbImage)| {
-            let size = [picture.width() as usize, picture.height() as usize];
-            ctx.load_texture(*name, ColorImage::from_rgb(size, picture), TextureOptions::LINEAR)
+            ctx.load_texture(*name, rgb_pixels(picture), TextureOptions::LINEAR)
         };
         let textures = |compared: &Option<Compared>| {
             let pictures = &compared.as_ref()?.pictures;
@@ -56,10 +52,10 @@ impl ExportSheet {
     }
 
     /// Shows the sheet where it is open.
-    pub fn show(&self, ctx: &egui::Context) -> Option<Answer> {
+    pub fn show(&self, ctx: &Context) -> Option<Answer> {
         let ready = self.ready.as_ref()?;
         question(ctx, "export", Answer::Cancel, |ui| {
-            ui.set_width(SHEET);
+            ui.set_width(580.0);
             book::heading(ui, "Export", EXPORT);
             let report = &ready.prepared.report;
             ui.label(report.output.display().to_string());
@@ -78,33 +74,31 @@ impl ExportSheet {
 /// What becomes of a material's parts, and the images of a ball.
 fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[TextureHandle; 3]>) {
     ui.label(RichText::new(&material.material).strong());
-    egui::Grid::new(&material.material)
-        .num_columns(2)
-        .spacing([12.0, 3.0])
-        .show(ui, |ui| {
-            for entry in &material.entries {
-                let word = RichText::new(entry.outcome.word());
-                ui.label(match entry.outcome {
-                    Outcome::Exact => word.weak(),
-                    _ => word.color(ui.visuals().warn_fg_color),
-                });
-                let mut text = entry.what.clone();
-                if !entry.detail.is_empty() {
-                    text += &format!(": {}", entry.detail);
-                }
-                if let Some(residual) = entry.residual {
-                    text += &format!(" ({} {:.3})", residual.measure, residual.residual);
-                }
-                ui.add(egui::Label::new(text).wrap());
-                ui.end_row();
+    let grid = Grid::new(&material.material).spacing([12.0, 3.0]);
+    grid.show(ui, |ui| {
+        for entry in &material.entries {
+            let word = RichText::new(entry.outcome.word());
+            ui.label(match entry.outcome {
+                Outcome::Exact => word.weak(),
+                _ => word.color(ui.visuals().warn_fg_color),
+            });
+            let mut text = entry.what.clone();
+            if !entry.detail.is_empty() {
+                text += &format!(": {}", entry.detail);
             }
-        });
+            if let Some(residual) = entry.residual {
+                text += &format!(" ({} {:.3})", residual.measure, residual.residual);
+            }
+            ui.add(Label::new(text).wrap());
+            ui.end_row();
+        }
+    });
     if let Some(textures) = textures {
         ui.add_space(theme::GAP);
         ui.horizontal(|ui| {
             for (texture, name) in textures.iter().zip(PICTURES) {
                 ui.vertical(|ui| {
-                    let picture = egui::Image::new((texture.id(), vec2(PICTURE, PICTURE))).alt_text(name);
+                    let picture = Image::new((texture.id(), vec2(PICTURE, PICTURE))).alt_text(name);
                     ui.add(picture);
                     ui.label(name);
                 });

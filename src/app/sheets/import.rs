@@ -1,13 +1,10 @@
 //! The sheet about the model's file: which of its images is shown, and what became of its parts.
 
-use egui::{RichText, Ui};
-
-use crate::app::actions::Action;
+use super::*;
 use crate::app::book::MODEL_FILE;
-use crate::app::kit::{theme, widgets};
 use crate::app::sheets::{book, scrolled};
+use crate::document::ImportLobe;
 use crate::document::of_model::import_report;
-use crate::document::{Document, ImportLobe};
 use crate::scene::{Fate, ImportReport, Model, ModelOptions};
 
 /// Shows the sheet of a model. What is chosen is asked for as an action; true where the sheet is done with.
@@ -43,32 +40,24 @@ pub fn show(
 /// Scene, variant and pose, where the file has more than one.
 fn choices(ui: &mut Ui, model: &Model, options: &mut ModelOptions) {
     if model.scenes.len() > 1 {
-        let shown = options.scene.and_then(|scene| model.scenes.get(scene));
-        let combo = egui::ComboBox::from_label("Scene").selected_text(shown.map_or("the file's own", String::as_str));
-        combo.show_ui(ui, |ui| {
-            ui.selectable_value(&mut options.scene, None, "the file's own");
-            for (index, name) in model.scenes.iter().enumerate() {
-                ui.selectable_value(&mut options.scene, Some(index), name);
-            }
-        });
+        let scenes = model.scenes.iter().enumerate();
+        choice(
+            ui,
+            "Scene",
+            &mut options.scene,
+            scenes.map(|(index, name)| (index, name.as_str())),
+        );
     }
     if !model.variants.is_empty() {
-        let shown = options.variant.clone().unwrap_or_else(|| "the file's own".to_owned());
-        egui::ComboBox::from_label("Variant")
-            .selected_text(shown)
-            .show_ui(ui, |ui| {
-                ui.selectable_value(&mut options.variant, None, "the file's own");
-                for name in &model.variants {
-                    ui.selectable_value(&mut options.variant, Some(name.clone()), name);
-                }
-            });
+        let variants = model.variants.iter().map(|name| (name.clone(), name.as_str()));
+        choice(ui, "Variant", &mut options.variant, variants);
     }
     if model.duration_s > 0.0 {
         let mut is_posed = options.time_s.is_some();
         ui.horizontal(|ui| {
             ui.checkbox(&mut is_posed, "Pose of the animation at");
             let mut time_s = options.time_s.unwrap_or(0.0);
-            let slider = egui::Slider::new(&mut time_s, 0.0..=model.duration_s).suffix(" s");
+            let slider = Slider::new(&mut time_s, 0.0..=model.duration_s).suffix(" s");
             // Loading takes a moment: the pose follows when the slider is let go of.
             let response = ui.add_enabled(is_posed, slider);
             let response = response.accessible_name("Time of the pose");
@@ -86,6 +75,24 @@ fn choices(ui: &mut Ui, model: &Model, options: &mut ModelOptions) {
     }
 }
 
+/// One of several by name, or what the file chooses.
+fn choice<'a, T: PartialEq>(ui: &mut Ui, label: &str, chosen: &mut Option<T>, all: impl Iterator<Item = (T, &'a str)>) {
+    let own = (None, "the file's own");
+    let all: Vec<_> = std::iter::once(own)
+        .chain(all.map(|(value, name)| (Some(value), name)))
+        .collect();
+    let shown = all
+        .iter()
+        .find(|(value, _)| value == chosen)
+        .map_or("", |(_, name)| name);
+    let combo = ComboBox::from_label(label).selected_text(shown);
+    combo.show_ui(ui, |ui| {
+        for (value, name) in all {
+            ui.selectable_value(chosen, value, name);
+        }
+    });
+}
+
 /// What became of the parts of the file, what is amiss first.
 fn entries(ui: &mut Ui, report: &ImportReport) {
     if report.entries.is_empty() {
@@ -100,22 +107,17 @@ fn entries(ui: &mut Ui, report: &ImportReport) {
             }
             ui.add_space(4.0);
             ui.label(RichText::new(capital(fate.label())).strong());
-            egui::Grid::new(fate.label())
-                .num_columns(2)
-                .spacing([12.0, 3.0])
-                .show(ui, |ui| {
-                    for entry in entries {
-                        ui.label(format!("{} ×", entry.count));
-                        let names = entry.names.join(", ");
-                        let text = if names.is_empty() {
-                            entry.what.clone()
-                        } else {
-                            format!("{}: {names}", entry.what)
-                        };
-                        ui.add(egui::Label::new(text).wrap());
-                        ui.end_row();
+            Grid::new(fate.label()).spacing([12.0, 3.0]).show(ui, |ui| {
+                for entry in entries {
+                    ui.label(format!("{} ×", entry.count));
+                    let mut text = entry.what.clone();
+                    if !entry.names.is_empty() {
+                        text += &format!(": {}", entry.names.join(", "));
                     }
-                });
+                    ui.add(Label::new(text).wrap());
+                    ui.end_row();
+                }
+            });
         }
     });
 }
@@ -123,7 +125,6 @@ fn entries(ui: &mut Ui, report: &ImportReport) {
 /// With a capital first letter.
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(letters).collect()
 }

@@ -1,26 +1,20 @@
 //! The menu bar and the sheets of help: both read the table of commands.
 
-use std::path::Path;
-
-use egui::{RichText, Ui, vec2};
-
-use crate::app::actions::{Action, Command, Menu, do_and_close};
-use crate::app::kit::{theme, widgets};
+use super::*;
+use crate::app::actions::{Command, Menu, do_and_close};
 use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
 use crate::app::sheets::palette::{self, Findable};
 use crate::app::sheets::{import, scrolled, workspaces};
-use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::document::{ImportLobe, MaterialSettings};
+use crate::named::Named;
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
 use crate::store::examples::EXAMPLES;
 
-/// Width of the account of a path where there is room, points.
-const PATH_WIDTH: f32 = 900.0;
-
 /// What is open over the window.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Default, PartialEq)]
 pub enum Sheet {
     #[default]
     None,
@@ -47,7 +41,7 @@ pub fn bar(
     (workspaces, is_open): ((&[&str], &str), impl Fn(Pane) -> bool),
     actions: &mut Vec<Action>,
 ) {
-    egui::MenuBar::new().ui(ui, |ui| {
+    MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
             ui.menu_button(menu.label(), |ui| {
                 ui.set_min_width(200.0);
@@ -64,7 +58,10 @@ pub fn bar(
                 }
                 match menu {
                     Menu::View => panes(ui, &is_open, actions),
-                    Menu::Render => engines(ui, engine, actions),
+                    Menu::Render => {
+                        radios(ui, "Engine", engine, actions, Action::UseEngine);
+                        radios(ui, "Ray queries", RayQueries::chosen(), actions, Action::UseRayQueries);
+                    }
                     Menu::File => import_lobes(ui, import_lobe, actions),
                     Menu::Help => examples(ui, actions),
                     _ => {}
@@ -72,10 +69,7 @@ pub fn bar(
             });
         }
         widgets::at_right(ui, |ui| {
-            let keys = Command::Palette
-                .shortcut()
-                .map(|shortcut| ui.ctx().format_shortcut(&shortcut));
-            let text = format!("Find a command  {}", keys.unwrap_or_default());
+            let text = format!("Find a command  {}", palette::keys(ui, Command::Palette));
             if ui.button(RichText::new(text).weak()).clicked() {
                 actions.push(Action::Do(Command::Palette));
             }
@@ -85,62 +79,43 @@ pub fn bar(
 }
 
 fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>) {
-    let (label, is_enabled) = match command {
-        Command::Undo => with_step("Undo", edits.undo_label()),
-        Command::Redo => with_step("Redo", edits.redo_label()),
-        _ => (command.label().to_owned(), true),
+    let step = match command {
+        Command::Undo => edits.history.undo_label(),
+        Command::Redo => edits.history.redo_label(),
+        _ => Some(""),
     };
-    let mut button = egui::Button::new(label);
-    if let Some(shortcut) = command.shortcut() {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    let mut label = command.label().to_owned();
+    if let Some(step) = step.filter(|step| !step.is_empty()) {
+        label += &format!(": {step}");
     }
-    if ui
-        .add_enabled(is_enabled, button)
-        .on_hover_text(command.help())
-        .clicked()
-    {
+    let button = Button::new(label).shortcut_text(palette::keys(ui, command));
+    let button = ui.add_enabled(step.is_some(), button);
+    if button.on_hover_text(command.help()).clicked() {
         do_and_close(ui, actions, Action::Do(command));
     }
 }
 
 /// A menu of the files opened and saved last; those that are not there any more are greyed.
 fn open_recent(ui: &mut Ui, recent: &mut Recent, actions: &mut Vec<Action>) {
-    ui.add_enabled_ui(!recent.paths().is_empty(), |ui| {
+    ui.add_enabled_ui(!recent.paths.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             ui.set_min_width(220.0);
             let missing = recent.missing(ui.ctx());
-            for path in recent.paths() {
-                if recent_file(ui, path, missing.contains(path)) {
+            for path in &recent.paths {
+                let is_missing = missing.contains(path);
+                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+                let note = if is_missing { " (not there any more)" } else { "" };
+                let full = path.display().to_string();
+                if widgets::pressed_if(ui, !is_missing, format!("{name}{note}"), &full, &full) {
                     do_and_close(ui, actions, Action::Open(path.clone()));
                 }
             }
             ui.separator();
             if ui.button("Clear the list").clicked() {
-                recent.clear();
+                recent.paths.clear();
             }
         });
     });
-}
-
-fn recent_file(ui: &mut Ui, path: &Path, is_missing: bool) -> bool {
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-    let label = if is_missing {
-        format!("{name} (not there any more)")
-    } else {
-        name.into_owned()
-    };
-    let full = path.display().to_string();
-    ui.add_enabled(!is_missing, egui::Button::new(label))
-        .on_hover_text(&full)
-        .on_disabled_hover_text(full)
-        .clicked()
-}
-
-fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
-    match step {
-        Some(step) => (format!("{verb}: {step}"), true),
-        None => (verb.to_owned(), false),
-    }
 }
 
 /// The panels: a tick at those that are open.
@@ -159,20 +134,13 @@ fn panes(ui: &mut Ui, is_open: impl Fn(Pane) -> bool, actions: &mut Vec<Action>)
     }
 }
 
-fn engines(ui: &mut Ui, chosen: EngineChoice, actions: &mut Vec<Action>) {
+/// A list of choices, with a tick at the one that is made.
+fn radios<T: Named>(ui: &mut Ui, of: &str, chosen: T, actions: &mut Vec<Action>, action: fn(T) -> Action) {
     ui.separator();
-    for &choice in EngineChoice::ALL {
-        let label = format!("Engine: {}", choice.label());
-        if ui.radio(choice == chosen, label).on_hover_text(choice.help()).clicked() {
-            do_and_close(ui, actions, Action::UseEngine(choice));
-        }
-    }
-    ui.separator();
-    let chosen = RayQueries::chosen();
-    for &choice in RayQueries::ALL {
-        let label = format!("Ray queries: {}", choice.label());
-        if ui.radio(choice == chosen, label).on_hover_text(choice.help()).clicked() {
-            do_and_close(ui, actions, Action::UseRayQueries(choice));
+    for &choice in T::ALL {
+        let radio = ui.radio(choice == chosen, format!("{of}: {}", choice.label()));
+        if radio.on_hover_text(choice.help()).clicked() {
+            do_and_close(ui, actions, action(choice));
         }
     }
 }
@@ -198,7 +166,7 @@ fn import_lobes(ui: &mut Ui, mut chosen: ImportLobe, actions: &mut Vec<Action>) 
 
 /// Shows the sheet that is open.
 pub fn sheet(
-    ctx: &egui::Context,
+    ctx: &Context,
     sheet: &mut Sheet,
     desk: (&Document, &MaterialSettings),
     (model, lobe): (Option<&Model>, ImportLobe),
@@ -206,15 +174,11 @@ pub fn sheet(
 ) {
     let (document, material) = desk;
     let mut is_done = false;
-    let id = match sheet {
-        Sheet::None => return,
-        Sheet::Palette { .. } => "palette",
-        Sheet::ModelFile => "model file",
-        Sheet::Shortcuts => "shortcuts",
-        Sheet::About => "about",
-        Sheet::Path { .. } => "path",
-    };
-    let modal = egui::Modal::new(egui::Id::unique(id)).show(ctx, |ui| match sheet {
+    if *sheet == Sheet::None {
+        return;
+    }
+    let id = Id::unique(("sheet", std::mem::discriminant(sheet)));
+    let modal = Modal::new(id).show(ctx, |ui| match sheet {
         Sheet::None => {}
         Sheet::Palette {
             search,
@@ -231,15 +195,13 @@ pub fn sheet(
     }
 }
 
+#[rustfmt::skip]
 const MOUSE: [(&str, &str); 10] = [
     ("Drag", "Turn the camera"),
     ("Middle drag, or ctrl and drag", "Pan"),
     ("Wheel, or right drag", "Zoom"),
     ("Shift and drag", "Turn the light"),
-    (
-        "Drag a light's mark or handle",
-        "Move or change it; Escape takes it back",
-    ),
+    ("Drag a light's mark or handle", "Move or change it; Escape takes it back"),
     ("Click", "Select the material there"),
     ("Ctrl, shift and click", "Explain the last sample of the pixel"),
     ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
@@ -252,34 +214,22 @@ fn shortcuts(ui: &mut Ui) {
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
     scrolled(ui, |ui| {
-        egui::Grid::new("keys")
-            .num_columns(2)
-            .spacing(vec2(24.0, 5.0))
-            .show(ui, |ui| {
-                for (how, what) in MOUSE {
-                    ui.label(RichText::new(how).strong());
-                    ui.label(what);
-                    ui.end_row();
-                }
-                for command in Command::ALL {
-                    if let Some(shortcut) = command.shortcut() {
-                        ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
-                        ui.label(command.label());
-                        ui.end_row();
-                    }
-                }
-            });
+        Grid::new("keys").spacing(vec2(24.0, 5.0)).show(ui, |ui| {
+            let mut all = MOUSE.map(|(how, what)| (how.to_owned(), what)).to_vec();
+            let commands = Command::ALL
+                .iter()
+                .map(|command| (palette::keys(ui, *command), command.label()));
+            all.extend(commands.filter(|(keys, _)| !keys.is_empty()));
+            for (how, what) in all {
+                ui.label(RichText::new(how).strong());
+                ui.label(what);
+                ui.end_row();
+            }
+        });
     });
     ui.add_space(theme::GAP);
-    if ui.button("Close").clicked() {
-        ui.close();
-    }
+    widgets::entry(ui, "Close", "");
 }
-
-/// The paper to cite, and where it is.
-const PAPER: &str = "The geometric lobe: \"Fast Geometric Sampling for Phong-Like Reflection\", Advances in Computer Graphics \
-                     (Computer Graphics International 2023), LNCS 14496, Springer.";
-const PAPER_ADDRESS: &str = "https://doi.org/10.1007/978-3-031-50072-5_17";
 
 fn about(ui: &mut Ui) {
     ui.set_width(420.0);
@@ -288,29 +238,29 @@ fn about(ui: &mut Ui) {
     ui.label(env!("CARGO_PKG_DESCRIPTION"));
     ui.add_space(theme::GAP);
     widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
-    widgets::note(ui, PAPER);
-    ui.hyperlink(PAPER_ADDRESS);
+    widgets::note(
+        ui,
+        "The geometric lobe: \"Fast Geometric Sampling for Phong-Like Reflection\", Advances in Computer Graphics \
+                     (Computer Graphics International 2023), LNCS 14496, Springer.",
+    );
+    ui.hyperlink("https://doi.org/10.1007/978-3-031-50072-5_17");
     ui.add_space(theme::GAP);
-    if ui.button("Close").clicked() {
-        ui.close();
-    }
+    widgets::entry(ui, "Close", "");
 }
 
 /// Everything that made one sample of one pixel.
 fn path(ui: &mut Ui, text: &str) {
-    ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
+    ui.set_width(900.0_f32.min(0.9 * ui.ctx().content_rect().width()));
     ui.heading("Path trace of this pixel");
     ui.add_space(theme::GAP);
     scrolled(ui, |ui| {
-        ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+        ui.add(Label::new(RichText::new(text).monospace()).wrap());
     });
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
         if widgets::pressed(ui, "Copy", "Copies the account as text.") {
             ui.ctx().copy_text(text.to_owned());
         }
-        if ui.button("Close").clicked() {
-            ui.close();
-        }
+        widgets::entry(ui, "Close", "");
     });
 }

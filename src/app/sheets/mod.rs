@@ -13,7 +13,13 @@ pub mod turntable;
 pub mod unsaved;
 mod workspaces;
 
-use egui::{Context, Id, Modal, Ui};
+use std::path::PathBuf;
+
+use egui::*;
+
+use super::actions::Action;
+use super::kit::{theme, widgets};
+use crate::document::Document;
 
 /// A sheet over the window, and its answer; closed without one, it is `cancelled`.
 pub fn question<A>(ctx: &Context, id: &str, cancelled: A, show: impl FnOnce(&mut Ui) -> Option<A>) -> Option<A> {
@@ -26,7 +32,7 @@ pub fn question<A>(ctx: &Context, id: &str, cancelled: A, show: impl FnOnce(&mut
 }
 
 /// Buttons side by side, each with the answer that it gives.
-fn answers<A>(ui: &mut Ui, buttons: impl IntoIterator<Item = (&'static str, A)>) -> Option<A> {
+pub fn answers<A>(ui: &mut Ui, buttons: impl IntoIterator<Item = (&'static str, A)>) -> Option<A> {
     let pressed = |ui: &mut Ui| {
         let mut answer = None;
         for (text, of_button) in buttons {
@@ -39,11 +45,8 @@ fn answers<A>(ui: &mut Ui, buttons: impl IntoIterator<Item = (&'static str, A)>)
     ui.horizontal(pressed).inner
 }
 
-/// Share of the window's height that long sheets scroll within.
-const SHEET_SHARE: f32 = 0.7;
-
 /// Contents of a sheet, which scroll where the window has no room for them.
 fn scrolled(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    let height = SHEET_SHARE * ui.ctx().content_rect().height();
-    egui::ScrollArea::vertical().max_height(height).show(ui, contents);
+    let height = 0.7 * ui.ctx().content_rect().height();
+    ScrollArea::vertical().max_height(height).show(ui, contents);
 }

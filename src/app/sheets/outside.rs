@@ -1,10 +1,6 @@
 //! The question whether a file from elsewhere may have others read that lie outside of its surroundings.
 
-use std::path::PathBuf;
-
-use egui::Ui;
-
-use crate::app::kit::{theme, widgets};
+use super::*;
 use crate::app::sheets::answers;
 
 /// Most names that are shown.

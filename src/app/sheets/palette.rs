@@ -1,14 +1,13 @@
 //! The command palette: every command, panel and parameter by a few letters, without the mouse.
 
-use egui::{Key, Ui, vec2};
-
-use crate::app::actions::{Action, Command};
-use crate::app::kit::{parameter_row, theme};
+use super::*;
+use crate::app::actions::Command;
+use crate::app::kit::parameter_row;
 use crate::app::pane::Pane;
-use crate::document::{Document, Kind, MaterialSettings, PARAMETERS, Parameter, SETTINGS};
+use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, SETTINGS};
 
 /// Something to be found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Findable {
     pub label: String,
     /// Words beside those of the label.
@@ -33,12 +32,12 @@ impl Findable {
 }
 
 /// The keys go to the palette with the next frame: what is typed right after it was asked for is not lost.
-pub fn focus(ctx: &egui::Context) {
+pub fn focus(ctx: &Context) {
     ctx.memory_mut(|memory| memory.request_focus(field_id()));
 }
 
-fn field_id() -> egui::Id {
-    egui::Id::unique("palette field")
+fn field_id() -> Id {
+    Id::unique("palette field")
 }
 
 /// Shows it; true once something was chosen.
@@ -51,9 +50,9 @@ pub fn show(
     actions: &mut Vec<Action>,
 ) -> bool {
     ui.set_width(420.0);
-    let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
+    let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
     let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
-    let field = egui::TextEdit::singleline(search)
+    let field = TextEdit::singleline(search)
         .id(field_id())
         .hint_text("Find a command, parameter, material or environment")
         .desired_width(f32::INFINITY);
@@ -70,20 +69,15 @@ pub fn show(
         .min(last)
         .saturating_sub(usize::from(up));
     let mut chosen = is_entered.then_some(*selected);
-    egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+    ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         for (index, entry) in found.iter().enumerate() {
-            let button = egui::Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
+            let button = Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
             // By its words: entries come and go with what is loaded meanwhile.
-            let id = egui::Id::unique(("palette", &entry.label, &entry.tags));
             let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
-            let apart = egui::UiBuilder::new().scope_id(id);
-            let response = ui.scope_builder(apart, |ui| ui.add_sized(size, button)).inner;
-            let response = if entry.help.is_empty() {
-                response
-            } else {
-                response.on_hover_text(entry.help)
-            };
+            let known = ("palette", &entry.label, &entry.tags);
+            let response = widgets::known_by(ui, known, |ui| ui.add_sized(size, button));
+            let response = widgets::explained(response, entry.help);
             if index == *selected && (up || down) {
                 response.scroll_to_me(None);
             }
@@ -92,12 +86,18 @@ pub fn show(
             }
         }
         if found.is_empty() {
-            crate::app::kit::widgets::note(ui, "No matches.");
+            widgets::note(ui, "No matches.");
         }
     });
     let chosen = chosen.filter(|index| *index < found.len());
     actions.extend(chosen.map(|index| found.swap_remove(index).action));
     chosen.is_some()
+}
+
+/// The keys of a command, if it has any.
+pub fn keys(ui: &Ui, command: Command) -> String {
+    let keys = command.shortcut().map(|shortcut| ui.ctx().format_shortcut(&shortcut));
+    keys.unwrap_or_default()
 }
 
 /// A parameter that has a row.
@@ -124,32 +124,24 @@ fn found(
     let commands = commands.map(|command| Findable {
         tags: format!("{} {}", command.menu().label(), command.help()),
         help: command.help(),
-        keys: command
-            .shortcut()
-            .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
-            .unwrap_or_default(),
+        keys: keys(ui, *command),
         ..Findable::new(command.label().to_owned(), Action::Do(*command))
     });
     // A texture's switch stands beside its image.
-    let parameters = PARAMETERS
-        .iter()
-        .filter(|parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(edited))
-        .filter_map(of_parameter);
-    let settings = SETTINGS
-        .iter()
-        .filter(|setting| (setting.applies)(document))
-        .filter_map(of_parameter);
+    let parameters = PARAMETERS.iter();
+    let parameters = parameters.filter(|of| !matches!(of.kind, Kind::Toggle) && (of.applies)(edited));
+    let settings = SETTINGS.iter().filter(|setting| (setting.applies)(document));
     let panes = Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport);
     let panes = panes.map(|pane| Findable::new(pane.command(), Action::Reveal(pane)));
     let has_words = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word))
     };
-    let entries = commands.chain(parameters).chain(settings).chain(panes);
-    let mut found: Vec<Findable> = entries
-        .chain(things.iter().cloned())
-        .filter(|entry| has_words(&format!("{} {}", entry.label, entry.tags)))
-        .collect();
+    let mut found: Vec<Findable> = commands.collect();
+    found.extend(parameters.filter_map(of_parameter));
+    found.extend(settings.filter_map(of_parameter));
+    found.extend(panes.chain(things.iter().cloned()));
+    found.retain(|entry| has_words(&format!("{} {}", entry.label, entry.tags)));
     found.sort_by_key(|entry| (!has_words(&entry.label), !entry.is_favourite));
     found
 }

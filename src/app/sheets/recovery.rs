@@ -2,9 +2,7 @@
 
 use std::time::{Duration, SystemTime};
 
-use egui::{RichText, Ui};
-
-use crate::app::kit::{theme, widgets};
+use super::*;
 use crate::app::services::autosave::Leftover;
 use crate::app::sheets::scrolled;
 use crate::store::recovery::{Recovered, Report};
@@ -39,10 +37,7 @@ pub fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
     });
     ui.add_space(theme::GAP);
     ui.separator();
-    let later = ui.button("Later").on_hover_text("Asks again at the next start.");
-    if later.clicked() {
-        ui.close();
-    }
+    widgets::entry(ui, "Later", "Asks again at the next start.");
     chosen
 }
 
@@ -58,7 +53,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
         }
         Some(Err(why)) => {
             ui.label(RichText::new("A damaged file").strong());
-            ui.colored_label(ui.visuals().error_fg_color, why);
+            widgets::failure(ui, why.clone());
             "the damaged file".to_owned()
         }
         None => "the notice".to_owned(),
@@ -69,7 +64,7 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
     ui.horizontal(|ui| {
         if let Some(contents) = &leftover.contents {
             let restore = ui
-                .add_enabled(contents.is_ok(), egui::Button::new("Restore"))
+                .add_enabled(contents.is_ok(), Button::new("Restore"))
                 .accessible_name(format!("Restore {name}"));
             if is_first && ui.memory(|memory| memory.focused().is_none()) {
                 restore.request_focus();
@@ -89,9 +84,9 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
 /// What a panic said, and where more of it stands.
 fn show_report(ui: &mut Ui, report: &Report) {
     let text = format!("It met an internal error: {}", report.message);
-    ui.add(egui::Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
+    widgets::failure(ui, text);
     let where_to = format!("Please report this crash and attach {}.", report.path.display());
-    ui.add(egui::Label::new(RichText::new(where_to).weak()).wrap());
+    widgets::note(ui, where_to);
 }
 
 /// What to call it.

@@ -3,10 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-use egui::{RichText, Ui};
-
-use crate::app::actions::Action;
-use crate::app::kit::widgets;
+use super::*;
 use crate::app::kit::words::{error, percent, short_number, time_left};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
@@ -23,7 +20,7 @@ const WARM_UP_FRAMES: u64 = 10;
 /// How long the window's frames take. Two times, as they have different causes: the *work* of a frame, for which nothing
 /// else happens in the window (panels, tessellation, upload, submission: what eframe counts), and the *interval* between
 /// frames that follow each other without a pause, which also holds the driver's drawing and the wait for the screen.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub struct FrameMeter {
     frames: u64,
     begun: Option<Instant>,
@@ -32,7 +29,7 @@ pub struct FrameMeter {
 }
 
 /// One of the two times.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 struct Track {
     last: Duration,
     worst: Duration,
@@ -47,11 +44,6 @@ impl Track {
         if is_warm {
             self.worst = self.worst.max(duration);
         }
-    }
-
-    fn recent_worst(&self) -> Duration {
-        let durations = self.recent.iter().map(|(_, duration)| *duration);
-        durations.max().unwrap_or_default()
     }
 }
 
@@ -83,14 +75,15 @@ impl FrameMeter {
 
     fn describe(&self, ui: &mut Ui) {
         ui.label("The window's own frames: they are drawn beside the renderer.");
-        egui::Grid::new("frame times").num_columns(4).show(ui, |ui| {
+        Grid::new("frame times").show(ui, |ui| {
             for heading in ["", "last", "longest in 10 s", "longest"] {
                 ui.weak(heading);
             }
             ui.end_row();
             for (label, track) in [("Frame", &self.work), ("From frame to frame", &self.interval)] {
                 ui.label(label);
-                for duration in [track.last, track.recent_worst(), track.worst] {
+                let recent = track.recent.iter().map(|(_, duration)| *duration).max();
+                for duration in [track.last, recent.unwrap_or_default(), track.worst] {
                     ui.label(format!("{:.1} ms", ms(duration)));
                 }
                 ui.end_row();
@@ -105,7 +98,7 @@ fn ms(duration: Duration) -> f64 {
 }
 
 /// What the bar keeps longest where it is narrow, first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Engine,
     Activity,
@@ -120,14 +113,6 @@ enum Rank {
     Window,
 }
 
-/// A part of the bar.
-struct Part<'a> {
-    rank: Rank,
-    /// Points, with the space behind it.
-    width: f32,
-    show: Box<dyn FnOnce(&mut Ui) + 'a>,
-}
-
 /// Space between two parts, points.
 const SPACING: f32 = 16.0;
 /// Widths are taken for multiples of this, so that parts do not come and go with each digit.
@@ -135,25 +120,47 @@ const WIDTH_STEP: f32 = 8.0;
 /// Side of a spinner, and length of the bar of what has been done, points.
 const SPINNER: f32 = 12.0;
 const SHARE_LENGTH: f32 = 90.0;
-/// Width of the button that gives up loading, points.
-const STOP_WIDTH: f32 = 86.0;
 
-impl<'a> Part<'a> {
-    fn new(rank: Rank, width: f32, show: impl FnOnce(&mut Ui) + 'a) -> Self {
+type Show<'a> = Box<dyn FnOnce(&mut Ui) + 'a>;
+
+/// The parts of the bar from left to right, with their widths in points.
+struct Parts<'u, 'a> {
+    ui: &'u Ui,
+    parts: Vec<(Rank, f32, Show<'a>)>,
+}
+
+impl<'a> Parts<'_, 'a> {
+    fn add(&mut self, rank: Rank, width: f32, show: impl FnOnce(&mut Ui) + 'a) {
         let width = SPACING + (width / WIDTH_STEP).ceil() * WIDTH_STEP;
-        let show = Box::new(show);
-        Self { rank, width, show }
+        self.parts.push((rank, width, Box::new(show)));
+    }
+
+    fn spinner(&mut self) {
+        self.add(Rank::Activity, SPINNER, |ui| {
+            ui.add(Spinner::new().size(SPINNER));
+        });
     }
 
     /// A text that explains itself under the pointer.
-    fn text(ui: &Ui, rank: Rank, text: impl Into<RichText>, help: impl FnOnce(&mut Ui) + 'a) -> Self {
+    fn text(&mut self, rank: Rank, text: impl Into<RichText>, help: impl FnOnce(&mut Ui) + 'a) {
         let text = text.into();
-        let font = egui::FontSelection::Default;
-        let layout = egui::WidgetText::from(text.clone());
-        let galley = layout.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
-        Self::new(rank, galley.size().x, move |ui| {
+        let layout = WidgetText::from(text.clone());
+        let extend = Some(TextWrapMode::Extend);
+        let galley = layout.into_galley(self.ui, extend, f32::INFINITY, FontSelection::Default);
+        self.add(rank, galley.size().x, move |ui| {
             ui.label(text).on_hover_ui(help);
-        })
+        });
+    }
+
+    /// The same, explained by lines.
+    fn explained(&mut self, rank: Rank, text: impl Into<RichText>, help: Vec<String>) {
+        self.text(rank, text, |ui| lines(ui, help));
+    }
+}
+
+fn lines(ui: &mut Ui, lines: Vec<String>) {
+    for line in lines {
+        ui.label(line);
     }
 }
 
@@ -161,108 +168,98 @@ impl<'a> Part<'a> {
 pub fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, has_numbers: bool, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = SPACING;
-        let mut parts = if has_numbers { engine(ui, snapshot) } else { Vec::new() };
-        parts.extend(activity(ui, snapshot, actions));
+        let mut parts = Parts { ui, parts: Vec::new() };
         if has_numbers {
-            parts.extend(progress(ui, snapshot));
+            engine(&mut parts, snapshot);
         }
-        parts.extend(size(ui, snapshot));
+        activity(&mut parts, snapshot, actions);
+        if has_numbers && snapshot.progress.samples_wanted > 0 {
+            for (rank, text, help) in progress(snapshot) {
+                parts.explained(rank, text, help);
+            }
+        }
+        if let Some(picture) = &snapshot.picture {
+            let mut size = format!("{} × {}", picture.width, picture.height);
+            if picture.reduction > 1 {
+                size += &format!(" (1/{})", picture.reduction);
+            }
+            parts.explained(Rank::Size, size, vec!["Size of the image shown".to_owned()]);
+        }
         if has_numbers {
-            parts.push(window_time(ui, meter, snapshot));
+            let text = format!("window {:.0} ms", ms(meter.work.last));
+            parts.text(Rank::Window, RichText::new(text).weak(), |ui| {
+                meter.describe(ui);
+                if let Some(first) = snapshot.first_picture {
+                    ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
+                }
+            });
         }
-        let widths: Vec<_> = parts.iter().map(|part| (part.rank, part.width)).collect();
-        let fits = fitting(&widths, ui.available_width() + SPACING);
-        for part in parts.into_iter().filter(|part| fits.contains(&part.rank)) {
-            if part.rank == Rank::Window {
-                widgets::at_right(ui, part.show);
+        let parts = parts.parts;
+        let widths = parts.iter().map(|(rank, width, _)| (*rank, *width)).collect();
+        let last = widgets::fitting(widths, ui.available_width() + SPACING);
+        for (rank, _, show) in parts.into_iter().filter(|(rank, ..)| Some(*rank) <= last) {
+            if rank == Rank::Window {
+                widgets::at_right(ui, show);
             } else {
-                (part.show)(ui);
+                show(ui);
             }
         }
     });
 }
 
-/// What there is room for, points: what ranks higher goes first.
-fn fitting(parts: &[(Rank, f32)], room: f32) -> Vec<Rank> {
-    let mut ranked = parts.to_vec();
-    ranked.sort_by_key(|(rank, _)| *rank);
-    let mut left = room;
-    let fits = |of_rank: &&[(Rank, f32)]| {
-        left -= of_rank.iter().map(|(_, width)| width).sum::<f32>();
-        left >= 0.0
-    };
-    let of_ranks = ranked.chunk_by(|a, b| a.0 == b.0);
-    of_ranks.take_while(fits).map(|of_rank| of_rank[0].0).collect()
-}
-
-fn engine<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
+fn engine(parts: &mut Parts<'_, '_>, snapshot: &Snapshot) {
     let Some(engine) = &snapshot.engine else {
-        let text = RichText::new("no engine yet").weak();
-        return vec![Part::text(ui, Rank::Engine, text, |_| {})];
+        return parts.explained(Rank::Engine, RichText::new("no engine yet").weak(), Vec::new());
     };
-    let help = |ui: &mut Ui| {
-        ui.label(format!("Engine: {}", engine.kind.name()));
-        ui.label(&engine.adapter);
-        if !engine.driver.is_empty() {
-            ui.label(&engine.driver);
-        }
-        ui.label(format!("Chosen because: {}", engine.reason));
-    };
+    let mut help = vec![
+        format!("Engine: {}", engine.kind.name()),
+        engine.adapter.clone(),
+        engine.driver.clone(),
+        format!("Chosen because: {}", engine.reason),
+    ];
+    help.retain(|line| !line.is_empty());
     let kind = RichText::new(engine.kind.label()).strong();
-    vec![
-        Part::text(ui, Rank::Engine, kind, help),
-        Part::text(ui, Rank::Adapter, &engine.adapter, help),
-    ]
+    parts.explained(Rank::Engine, kind, help.clone());
+    parts.explained(Rank::Adapter, &engine.adapter, help);
 }
 
-fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -> Vec<Part<'a>> {
-    let spinner = || {
-        Part::new(Rank::Activity, SPINNER, |ui| {
-            _ = ui.add(egui::Spinner::new().size(SPINNER))
-        })
-    };
-    let is_busy = matches!(
-        snapshot.activity,
-        Activity::Starting | Activity::Loading(_) | Activity::Preparing
-    );
-    let mut parts: Vec<Part<'a>> = is_busy.then(spinner).into_iter().collect();
-    let doing = snapshot.loading.doing();
+fn activity<'a>(parts: &mut Parts<'_, 'a>, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) {
     let is_loading = matches!(snapshot.activity, Activity::Loading(_) | Activity::Preparing);
+    if is_loading || snapshot.activity == Activity::Starting {
+        parts.spinner();
+    }
+    let doing = snapshot.loading.doing();
     let text = if is_loading && !doing.is_empty() {
         format!("{}: {doing}", snapshot.activity)
     } else {
         state(snapshot)
     };
-    parts.push(Part::text(ui, Rank::Activity, text, |ui| account(ui, snapshot)));
+    parts.text(Rank::Activity, text, |ui| account(ui, snapshot));
     if is_loading {
-        ui.ctx().request_repaint_after(LOADING_REPAINT);
-        parts.push(Part::new(Rank::Engine, STOP_WIDTH, move |ui| {
+        parts.ui.ctx().request_repaint_after(LOADING_REPAINT);
+        parts.add(Rank::Engine, 86.0, |ui| {
             // By a name, as what stands before it comes and goes.
-            let builder = egui::UiBuilder::new().scope_id(egui::Id::unique("cancel loading"));
-            let cancel = ui.scope_builder(builder, |ui| ui.small_button("Stop loading")).inner;
-            let cancel = cancel.on_hover_text("Gives up what is being loaded; what is shown stays");
-            if cancel.clicked() {
+            let cancel = widgets::known_by(ui, "cancel loading", |ui| ui.small_button("Stop loading"));
+            let help = "Gives up what is being loaded; what is shown stays";
+            if cancel.on_hover_text(help).clicked() {
                 actions.push(Action::CancelLoading);
             }
-        }));
+        });
     }
-    if snapshot.activity == Activity::Rendering {
-        if snapshot.progress.is_fallback {
-            let text = RichText::new("compiling the kernel").weak();
-            parts.push(spinner());
-            parts.push(Part::text(ui, Rank::Activity, text, |ui| {
-                ui.label("The CPU renders until the GPU's kernel for this scene is compiled.");
-            }));
-        }
-        let share = share_done(snapshot) as f32;
-        parts.push(Part::new(Rank::Share, SHARE_LENGTH, move |ui| {
-            let bar = egui::ProgressBar::new(share)
-                .desired_width(SHARE_LENGTH)
-                .desired_height(6.0);
-            ui.add(bar);
-        }));
+    if snapshot.activity != Activity::Rendering {
+        return;
     }
-    parts
+    if snapshot.progress.is_fallback {
+        parts.spinner();
+        let help = "The CPU renders until the GPU's kernel for this scene is compiled.";
+        let text = RichText::new("compiling the kernel").weak();
+        parts.explained(Rank::Activity, text, vec![help.to_owned()]);
+    }
+    let share = share_done(snapshot) as f32;
+    parts.add(Rank::Share, SHARE_LENGTH, move |ui| {
+        let bar = ProgressBar::new(share).desired_width(SHARE_LENGTH);
+        ui.add(bar.desired_height(6.0));
+    });
 }
 
 fn share_done(snapshot: &Snapshot) -> f64 {
@@ -273,114 +270,78 @@ fn share_done(snapshot: &Snapshot) -> f64 {
 /// How the image stands, in a word or two.
 fn state(snapshot: &Snapshot) -> String {
     let progress = &snapshot.progress;
+    let noise = progress.noise.map(|noise| noise.relative);
+    let shown_error = snapshot.denoised.map(|denoised| denoised.value).or(noise);
     match snapshot.activity {
         Activity::Rendering => match time_left(share_done(snapshot), progress.render_seconds) {
             Some(left) => format!("refining, {left}"),
             None => "refining".to_owned(),
         },
-        Activity::Done if shown_error(snapshot).is_some_and(|error| error <= CLEAN) => "clean".to_owned(),
+        Activity::Done if shown_error.is_some_and(|error| error <= CLEAN) => "clean".to_owned(),
         _ => snapshot.activity.to_string(),
     }
-}
-
-/// The estimated error of what is shown.
-fn shown_error(snapshot: &Snapshot) -> Option<f64> {
-    let noise = snapshot.progress.noise.map(|noise| noise.relative);
-    snapshot.denoised.as_ref().map(|denoised| denoised.value).or(noise)
 }
 
 /// What the word stands for, in numbers.
 fn account(ui: &mut Ui, snapshot: &Snapshot) {
     let progress = &snapshot.progress;
+    let mut text: Vec<String> = Vec::new();
     if let Some(engine) = &snapshot.engine {
-        ui.label(format!("{}: {}", engine.kind.label(), engine.adapter));
+        text.push(format!("{}: {}", engine.kind.label(), engine.adapter));
     }
-    if progress.samples_wanted == 0 {
-        return;
+    if progress.samples_wanted > 0 {
+        text.push(samples(progress));
+        if let Some(noise) = progress.noise {
+            text.push(format!("Estimated error {}", error(noise.relative)));
+            text.push(band(noise.low, noise.high));
+        }
+        if let Some(denoised) = &snapshot.denoised {
+            text.push(format!("Denoised: estimated error {}", error(denoised.value)));
+            text.push(band(denoised.low, denoised.high));
+        }
+        text.push(format!("{:.1} s of rendering", progress.render_seconds));
+        text.push("More in the panel Convergence and the workspace Measure.".to_owned());
     }
-    ui.label(samples(progress));
-    if let Some(noise) = progress.noise {
-        ui.label(format!("Estimated error {}", error(noise.relative)));
-        band(ui, noise.low, noise.high);
-    }
-    if let Some(denoised) = &snapshot.denoised {
-        ui.label(format!("Denoised: estimated error {}", error(denoised.value)));
-        band(ui, denoised.low, denoised.high);
-    }
-    ui.label(format!("{:.1} s of rendering", progress.render_seconds));
-    ui.weak("More in the panel Convergence and the workspace Measure.");
+    lines(ui, text);
 }
 
 /// How far the image has come, in numbers.
-fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
+fn progress(snapshot: &Snapshot) -> Vec<(Rank, String, Vec<String>)> {
     let progress = &snapshot.progress;
-    let mut parts = Vec::new();
-    if progress.samples_wanted > 0 {
-        parts.push(Part::text(ui, Rank::Samples, samples(progress), |ui| {
-            ui.label("Samples per pixel: average so far / target");
-        }));
-        if let Some(noise) = progress.noise {
-            let text = format!("error {}", error(noise.relative));
-            parts.push(Part::text(ui, Rank::Error, text, move |ui| {
-                ui.label("Estimated noise: RMS pixel error / mean luminance");
-                band(ui, noise.low, noise.high);
-            }));
-        }
-        if let Some(estimate) = snapshot.denoised {
-            let text = format!("denoised {}", error(estimate.value));
-            parts.push(Part::text(ui, Rank::Denoised, text, move |ui| {
-                ui.label("Estimated error of the denoised image, bias included: RMS / mean luminance");
-                band(ui, estimate.low, estimate.high);
-            }));
-        }
-        let time = format!("{:.1} s", progress.render_seconds);
-        parts.push(Part::text(ui, Rank::Time, time, |ui| {
-            ui.label("Render time of this image");
-        }));
-        let rate = format!("{} samples/s", short_number(snapshot.samples_per_second));
-        parts.push(Part::text(ui, Rank::Rate, rate, |ui| {
-            ui.label("Pixel samples per second, over this whole image");
-        }));
+    let help = |text: &str| vec![text.to_owned()];
+    let about_samples = help("Samples per pixel: average so far / target");
+    let mut parts = vec![(Rank::Samples, samples(progress), about_samples)];
+    if let Some(noise) = progress.noise {
+        let mut help = help("Estimated noise: RMS pixel error / mean luminance");
+        help.push(band(noise.low, noise.high));
+        parts.push((Rank::Error, format!("error {}", error(noise.relative)), help));
     }
+    if let Some(estimate) = snapshot.denoised {
+        let mut help = help("Estimated error of the denoised image, bias included: RMS / mean luminance");
+        help.push(band(estimate.low, estimate.high));
+        parts.push((Rank::Denoised, format!("denoised {}", error(estimate.value)), help));
+    }
+    let time = format!("{:.1} s", progress.render_seconds);
+    parts.push((Rank::Time, time, help("Render time of this image")));
+    let rate = format!("{} samples/s", short_number(snapshot.samples_per_second));
+    let about_rate = help("Pixel samples per second, over this whole image");
+    parts.push((Rank::Rate, rate, about_rate));
     parts
 }
 
-fn size<'a>(ui: &Ui, snapshot: &Snapshot) -> Option<Part<'a>> {
-    let picture = snapshot.picture.as_ref()?;
-    let size = format!("{} × {}", picture.width, picture.height);
-    let reduced = format!("{size} (1/{})", picture.reduction);
-    let text = if picture.reduction > 1 { reduced } else { size };
-    Some(Part::text(ui, Rank::Size, text, |ui| {
-        ui.label("Size of the image shown");
-    }))
-}
-
-fn band(ui: &mut Ui, low: f64, high: f64) {
+fn band(low: f64, high: f64) -> String {
     if high >= 1.0 {
-        ui.label("Too few samples for an interval.");
-        return;
+        return "Too few samples for an interval.".to_owned();
     }
-    let (low, high) = (percent(low), percent(high));
-    ui.label(format!("95 % interval: {low} – {high}"));
-}
-
-fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Part<'a> {
-    let text = RichText::new(format!("window {:.0} ms", ms(meter.work.last))).weak();
-    Part::text(ui, Rank::Window, text, |ui| {
-        meter.describe(ui);
-        if let Some(first) = snapshot.first_picture {
-            ui.label(format!("From the last change to its first image: {:.0} ms", ms(first)));
-        }
-    })
+    format!("95 % interval: {} – {}", percent(low), percent(high))
 }
 
 fn samples(progress: &Progress) -> String {
     let most = progress.samples_per_pixel;
-    let has_resting = progress.mean_samples < 0.99 * f64::from(most);
-    let mean = if has_resting {
-        format!(" (mean {:.0})", progress.mean_samples)
-    } else {
-        String::new()
-    };
-    format!("{most} / {} samples{mean}", progress.samples_wanted)
+    let mut text = format!("{most} / {} samples", progress.samples_wanted);
+    // Where some pixels rest.
+    if progress.mean_samples < 0.99 * f64::from(most) {
+        text += &format!(" (mean {:.0})", progress.mean_samples);
+    }
+    text
 }

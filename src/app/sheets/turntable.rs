@@ -1,14 +1,12 @@
 //! The turntable: what turns, how often it is taken, and where it goes; the queue renders it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
-use egui::Ui;
-
+use super::*;
 use crate::app::kit::words::duration;
-use crate::app::kit::{theme, widgets};
+use crate::document::CameraSettings;
 use crate::document::turntable::Turn;
-use crate::document::{CameraSettings, Document};
 use crate::named::named;
 use crate::render::turntable::{FPS, Turntable};
 use crate::store::video;
@@ -104,40 +102,25 @@ impl TurntableSheet {
 
     /// The settings; true to begin. `samples_per_second`: how fast pixels are sampled at present.
     pub fn settings(&mut self, ui: &mut Ui, samples_per_second: f64) -> bool {
-        let name = widgets::Name::new("Turntable turn", "Turn", "What turns, anticlockwise seen from above.");
-        widgets::row(ui, name, |ui| {
-            widgets::choice(ui, "turntable turn", &mut self.turn, &widgets::choices())
-        });
-        let mut number =
-            |name: &str, label: &str, help: &str, value: &mut u32, range: std::ops::RangeInclusive<f64>| {
-                let name = widgets::Name::new(name, label, help);
-                widgets::row(ui, name, |ui| widgets::number(ui, value, &style(range, 0)));
-            };
-        number(
-            "Turntable frames",
-            "Frames",
-            "Images of a whole turn.",
-            &mut self.frames,
-            1.0..=9999.0,
-        );
-        number(
-            "Turntable samples",
-            "Samples",
-            "Samples per pixel of each.",
-            &mut self.samples,
-            1.0..=65536.0,
-        );
+        let help = "What turns, anticlockwise seen from above.";
+        widgets::choice_row(ui, ["Turntable turn", "Turn", help], &mut self.turn);
         let [width, height] = &mut self.size;
-        number("Turntable width", "Width", "Columns of each.", width, 1.0..=8192.0);
-        number("Turntable height", "Height", "Rows of each.", height, 1.0..=8192.0);
-        let name = widgets::Name::new("Turntable form", "Written as", "What the frames are written as.");
-        widgets::row(ui, name, |ui| {
-            widgets::choice(ui, "turntable form", &mut self.form, &widgets::choices())
-        });
+        #[rustfmt::skip]
+        let numbers = [
+            (["Turntable frames", "Frames", "Images of a whole turn."], &mut self.frames, 9999.0),
+            (["Turntable samples", "Samples", "Samples per pixel of each."], &mut self.samples, 65536.0),
+            (["Turntable width", "Width", "Columns of each."], width, 8192.0),
+            (["Turntable height", "Height", "Rows of each."], height, 8192.0),
+        ];
+        for (name, value, most) in numbers {
+            widgets::row(ui, name, |ui| widgets::number(ui, value, &style(1.0..=most, 0)));
+        }
+        let name = ["Turntable form", "Written as", "What the frames are written as."];
+        widgets::choice_row(ui, name, &mut self.form);
         let is_video = self.form != Form::Pictures;
-        let name = widgets::Name::new("Turntable frames a second", "Frames/s", "How fast a video plays.");
+        let name = ["Turntable frames a second", "Frames/s", "How fast a video plays."];
         ui.add_enabled_ui(is_video, |ui| {
-            widgets::row(ui, name, |ui| widgets::number(ui, &mut self.fps, &style(video::FPS, 3)))
+            widgets::number_row(ui, name, &mut self.fps, FPS, &style(video::FPS, 3))
         });
         let help = match is_video {
             true => "The file; what is there is replaced.",
@@ -147,12 +130,9 @@ impl TurntableSheet {
             }
         };
         self.output = with_ending(&self.output, self.form.ending());
-        widgets::row(ui, widgets::Name::new("Turntable output", "Output", help), |ui| {
-            ui.add(
-                egui::TextEdit::singleline(&mut self.output)
-                    .desired_width(f32::INFINITY)
-                    .margin(egui::vec2(6.0, 4.0)),
-            )
+        widgets::row(ui, ["Turntable output", "Output", help], |ui| {
+            let field = TextEdit::singleline(&mut self.output).desired_width(f32::INFINITY);
+            ui.add(field.margin(vec2(6.0, 4.0)))
         });
         let mut message = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
         if samples_per_second > 0.0 {
@@ -161,17 +141,13 @@ impl TurntableSheet {
         }
         widgets::note(ui, message + ".");
         ui.add_space(theme::GAP);
-        let mut begins = false;
-        ui.horizontal(|ui| {
-            let is_usable = !self.output.trim().is_empty();
-            begins = ui
-                .add_enabled(is_usable, egui::Button::new("Add to the queue"))
-                .clicked();
-            if ui.button("Close").clicked() {
-                ui.close();
-            }
-        });
-        begins
+        let is_usable = !self.output.trim().is_empty();
+        let buttons = |ui: &mut Ui| {
+            let begins = widgets::pressed_if(ui, is_usable, "Add to the queue", "", "");
+            widgets::entry(ui, "Close", "");
+            begins
+        };
+        ui.horizontal(buttons).inner
     }
 }
 
@@ -181,11 +157,8 @@ fn style(range: std::ops::RangeInclusive<f64>, decimals: usize) -> widgets::Numb
 
 /// A path with another of the endings that turntables have, or with none; as it is while it is being typed.
 fn with_ending(path: &str, ending: &str) -> String {
-    let has = Path::new(path)
-        .extension()
-        .and_then(|has| has.to_str())
-        .unwrap_or_default();
-    let is_known = Form::ALL.iter().any(|form| form.ending() == has);
+    let has = Path::new(path).extension().unwrap_or_default();
+    let is_known = Form::ALL.iter().any(|form| has == form.ending());
     match is_known && has != ending && !path.is_empty() {
         true => Path::new(path).with_extension(ending).display().to_string(),
         false => path.to_owned(),

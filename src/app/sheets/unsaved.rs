@@ -1,12 +1,7 @@
 //! The question before unsaved edits would be lost: save, discard, or cancel, which leaves everything as it is.
 
-use std::path::PathBuf;
-
-use egui::Ui;
-
 use super::outside::Outside;
-use crate::app::kit::{theme, widgets};
-use crate::document::Document;
+use super::*;
 use crate::store::Loaded;
 
 /// What would lose the edits.
@@ -71,7 +66,6 @@ impl Question {
             format!("They would be lost by {}. Escape cancels.", self.then.verb()),
         );
         ui.add_space(theme::GAP);
-        let mut answer = None;
         ui.horizontal(|ui| {
             let save = ui.button("Save");
             // The focus lasts only once the sheet has been laid out.
@@ -80,16 +74,9 @@ impl Question {
             } else if self.is_new {
                 save.request_focus();
             }
-            if save.clicked() {
-                answer = Some(Answer::Save);
-            }
-            if ui.button("Discard").clicked() {
-                answer = Some(Answer::Discard);
-            }
-            if ui.button("Cancel").clicked() {
-                answer = Some(Answer::Cancel);
-            }
-        });
-        answer
+            let others = answers(ui, [("Discard", Answer::Discard), ("Cancel", Answer::Cancel)]);
+            save.clicked().then_some(Answer::Save).or(others)
+        })
+        .inner
     }
 }

@@ -1,19 +1,14 @@
 //! A way to the denoiser where it is missing: why the image is noisy at first, and a button that fetches it.
 
-use egui::{Rect, Ui, vec2};
-
-use super::LOADING_MARGIN;
-use crate::app::desk::Desk;
-use crate::app::kit::theme;
+use super::*;
 use crate::app::services::beside::started;
 use crate::document::Denoise;
 use crate::render::background::Background;
 use crate::render::denoise::Library;
 use crate::render::denoise::fetch::{DOWNLOAD, can_fetch, fetch};
 
-/// Width of the offer, points; and what is below it in the viewport.
+/// Width of the offer, points.
 const WIDTH: f32 = 250.0;
-const ABOVE: f32 = 2.0 * theme::ROW_HEIGHT;
 /// Height of the offer while it has a message, points.
 const HEIGHT: f32 = 76.0;
 
@@ -28,7 +23,7 @@ pub struct DenoiserOffer {
 
 impl DenoiserOffer {
     /// Shows the offer over the image where the denoiser is missing; once it is there, images are denoised.
-    pub fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, area: Rect, desk: &mut Desk) {
         if self.is_declined
             || !desk.shared.offers_downloads
             || !can_fetch()
@@ -45,14 +40,11 @@ impl DenoiserOffer {
             }
             return;
         }
-        let up = LOADING_MARGIN + ABOVE + HEIGHT;
+        let up = LOADING_MARGIN + 2.0 * theme::ROW_HEIGHT + HEIGHT;
         let corner = area.left_bottom() + vec2(LOADING_MARGIN, -up);
-        let builder = egui::UiBuilder::new()
-            .scope_id(egui::Id::unique("denoiser offer"))
-            .max_rect(Rect::from_min_size(corner, vec2(WIDTH, HEIGHT)))
-            .layout(egui::Layout::bottom_up(egui::Align::Min));
-        let mut inside = ui.new_child(builder);
-        egui::Frame::popup(inside.style()).show(&mut inside, |ui| {
+        let place = Rect::from_min_size(corner, vec2(WIDTH, HEIGHT));
+        let mut inside = laid_over(ui, "denoiser offer", place, Layout::bottom_up(Align::Min));
+        Frame::popup(inside.style()).show(&mut inside, |ui| {
             ui.set_width(WIDTH);
             ui.horizontal(|ui| self.buttons(ui, is_busy));
             let text = match outcome {
@@ -60,26 +52,24 @@ impl DenoiserOffer {
                 _ if is_busy => "Downloading; you can go on meanwhile.".to_owned(),
                 _ => "Images are noisy at first: the denoiser is not installed.".to_owned(),
             };
-            ui.add(egui::Label::new(text).wrap());
+            ui.add(Label::new(text).wrap());
         });
     }
 
     fn buttons(&mut self, ui: &mut Ui, is_busy: bool) {
         let label = format!("Get the denoiser ({DOWNLOAD})");
-        let get = ui.add_enabled(!is_busy, egui::Button::new(label));
-        let get = get.on_hover_text("Downloads Open Image Denoise, by the Python package pyoidn, for you alone.");
+        let help = "Downloads Open Image Denoise, by the Python package pyoidn, for you alone.";
+        let gets = widgets::pressed_if(ui, !is_busy, label, help, "");
         if is_busy {
-            ui.add(egui::Spinner::new().size(12.0));
+            ui.add(Spinner::new().size(12.0));
         }
-        if ui.add_enabled(!is_busy, egui::Button::new("No")).clicked() {
-            self.is_declined = true;
-        }
-        if !get.clicked() {
+        self.is_declined |= widgets::pressed_if(ui, !is_busy, "No", "", "");
+        if !gets {
             return;
         }
         let worker = started(&mut self.worker, ui.ctx(), |repaint| {
             Background::spawn("denoiser", repaint, |(), responder| {
-                responder.publish(fetch().map_err(crate::in_words));
+                responder.publish(fetch());
             })
         });
         if let Some(worker) = worker {

@@ -1,27 +1,23 @@
 //! The bar over the image: what is looked at, in which light, and how it is shown.
 
-use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
-
-use crate::app::actions::{Action, Command, do_and_close};
-use crate::app::desk::Desk;
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::{theme, widgets};
-use crate::app::services::environments::environment_label;
+use super::*;
+use crate::app::actions::do_and_close;
+use crate::app::services::shelves::environment_label;
 use crate::document::{Denoise, LightPaths};
 use crate::render::shown::Shown;
 use crate::scene::ModelSource;
 use crate::scene::environment::BUILT_IN;
 
-/// What stands in the bar beside model and environment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What stands in the bar beside model and environment: what it keeps longest when it gets narrow first.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Item {
-    ToneMap,
+    Pause,
     Exposure,
     Denoise,
-    Resolution,
-    Compare,
     Shown,
-    Pause,
+    Compare,
+    Resolution,
+    ToneMap,
 }
 
 /// From left to right, with their widths in points.
@@ -34,18 +30,6 @@ const ITEMS: [(Item, f32); 7] = [
     (Item::Shown, 84.0),
     (Item::Pause, theme::ROW_HEIGHT),
 ];
-/// Which of them the bar keeps longest when it gets narrow.
-const RANKED: [Item; 7] = [
-    Item::Pause,
-    Item::Exposure,
-    Item::Denoise,
-    Item::Shown,
-    Item::Compare,
-    Item::Resolution,
-    Item::ToneMap,
-];
-/// Width of the menu with the others, points.
-const MORE: f32 = 28.0;
 
 /// The models that come with the program.
 const MODELS: [(&str, ModelSource); 5] = [
@@ -60,135 +44,128 @@ pub fn model_label(source: &ModelSource) -> String {
     let built_in = MODELS.iter().find(|(_, of)| of == source);
     match (built_in, source) {
         (Some((label, _)), _) => (*label).to_owned(),
-        (None, ModelSource::File(path)) => path.file_name().map_or_else(
-            || path.display().to_string(),
-            |name| name.to_string_lossy().into_owned(),
-        ),
+        (None, ModelSource::File(path)) => {
+            let name = path.file_name().unwrap_or(path.as_os_str());
+            name.to_string_lossy().into_owned()
+        }
         (None, other) => other.to_string(),
     }
 }
 
-pub fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk) {
     ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
-    let inside = bar.shrink2(vec2(8.0, 0.0));
-    let builder = UiBuilder::new()
-        .max_rect(inside)
-        .layout(Layout::left_to_right(Align::Center));
-    let mut ui = ui.new_child(builder);
-    ui.set_clip_rect(bar.intersect(ui.clip_rect()));
+    let mut ui = in_bar(ui, "header", bar);
     models(&mut ui, desk);
     environments(&mut ui, desk);
-    let inside = fitting(ui.available_width(), ui.spacing().item_spacing.x);
-    widgets::at_right(&mut ui, |ui| {
-        if inside.len() < ITEMS.len() {
-            more(ui, desk, &inside);
-        }
-        for (item, width) in ITEMS.into_iter().rev().filter(|(item, _)| inside.contains(item)) {
-            // An identity that stays while others come and go with the room: a click under way would be lost.
-            let builder = UiBuilder::new().scope_id(ui.scope_id().with(("header", item as usize)));
-            ui.scope_builder(builder, |ui| sized(ui, width, |ui| show_item(ui, desk, item)));
-        }
-    });
-}
-
-/// The items that there is room for, points, beside a menu with the others.
-fn fitting(room: f32, spacing: f32) -> Vec<Item> {
-    let width = |item: &Item| {
-        ITEMS
-            .iter()
-            .find(|(of, _)| of == item)
-            .map_or(0.0, |(_, width)| width + spacing)
-    };
-    if RANKED.iter().map(width).sum::<f32>() <= room {
-        return RANKED.to_vec();
+    let (room, spacing) = (ui.available_width(), ui.spacing().item_spacing.x);
+    let widths = ITEMS.map(|(item, width)| (item, width + spacing)).to_vec();
+    let mut last = widgets::fitting(widths.clone(), room);
+    let has_all = last == Some(Item::ToneMap);
+    if !has_all {
+        last = widgets::fitting(widths, room - 28.0 - spacing);
     }
-    let mut left = room - MORE - spacing;
-    let fits = |item: &&Item| {
-        left -= width(item);
-        left >= 0.0
+    let fits = |(item, _): &(Item, f32)| Some(*item) <= last;
+    widgets::at_right(&mut ui, |ui| {
+        if !has_all {
+            // The items that the bar has no room for.
+            let menu = ui.menu_button("…", |ui| {
+                for (item, _) in ITEMS.into_iter().filter(|item| !fits(item)) {
+                    menu_entry(ui, desk, item);
+                }
+            });
+            let name = "More of the viewport's controls";
+            menu.response.accessible_name(name).on_hover_text("More");
+        }
+        for (item, width) in ITEMS.into_iter().rev().filter(fits) {
+            // An identity that stays while others come and go with the room: a click under way would be lost.
+            widgets::known_by(ui, ("header", item as usize), |ui| {
+                widgets::sized(ui, width, |ui| show_item(ui, desk, item));
+            });
+        }
+    });
+}
+
+/// The inside of a bar.
+pub fn in_bar(ui: &mut Ui, name: &str, bar: Rect) -> Ui {
+    let mut inside = over(ui, name, bar.shrink2(vec2(8.0, 0.0)));
+    inside.set_clip_rect(bar.intersect(ui.clip_rect()));
+    inside
+}
+
+/// A list of what comes with the program, and the way to a file of one's own.
+fn list(
+    ui: &mut Ui,
+    desk: &mut Desk,
+    (name, current): (&str, String),
+    entries: &[(&str, &str, bool, Action)],
+    open: Command,
+) {
+    let combo = ComboBox::from_id_salt(name).width(120.0).selected_text(current);
+    let shown = combo.show_ui(ui, |ui| {
+        for (label, help, is_current, action) in entries {
+            let entry = ui.selectable_label(*is_current, *label);
+            if widgets::explained(entry, help).clicked() {
+                do_and_close(ui, desk.actions, action.clone());
+            }
+        }
+        ui.separator();
+        if ui.selectable_label(false, "Open…").clicked() {
+            do_and_close(ui, desk.actions, Action::Do(open));
+        }
+    });
+    shown.response.accessible_name(name).on_hover_text(name);
+}
+
+fn models(ui: &mut Ui, desk: &mut Desk) {
+    let current = &desk.document.model;
+    let name = ("Model", model_label(current));
+    let entries = MODELS.map(|(label, source)| (label, "", source == *current, Action::UseModel(source)));
+    list(ui, desk, name, &entries, Command::OpenModel);
+}
+
+fn environments(ui: &mut Ui, desk: &mut Desk) {
+    let current = &desk.document.lighting.environment;
+    let name = ("Environment", environment_label(current));
+    let entries = BUILT_IN.iter().map(|built_in| {
+        let action = Action::UseEnvironment(built_in.source.clone());
+        (built_in.label, built_in.help, *current == built_in.source, action)
+    });
+    let entries: Vec<_> = entries.collect();
+    list(ui, desk, name, &entries, Command::OpenEnvironment);
+}
+
+fn show_item(ui: &mut Ui, desk: &mut Desk, item: Item) {
+    let mut toggle = |ui: &mut Ui, command: Command, (text, name, help): (&str, &str, &str), is_on: bool| {
+        let toggle = ui.selectable_label(is_on, text).on_hover_text(help);
+        if toggle.clicked() {
+            desk.actions.push(Action::Do(command));
+        }
+        toggle.accessible_name(name);
     };
-    RANKED.iter().take_while(fits).copied().collect()
-}
-
-fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let combo = egui::ComboBox::from_id_salt("model")
-        .width(120.0)
-        .selected_text(model_label(&desk.document.model));
-    let shown = combo.show_ui(ui, |ui| {
-        for (label, source) in &MODELS {
-            if ui.selectable_label(desk.document.model == *source, *label).clicked() {
-                do_and_close(ui, desk.actions, Action::UseModel(source.clone()));
-            }
-        }
-        ui.separator();
-        if ui.selectable_label(false, "Open…").clicked() {
-            do_and_close(ui, desk.actions, Action::Do(Command::OpenModel));
-        }
-    });
-    shown.response.accessible_name("Model").on_hover_text("Model");
-}
-
-fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let current = desk.document.lighting.environment.clone();
-    let combo = egui::ComboBox::from_id_salt("environment")
-        .width(120.0)
-        .selected_text(environment_label(&current));
-    let shown = combo.show_ui(ui, |ui| {
-        for built_in in &BUILT_IN {
-            let label = ui.selectable_label(current == built_in.source, built_in.label);
-            if label.on_hover_text(built_in.help).clicked() {
-                do_and_close(ui, desk.actions, Action::UseEnvironment(built_in.source.clone()));
-            }
-        }
-        ui.separator();
-        if ui.selectable_label(false, "Open…").clicked() {
-            do_and_close(ui, desk.actions, Action::Do(Command::OpenEnvironment));
-        }
-    });
-    shown
-        .response
-        .accessible_name("Environment")
-        .on_hover_text("Environment");
-}
-
-fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
     match item {
         Item::ToneMap => desk.setting_control(ui, "view.tone_map", "Viewport tone map"),
         Item::Exposure => desk.setting_control(ui, "view.exposure", "Viewport exposure"),
         Item::Denoise => {
-            let denoises = ui.selectable_label(desk.document.view.denoise != Denoise::Off, "Denoise");
-            let denoises = denoises.on_hover_text(Command::Denoise.help());
-            if denoises.clicked() {
-                desk.act(Command::Denoise);
-            }
-            denoises.accessible_name("Viewport denoise");
+            let words = ("Denoise", "Viewport denoise", Command::Denoise.help());
+            let is_on = desk.document.view.denoise != Denoise::Off;
+            toggle(ui, Command::Denoise, words, is_on);
         }
         Item::Resolution => {
-            let response = widgets::choice(
-                ui,
-                "header size",
-                &mut desk.shared.viewing.resolution,
-                &widgets::choices(),
-            );
-            response
-                .accessible_name("Resolution")
-                .on_hover_text("Size of the image");
+            let resolution = &mut desk.shared.viewing.resolution;
+            let response = widgets::choice(ui, "header size", resolution, &widgets::choices());
+            let response = response.accessible_name("Resolution");
+            response.on_hover_text("Size of the image");
         }
         Item::Compare => {
-            let compares = ui.selectable_label(desk.shared.compare.is_on, "A | B");
-            let compares = compares.on_hover_text("Compare with another material or lobe (C)");
-            if compares.clicked() {
-                desk.act(Command::Compare);
-            }
-            compares.accessible_name("Compare");
+            let words = ("A | B", "Compare", "Compare with another material or lobe (C)");
+            toggle(ui, Command::Compare, words, desk.shared.compare.is_on);
         }
         Item::Shown => {
             let mut seen = seen(desk);
             let response = widgets::choice(ui, "header shown", &mut seen, &all_seen(desk));
             show_seen(desk, seen);
-            response
-                .accessible_name("Viewport shows")
-                .on_hover_text("Display: image, light passes, or AOVs");
+            let response = response.accessible_name("Viewport shows");
+            response.on_hover_text("Display: image, light passes, or AOVs");
         }
         Item::Pause => {
             let (icon, help) = if desk.shared.rendering.is_paused {
@@ -206,12 +183,12 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
 /// What the viewport shows of a render, and which light is rendered.
 type Seen = (Shown, LightPaths);
 
-fn seen(desk: &Desk<'_>) -> Seen {
+fn seen(desk: &Desk) -> Seen {
     (desk.shared.viewing.shown, desk.document.render.light_paths)
 }
 
 /// What there is to be seen: parts of the light behind the image; maps of the light that is rendered.
-fn all_seen(desk: &Desk<'_>) -> Vec<(Seen, &'static str, &'static str)> {
+fn all_seen(desk: &Desk) -> Vec<(Seen, &'static str, &'static str)> {
     let rendered = desk.document.render.light_paths;
     let maps = Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture);
     let maps = maps.map(|(shown, label, help)| ((*shown, rendered), *label, *help));
@@ -222,7 +199,7 @@ fn all_seen(desk: &Desk<'_>) -> Vec<(Seen, &'static str, &'static str)> {
     std::iter::once(whole).chain(parts).chain(maps).collect()
 }
 
-fn show_seen(desk: &mut Desk<'_>, (shown, paths): Seen) {
+fn show_seen(desk: &mut Desk, (shown, paths): Seen) {
     if desk.shared.viewing.shown != shown {
         desk.shared.viewing.shown = shown;
         desk.actions.push(Action::Show(shown));
@@ -233,20 +210,13 @@ fn show_seen(desk: &mut Desk<'_>, (shown, paths): Seen) {
     }
 }
 
-/// A menu of the items that the bar has no room for.
-fn more(ui: &mut Ui, desk: &mut Desk<'_>, inside: &[Item]) {
-    let menu = ui.menu_button("…", |ui| {
-        for (item, _) in ITEMS.iter().filter(|(item, _)| !inside.contains(item)) {
-            menu_entry(ui, desk, *item);
-        }
-    });
-    menu.response
-        .accessible_name("More of the viewport's controls")
-        .on_hover_text("More");
-}
-
 /// An item as an entry of a menu, where controls that open menus of their own can't be.
-fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
+fn menu_entry(ui: &mut Ui, desk: &mut Desk, item: Item) {
+    let mut entry = |ui: &mut Ui, command: Command| {
+        if widgets::entry(ui, command.label(), command.help()) {
+            desk.actions.push(Action::Do(command));
+        }
+    };
     match item {
         Item::ToneMap => {
             let mut curve = desk.document.view.tone_map;
@@ -256,12 +226,8 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             }
         }
         Item::Resolution => {
-            widgets::choice_menu(
-                ui,
-                "Resolution",
-                &mut desk.shared.viewing.resolution,
-                &widgets::choices(),
-            );
+            let resolution = &mut desk.shared.viewing.resolution;
+            widgets::choice_menu(ui, "Resolution", resolution, &widgets::choices());
         }
         Item::Shown => {
             let mut seen = seen(desk);
@@ -274,19 +240,8 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
                 show_item(ui, desk, item);
             });
         }
-        Item::Denoise => command(ui, desk, Command::Denoise),
-        Item::Compare => command(ui, desk, Command::Compare),
-        Item::Pause => command(ui, desk, Command::Pause),
+        Item::Denoise => entry(ui, Command::Denoise),
+        Item::Compare => entry(ui, Command::Compare),
+        Item::Pause => entry(ui, Command::Pause),
     }
-}
-
-fn command(ui: &mut Ui, desk: &mut Desk<'_>, command: Command) {
-    if widgets::pressed(ui, command.label(), command.help()) {
-        do_and_close(ui, desk.actions, Action::Do(command));
-    }
-}
-
-pub fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
-    let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(width, theme::ROW_HEIGHT), layout, add);
 }

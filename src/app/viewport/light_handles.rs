@@ -1,50 +1,30 @@
 //! Area lights in the viewport: a mark for each, and handles of the chosen one that are dragged or moved by keys.
 
-use egui::{
-    Color32, CursorIcon, Id, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
-    Vec2, pos2, vec2,
-};
 use glam::{DVec2, DVec3};
 
-use crate::app::desk::Desk;
-use crate::app::kit::keys::hold_arrows;
-use crate::app::kit::theme;
-use crate::app::kit::widgets::srgb_of;
+use super::*;
+use crate::app::kit::drag::{Drag, steps};
+use crate::app::kit::widgets::shown;
 use crate::app::lights::{LightHandle, Pull, View, handles, nudged, pulled};
 use crate::document::AreaLight;
-use crate::job::Job;
 use crate::scene::Outline;
 
-/// Side of the square that takes the pointer, points.
-const TARGET: f32 = 20.0;
 /// Radius of a light's mark, points.
 const MARK: f32 = 7.0;
 /// From the image's edge to the marks of lights beyond it, points.
 const MARGIN: f64 = 14.0;
-/// Share of the pointer's way that counts with shift.
-const FINE: f32 = 0.1;
 /// Points of a line around a disc or a cone.
 const AROUND: u32 = 48;
 
 /// The handle that is being dragged.
 #[derive(Default)]
 pub struct LightHandles {
-    held: Option<Held>,
-}
-
-struct Held {
-    light: usize,
-    handle: LightHandle,
-    /// What the light was like before.
-    start: AreaLight,
-    from: Pos2,
-    /// Escape was pressed: nothing moves any more.
-    is_over: bool,
+    held: Option<Drag<AreaLight>>,
 }
 
 impl LightHandles {
     /// Shows the lights over the image at `place` while their list is shown, and lets them be moved.
-    pub fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk) {
         if !desk.shared.selection.showed_lights {
             self.held = None;
             return;
@@ -82,10 +62,6 @@ impl LightHandles {
                 }
             }
         }
-        if self.held.is_some() && !ui.input(|input| input.pointer.any_down()) {
-            self.held = None;
-            desk.edits.seal();
-        }
     }
 
     fn react(
@@ -95,47 +71,34 @@ impl LightHandles {
         (index, handle): (usize, LightHandle),
         view: &View,
         place: Rect,
-        desk: &mut Desk<'_>,
+        desk: &mut Desk,
     ) {
         let light = desk.document.lighting.area_lights[index];
         if response.clicked() {
             response.request_focus();
+        }
+        if response.clicked() || response.drag_started_by(PointerButton::Primary) {
             desk.shared.selection.light = Some(index);
         }
-        if response.drag_started_by(PointerButton::Primary)
-            && let Some(from) = ui.input(|input| input.pointer.press_origin())
-        {
-            desk.shared.selection.light = Some(index);
-            desk.edits.seal();
-            self.held = Some(Held {
-                light: index,
-                handle,
-                start: light,
-                from,
-                is_over: false,
-            });
-        }
-        let held = self
-            .held
-            .as_mut()
-            .filter(|held| (held.light, held.handle) == (index, handle));
-        // It ends the drag for the interface, too.
-        let is_escaped = ui.input(|input| input.key_pressed(Key::Escape));
-        let moved = match held {
-            Some(held) if !held.is_over && is_escaped => {
-                held.is_over = true;
-                held.start
-            }
-            Some(held) if !held.is_over && response.dragged_by(PointerButton::Primary) => {
-                match response.interact_pointer_pos() {
-                    Some(to) => held.pulled(ui, to, view, place),
-                    None => light,
-                }
-            }
-            Some(_) => light,
-            None if response.has_focus() => keyed(ui, response, &light, handle),
-            None => light,
+        let in_picture = |at: Pos2| {
+            let at = at - place.min;
+            DVec2::new(at.x.into(), at.y.into())
         };
+        let (mut moved, seals) = Drag::follow(&mut self.held, ui, response, light, |start, drag| {
+            let pull = Pull {
+                from: in_picture(drag.from),
+                to: in_picture(drag.to),
+                snaps: drag.snaps,
+            };
+            pulled(start, handle, view, &pull)
+        });
+        if seals {
+            desk.edits.history.seal();
+        }
+        let by = steps(ui, response, true);
+        if by != Vec2::ZERO {
+            moved = nudged(&moved, handle, DVec2::new(by.x.into(), by.y.into()));
+        }
         if moved != light {
             desk.document.lighting.area_lights[index] = moved;
             let key = format!("{} of area light {}", handle.name(), index + 1);
@@ -144,71 +107,23 @@ impl LightHandles {
     }
 }
 
-impl Held {
-    fn pulled(&self, ui: &Ui, to: Pos2, view: &View, place: Rect) -> AreaLight {
-        let modifiers = ui.input(|input| input.modifiers);
-        let share = if modifiers.shift { FINE } else { 1.0 };
-        let in_picture = |at: Pos2| {
-            let at = at - place.min;
-            DVec2::new(at.x.into(), at.y.into())
-        };
-        let pull = Pull {
-            from: in_picture(self.from),
-            to: in_picture(self.from + share * (to - self.from)),
-            snaps: modifiers.command,
-        };
-        if pull.from == pull.to {
-            return self.start;
-        }
-        pulled(&self.start, self.handle, view, &pull)
-    }
-}
-
 fn interact(ui: &Ui, clip: Rect, index: usize, handle: LightHandle, at: Pos2) -> Response {
-    let rect = Rect::from_center_size(at, Vec2::splat(TARGET)).intersect(clip);
+    let rect = Rect::from_center_size(at, Vec2::splat(20.0)).intersect(clip);
     let id = Id::unique(("light handle", index, handle.name()));
     let name = handle.full_name(&format!("area light {}", index + 1));
     let response = ui.interact(rect, id, Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
-    let cursor = if response.dragged() {
-        CursorIcon::Grabbing
-    } else {
-        CursorIcon::Grab
+    widgets::describe(&response, Role::Button, &name);
+    let cursor = match response.dragged() {
+        true => CursorIcon::Grabbing,
+        false => CursorIcon::Grab,
     };
     response.on_hover_cursor(cursor).on_hover_text(handle.help())
 }
 
-/// The light after the arrow keys of this frame: with shift finely, with ctrl in large steps.
-fn keyed(ui: &Ui, response: &Response, light: &AreaLight, handle: LightHandle) -> AreaLight {
-    hold_arrows(ui, response, true, true);
-    let keys = [
-        (Key::ArrowLeft, DVec2::NEG_X),
-        (Key::ArrowRight, DVec2::X),
-        (Key::ArrowUp, DVec2::Y),
-        (Key::ArrowDown, DVec2::NEG_Y),
-    ];
-    let mut steps = DVec2::ZERO;
-    for (modifiers, size) in [
-        (Modifiers::COMMAND, 15.0),
-        (Modifiers::SHIFT, 0.1),
-        (Modifiers::NONE, 1.0),
-    ] {
-        for (key, along) in keys {
-            steps += size * along * ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
-        }
-    }
-    if steps == DVec2::ZERO {
-        return *light;
-    }
-    nudged(light, handle, steps)
-}
-
 /// Light and dark, so that it is seen against everything.
 fn line(painter: &Painter, points: Vec<Pos2>, color: Color32) {
-    painter.add(Shape::line(
-        points.clone(),
-        Stroke::new(3.0, Color32::from_black_alpha(110)),
-    ));
+    let shadow = Stroke::new(3.0, Color32::from_black_alpha(110));
+    painter.add(Shape::line(points.clone(), shadow));
     painter.add(Shape::line(points, Stroke::new(1.2, color)));
 }
 
@@ -218,11 +133,8 @@ fn arrow(painter: &Painter, at: Pos2, outwards: Vec2) {
     let foot = at + (MARK + 1.0) * outwards;
     let half = 4.5 * outwards.rot90();
     let shadow = Stroke::new(2.0, Color32::from_black_alpha(130));
-    painter.add(Shape::convex_polygon(
-        vec![tip, foot + half, foot - half],
-        Color32::WHITE,
-        shadow,
-    ));
+    let corners = vec![tip, foot + half, foot - half];
+    painter.add(Shape::convex_polygon(corners, Color32::WHITE, shadow));
 }
 
 /// The colour of an axis, as most programs have it.
@@ -291,17 +203,16 @@ fn draw(
     is_chosen: bool,
     response: &Response,
 ) {
-    let accent = theme::accent(ui.visuals().dark_mode);
+    let accent = theme::accent(ui);
     let is_lit = response.hovered() || response.dragged() || response.has_focus();
     let rim = if is_lit { accent } else { Color32::WHITE };
     let shadow = Stroke::new(3.5, Color32::from_black_alpha(130));
     let stroke = Stroke::new(1.5, rim);
     match handle {
         LightHandle::Direction => {
-            let [red, green, blue] = srgb_of(light.color);
             let fill = match light.is_muted {
                 true => Color32::from_black_alpha(120),
-                false => Color32::from_rgb(red, green, blue),
+                false => shown(light.color),
             };
             painter.circle(at, MARK, fill, shadow);
             painter.circle_stroke(at, MARK, stroke);
@@ -313,15 +224,14 @@ fn draw(
                 painter.circle_stroke(at, MARK + 6.5, Stroke::new(1.5, accent));
             }
         }
-        LightHandle::Width | LightHandle::Height => {
-            let square = Rect::from_center_size(at, Vec2::splat(8.0));
-            painter.rect(square, 1.0, Color32::from_gray(40), shadow, egui::StrokeKind::Middle);
-            painter.rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
-        }
-        LightHandle::InPlane => {
-            let square = Rect::from_center_size(at, Vec2::splat(9.0));
-            painter.rect(square, 1.0, Color32::from_gray(90), shadow, egui::StrokeKind::Middle);
-            painter.rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
+        LightHandle::Width | LightHandle::Height | LightHandle::InPlane => {
+            let (side, grey) = match handle {
+                LightHandle::InPlane => (9.0, 90),
+                _ => (8.0, 40),
+            };
+            let square = Rect::from_center_size(at, Vec2::splat(side));
+            painter.rect(square, 1.0, Color32::from_gray(grey), shadow, StrokeKind::Middle);
+            painter.rect_stroke(square, 1.0, stroke, StrokeKind::Middle);
         }
         LightHandle::AlongX | LightHandle::AlongY | LightHandle::AlongZ => {
             let color = axis_color(handle).filter(|_| !is_lit).unwrap_or(rim);
@@ -333,20 +243,11 @@ fn draw(
             painter.circle_filled(at, 1.5, rim);
         }
         LightHandle::Distance | LightHandle::Cone => {
-            let side = 5.5;
-            let tips = match handle {
-                LightHandle::Distance => vec![
-                    pos2(at.x, at.y - side),
-                    pos2(at.x + side, at.y),
-                    pos2(at.x, at.y + side),
-                    pos2(at.x - side, at.y),
-                ],
-                _ => vec![
-                    pos2(at.x, at.y - side),
-                    pos2(at.x + side, at.y + side),
-                    pos2(at.x - side, at.y + side),
-                ],
+            let tips: &[[f32; 2]] = match handle {
+                LightHandle::Distance => &[[0.0, -5.5], [5.5, 0.0], [0.0, 5.5], [-5.5, 0.0]],
+                _ => &[[0.0, -5.5], [5.5, 5.5], [-5.5, 5.5]],
             };
+            let tips: Vec<Pos2> = tips.iter().map(|tip| at + Vec2::from(*tip)).collect();
             painter.add(Shape::convex_polygon(tips.clone(), Color32::from_gray(40), shadow));
             painter.add(Shape::closed_line(tips, stroke));
         }

@@ -1,19 +1,12 @@
 //! What is being loaded, said in the viewport, where one looks.
 
-use egui::{Color32, Rect, Ui, Vec2};
-
-use super::LOADING_MARGIN;
 use super::header::model_label;
-use crate::app::desk::Desk;
-use crate::render::worker::{Activity, Picture};
-
-/// Width of what is said in the middle, points.
-const WIDTH: f32 = 280.0;
-const HEIGHT: f32 = 34.0;
+use super::*;
+use crate::render::worker::Activity;
 
 /// Says what is being loaded while the image before it stays. An image of another model than the panels show is dimmed,
 /// with what will come in the middle.
-pub fn show(ui: &mut Ui, area: Rect, picture: &Picture, desk: &Desk<'_>) {
+pub fn show(ui: &mut Ui, area: Rect, picture: &Picture, desk: &Desk) {
     let (shown, document) = (&picture.document, &*desk.document);
     let is_other = (&shown.model, &shown.import) != (&document.model, &document.import);
     let text = match &desk.snapshot.activity {
@@ -24,23 +17,18 @@ pub fn show(ui: &mut Ui, area: Rect, picture: &Picture, desk: &Desk<'_>) {
         _ if is_other => format!("Preparing {} …", model_label(&document.model)),
         _ => return,
     };
-    let (place, layout) = if is_other {
+    let mut place = Rect::from_min_max(area.min + Vec2::splat(LOADING_MARGIN), area.max);
+    let mut layout = Layout::left_to_right(Align::Min);
+    if is_other {
         ui.painter().rect_filled(area, 0.0, Color32::from_black_alpha(150));
-        let middle = Rect::from_center_size(area.center(), Vec2::new(WIDTH.min(area.width()), HEIGHT));
-        (middle, egui::Layout::top_down(egui::Align::Center))
-    } else {
-        let corner = Rect::from_min_max(area.min + Vec2::splat(LOADING_MARGIN), area.max);
-        (corner, egui::Layout::left_to_right(egui::Align::Min))
-    };
-    let builder = egui::UiBuilder::new()
-        .scope_id(egui::Id::unique("loading"))
-        .max_rect(place)
-        .layout(layout);
-    let mut inside = ui.new_child(builder);
-    egui::Frame::popup(inside.style()).show(&mut inside, |ui| {
+        place = Rect::from_center_size(area.center(), Vec2::new(280.0_f32.min(area.width()), 34.0));
+        layout = Layout::top_down(Align::Center);
+    }
+    let mut inside = laid_over(ui, "loading", place, layout);
+    Frame::popup(inside.style()).show(&mut inside, |ui| {
         ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(14.0));
-            ui.add(egui::Label::new(text).truncate())
+            ui.add(Spinner::new().size(14.0));
+            widgets::line(ui, text)
         })
     });
 }

@@ -1,10 +1,7 @@
 //! The pixel that the inspector describes, in the viewport.
 
-use egui::{Color32, Rect, Response, Stroke, StrokeKind, Ui, vec2};
-
 use super::seen::hit_at;
-use crate::app::desk::Desk;
-use crate::render::worker::{Picture, Scene};
+use super::*;
 
 /// Least side of the mark around the pixel, points.
 const MARK_MIN: f32 = 9.0;
@@ -17,13 +14,11 @@ pub fn follow(
     place: Rect,
     scene: &Scene,
     picture: &Picture,
-    desk: &mut Desk<'_>,
+    desk: &mut Desk,
 ) {
     let look = &mut desk.shared.look;
-    if let Some(at) = response
-        .hover_pos()
-        .filter(|at| !(look.is_pinned && look.at.is_some()) && place.contains(*at))
-    {
+    let follows = !look.is_pinned || look.at.is_none();
+    if let Some(at) = response.hover_pos().filter(|at| follows && place.contains(*at)) {
         let share = (at - place.min) / place.size();
         look.at = Some([share.x, share.y].map(f64::from));
     }
@@ -36,7 +31,7 @@ pub fn follow(
         let side = place.size() / vec2(picture.width as f32, picture.height as f32);
         let pixel = Rect::from_min_size(place.min + vec2(x as f32, y as f32) * side, side);
         let room = (MARK_MIN - pixel.width().min(pixel.height())).max(0.0);
-        let painter = ui.painter().with_clip_rect(area);
+        let painter = ui.painter_at(area);
         for (expanded, color) in [(1.0, Color32::BLACK), (0.0, Color32::WHITE)] {
             let mark = pixel.expand(0.5 * room + expanded);
             painter.rect_stroke(mark, 0.0, Stroke::new(1.0, color), StrokeKind::Outside);

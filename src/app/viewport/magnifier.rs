@@ -1,12 +1,11 @@
 //! A closer look at the pixels that the image has, without moving the camera.
 
-use egui::{Pos2, Rect, Vec2, pos2, vec2};
+use super::*;
 
 /// Largest size of one of the image's pixels, points.
 const PIXEL_MAX: f32 = 48.0;
 
 /// How much larger than it fits the image is shown, and which part of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Magnifier {
     /// 1: as large as it fits.
     factor: f32,
@@ -37,16 +36,13 @@ impl Magnifier {
         }
         let size = self.factor * fitted.size();
         let min = area.center() - self.center * size;
-        let within = |min: f32, side: f32, [low, high]: [f32; 2]| {
-            if side <= high - low {
-                0.5 * (low + high - side)
-            } else {
-                min.clamp(high - side, low)
-            }
+        let within = |min: f32, side: f32, area: Rangef| match side <= area.span() {
+            true => area.center() - 0.5 * side,
+            false => min.clamp(area.max - side, area.min),
         };
         let min = pos2(
-            within(min.x, size.x, [area.left(), area.right()]),
-            within(min.y, size.y, [area.top(), area.bottom()]),
+            within(min.x, size.x, area.x_range()),
+            within(min.y, size.y, area.y_range()),
         );
         self.center = (area.center() - min) / size;
         Rect::from_min_size(min, size)

@@ -21,22 +21,25 @@ mod reference;
 mod region;
 mod seen;
 
-use egui::{
-    Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
-    Vec2, pos2, vec2,
-};
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use egui::*;
 
 use magnifier::Magnifier;
 use orbit::Orbit;
 use seen::{hit_at, pixel_at};
 
-use super::actions::Action;
+use super::actions::{Action, Command};
 use super::desk::Desk;
+use super::kit::drag::{arrows, wrapped_deg};
+use super::kit::icons::{self, Icon};
 use super::kit::keys::hold_arrows;
-use super::kit::theme;
+use super::kit::{theme, widgets};
 use super::services::compare::View;
 use super::services::viewing::Resolution;
 use crate::document::ReferencePlace;
+use crate::job::Job;
 use crate::render::shown;
 use crate::render::worker::{Picture, Scene};
 
@@ -45,11 +48,9 @@ const LIGHT_DEG_PER_POINT: f32 = 0.35;
 /// Change of the distance's logarithm for a point of wheel or drag.
 const ZOOM_PER_POINT: f64 = 0.004;
 /// Points of a drag that an arrow key stands for.
-const KEY_POINTS: f64 = 14.0;
+const KEY_POINTS: f32 = 14.0;
 /// From how many points a pixel on it has edges, points.
 const PIXEL_SEEN: f32 = 2.0;
-/// Width of the button that shows the whole image, points.
-const WHOLE_WIDTH: f32 = 64.0;
 /// From the viewport's corner to what stands in it, points.
 const LOADING_MARGIN: f32 = 12.0;
 /// Sides of the squares behind transparent images, points.
@@ -73,7 +74,7 @@ pub struct Viewport {
     area: Option<Rect>,
     pixels_per_point: f32,
     is_software: bool,
-    id: Option<egui::Id>,
+    id: Option<Id>,
     region: region::RegionTool,
     magnifier: Magnifier,
     outline: outline::Outline,
@@ -104,17 +105,15 @@ impl ShownTexture {
         } else {
             TextureOptions::LINEAR
         };
-        let uploaded = (key, self.shows_pixels);
-        if self.key == Some(uploaded) {
+        if self.key.replace((key, self.shows_pixels)) == Some((key, self.shows_pixels)) {
             return;
         }
         let image = image();
-        self.is_transparent = is_transparent(&image);
+        self.is_transparent = image.pixels.iter().any(|pixel| pixel.a() < 255);
         match &mut self.texture {
             Some(texture) => texture.set(image, options),
             None => self.texture = Some(ui.ctx().load_texture("picture", image, options)),
         }
-        self.key = Some(uploaded);
     }
 
     fn show(&self, ui: &Ui, clip: Rect, place: Rect) {
@@ -140,7 +139,7 @@ impl ShownTexture {
 
 impl Viewport {
     /// The widget that takes the focus; `None` before the first frame.
-    pub fn id(&self) -> Option<egui::Id> {
+    pub fn id(&self) -> Option<Id> {
         self.id
     }
 
@@ -169,10 +168,10 @@ impl Viewport {
         Some([side(area.width()), side(area.height())])
     }
 
-    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    pub fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let whole = ui.max_rect();
-        let is_dark = ui.visuals().dark_mode;
-        ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));
+        let surround = theme::surround(ui.visuals().dark_mode);
+        ui.painter().rect_filled(whole, 0.0, surround);
         let bar = Rect::from_min_size(whole.min, vec2(whole.width(), theme::BAR_HEIGHT));
         let is_compared = desk.shared.compare.is_on;
         let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
@@ -195,7 +194,7 @@ impl Viewport {
 
         let response = ui.interact(area, ui.scope_id().with("viewport"), Sense::click_and_drag());
         self.id = Some(response.id);
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
+        widgets::describe(&response, Role::Canvas, "Viewport");
         let picture = desk.snapshot.picture.clone();
         if let Some(picture) = &picture {
             let place = if is_compared {
@@ -245,8 +244,7 @@ impl Viewport {
             waiting(ui, area, desk);
         }
         if response.has_focus() {
-            let stroke = egui::Stroke::new(1.0, theme::accent(is_dark));
-            ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
+            widgets::frame(ui, area);
         }
         if let Some(picture) = &picture {
             loading::show(ui, area, picture, desk);
@@ -267,21 +265,14 @@ impl Viewport {
         resolution: Resolution,
     ) -> Rect {
         let fitted = placed(area, picture, resolution);
-        let modifiers = ui.input(|input| input.modifiers);
+        let (modifiers, wheel) = ui.input(|input| (input.modifiers, input.zoom_delta()));
         let pointer = response.hover_pos();
-        if let Some(by) = self.magnifies.take() {
+        let by_wheel = pointer.and((modifiers.command && wheel != 1.0).then_some(wheel));
+        for by in self.magnifies.take().into_iter().chain(by_wheel) {
             let at = pointer.unwrap_or(area.center());
             self.magnifier.zoom(by, at, area, fitted, picture.width);
         }
-        if let Some(at) = pointer.filter(|_| modifiers.command) {
-            let by = ui.input(egui::InputState::zoom_delta);
-            if by != 1.0 {
-                self.magnifier.zoom(by, at, area, fitted, picture.width);
-            }
-        }
-        let pans = response.dragged_by(PointerButton::Middle)
-            || (response.dragged_by(PointerButton::Primary) && modifiers.command);
-        if pans && self.magnifier.is_on() {
+        if pans(response, modifiers) && self.magnifier.is_on() {
             self.magnifier.pan(response.drag_delta(), fitted);
         }
         let place = self.magnifier.place(area, fitted);
@@ -295,12 +286,10 @@ impl Viewport {
             return;
         }
         let percent = 100.0 * place.width() * self.pixels_per_point / picture.width.max(1) as f32;
-        let corner = area.max - vec2(WHOLE_WIDTH, theme::ROW_HEIGHT) - Vec2::splat(LOADING_MARGIN);
-        let builder = egui::UiBuilder::new()
-            .scope_id(egui::Id::unique("whole image"))
-            .max_rect(Rect::from_min_size(corner, vec2(WHOLE_WIDTH, theme::ROW_HEIGHT)));
-        let mut inside = ui.new_child(builder);
-        let button = egui::Button::new(format!("{percent:.0} %")).min_size(vec2(WHOLE_WIDTH, theme::ROW_HEIGHT));
+        let size = vec2(64.0, theme::ROW_HEIGHT);
+        let corner = area.max - size - Vec2::splat(LOADING_MARGIN);
+        let mut inside = over(ui, "whole image", Rect::from_min_size(corner, size));
+        let button = Button::new(format!("{percent:.0} %")).min_size(size);
         let button = inside.add(button).on_hover_text("Shows the whole image again (0)");
         if button.clicked() {
             self.magnify(0.0);
@@ -308,47 +297,56 @@ impl Viewport {
         button.accessible_name("Show the whole image");
     }
 
-    fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+    fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk) {
         let modifiers = ui.input(|input| input.modifiers);
         let before = Orbit::new(&desk.document.camera, &scene.job);
         let mut orbit = before;
         let moved = response.drag_delta();
         let points = [f64::from(moved.x), f64::from(moved.y)];
-        let pans = response.dragged_by(PointerButton::Middle)
-            || (response.dragged_by(PointerButton::Primary) && modifiers.command);
+        let pans = pans(response, modifiers);
         // What is magnified is moved itself, see `magnified`.
         if moved != Vec2::ZERO && !(pans && self.magnifier.is_on()) {
             let height = f64::from(place.height().max(1.0));
             if pans {
                 orbit.pan(points.map(|p| p / height));
-                desk.edits.note("Pan", "pan");
             } else if response.dragged_by(PointerButton::Primary) && modifiers.shift {
                 let rotation_deg = &mut desk.document.lighting.rotation_deg;
                 *rotation_deg = wrapped_deg(*rotation_deg + LIGHT_DEG_PER_POINT * moved.x);
                 desk.edits.note("Turn the light", "Environment rotation");
             } else if response.dragged_by(PointerButton::Primary) {
                 orbit.turn(points);
-                desk.edits.note("Turn the camera", "turn");
             } else if response.dragged_by(PointerButton::Secondary) {
                 orbit.zoom((ZOOM_PER_POINT * (points[1] - points[0])).exp());
-                desk.edits.note("Zoom", "zoom");
             }
         }
         // With ctrl the wheel magnifies.
         if response.hovered() && !modifiers.command {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            if scroll != 0.0 || pinch != 1.0 {
-                orbit.zoom((-ZOOM_PER_POINT * f64::from(scroll)).exp() / f64::from(pinch));
-                desk.edits.note("Zoom", "zoom");
-            }
+            orbit.zoom((-ZOOM_PER_POINT * f64::from(scroll)).exp() / f64::from(pinch));
         }
         let is_dropped_on = ui.input(|input| !input.raw.dropped_files.is_empty());
         let under_pointer = response.hover_pos().filter(|_| is_dropped_on);
         if let Some(slot) = under_pointer.and_then(|at| hit_at(pixel_at(at, place, scene)?, scene)?.slot) {
             desk.actions.push(Action::SelectSlot(slot));
         }
-        self.keys(ui, response, &mut orbit, desk);
-        orbit.write(&before, &mut desk.document.camera);
+        if response.has_focus() {
+            hold_arrows(ui, response, true, true);
+            // Arrows turn, with ctrl they pan; page up and down zoom.
+            let points = |modifiers| {
+                let Vec2 { x, y } = KEY_POINTS * arrows(ui, modifiers);
+                [f64::from(x), f64::from(-y)]
+            };
+            orbit.turn(points(Modifiers::NONE));
+            orbit.pan(points(Modifiers::COMMAND).map(|p| 2e-3 * p));
+            for (key, factor) in [(Key::PageUp, 0.9), (Key::PageDown, 1.0 / 0.9)] {
+                if ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+                    orbit.zoom(factor);
+                }
+            }
+        }
+        if let Some((label, key)) = orbit.write(&before, &mut desk.document.camera) {
+            desk.edits.note(label, key);
+        }
         if response.clicked()
             && let Some(at) = response.interact_pointer_pos()
         {
@@ -359,7 +357,7 @@ impl Viewport {
 
     /// A click says what is sharp, where that was asked for or ctrl is held, or has the pixel explained, where shift is
     /// held, too; otherwise it selects a slot, and the plots take the angle of the place.
-    fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+    fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk) {
         let Some(pixel) = pixel_at(at, place, scene) else {
             return;
         };
@@ -374,102 +372,82 @@ impl Viewport {
         if picking::is_picked(&hit, modifiers.command, desk) {
             return;
         }
-        desk.shared.lobe_plots.view_angle_deg = hit.view_angle_deg;
+        desk.shared.view_angle_deg = hit.view_angle_deg;
         picking::choose(&hit, modifiers.shift, desk);
     }
-
-    /// Arrows turn, with ctrl they pan; page up and down zoom.
-    fn keys(&self, ui: &Ui, response: &Response, orbit: &mut Orbit, desk: &mut Desk<'_>) {
-        if !response.has_focus() {
-            return;
-        }
-        hold_arrows(ui, response, true, true);
-        let arrows = [
-            (Key::ArrowLeft, [-KEY_POINTS, 0.0]),
-            (Key::ArrowRight, [KEY_POINTS, 0.0]),
-            (Key::ArrowUp, [0.0, -KEY_POINTS]),
-            (Key::ArrowDown, [0.0, KEY_POINTS]),
-        ];
-        for (key, points) in arrows {
-            let pressed = |modifiers| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
-            let (pans, turns) = (pressed(Modifiers::COMMAND), pressed(Modifiers::NONE));
-            if turns > 0.0 {
-                orbit.turn(points.map(|p| p * turns));
-                desk.edits.note("Turn the camera", "turn");
-            }
-            if pans > 0.0 {
-                orbit.pan(points.map(|p| 2e-3 * p * pans));
-                desk.edits.note("Pan", "pan");
-            }
-        }
-        for (key, factor) in [(Key::PageUp, 0.9), (Key::PageDown, 1.0 / 0.9)] {
-            if ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
-                orbit.zoom(factor);
-                desk.edits.note("Zoom", "zoom");
-            }
-        }
-    }
 }
 
-fn wrapped_deg(angle: f32) -> f32 {
-    (angle + 180.0).rem_euclid(360.0) - 180.0
+/// Whether a drag moves what is seen along the image's plane.
+fn pans(response: &Response, modifiers: Modifiers) -> bool {
+    response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && modifiers.command)
 }
 
-fn is_transparent(image: &ColorImage) -> bool {
-    image.pixels.iter().any(|pixel| pixel.a() < 255)
+/// A part of the viewport over the image, under an identity that stays while others come and go.
+fn over(ui: &mut Ui, name: impl Hash + Debug, place: Rect) -> Ui {
+    laid_over(ui, name, place, Layout::left_to_right(Align::Center))
+}
+
+/// The same, laid out in another way.
+fn laid_over(ui: &mut Ui, name: impl Hash + Debug, place: Rect, layout: Layout) -> Ui {
+    let builder = UiBuilder::new().scope_id(Id::unique(name)).max_rect(place);
+    ui.new_child(builder.layout(layout))
+}
+
+/// A text on a ground from which it can be distinguished.
+fn plate(painter: &Painter, corner: Align2, at: Pos2, text: &str, [ground, color]: [Color32; 2]) {
+    let font = FontId::proportional(13.0);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, color);
+    let rect = corner.anchor_size(at, galley.size() + vec2(14.0, 6.0));
+    painter.rect_filled(rect, 3.0, ground);
+    painter.galley(rect.min + vec2(7.0, 3.0), galley, color);
 }
 
 /// Where the image is shown: over the whole area, or with its own shape in the middle of it, as large as fits. A
 /// image that was kept while the area got another shape keeps its own, too.
 fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
-    placed_size(area, [picture.width, picture.height], resolution)
-}
-
-fn placed_size(area: Rect, size: [u32; 2], resolution: Resolution) -> Rect {
-    let size = Vec2::from(size.map(|side| side as f32));
+    let size = vec2(picture.width as f32, picture.height as f32);
     let stretch = size.x / size.y.max(1.0) * area.height() / area.width().max(1.0);
     if resolution != Resolution::Document && (stretch - 1.0).abs() < STRETCH_MAX {
         return area;
     }
+    fitted(area, size)
+}
+
+/// The middle of an area, in a shape of its own.
+fn fitted(area: Rect, size: Vec2) -> Rect {
     let scale = (area.width() / size.x).min(area.height() / size.y);
     Rect::from_center_size(area.center(), size * scale)
 }
 
 /// Squares that show through where the image is transparent.
 fn checker(ui: &Ui, place: Rect) {
-    let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+    let painter = ui.painter_at(place);
     let [light, dark] = if ui.visuals().dark_mode { [70, 54] } else { [206, 182] };
     painter.rect_filled(place, 0.0, Color32::from_gray(dark));
-    let (columns, rows) = (
-        (place.width() / CHECKER).ceil() as u32,
-        (place.height() / CHECKER).ceil() as u32,
-    );
+    let [columns, rows] = [place.width(), place.height()].map(|side| (side / CHECKER).ceil() as u32);
     for row in 0..rows {
         for column in (row % 2..columns).step_by(2) {
             let min = place.min + CHECKER * vec2(column as f32, row as f32);
-            painter.rect_filled(
-                Rect::from_min_size(min, Vec2::splat(CHECKER)),
-                0.0,
-                Color32::from_gray(light),
-            );
+            let square = Rect::from_min_size(min, Vec2::splat(CHECKER));
+            painter.rect_filled(square, 0.0, Color32::from_gray(light));
         }
     }
 }
 
 /// What is going on before there is an image.
-fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
+fn waiting(ui: &mut Ui, area: Rect, desk: &Desk) {
     let center = area.center();
     let spinner = Rect::from_center_size(center - vec2(0.0, 16.0), Vec2::splat(24.0));
-    egui::Spinner::new().paint_at(ui, spinner);
-    let font = egui::TextStyle::Body.resolve(ui.style());
+    Spinner::new().paint_at(ui, spinner);
+    let font = TextStyle::Body.resolve(ui.style());
     let text = desk.snapshot.activity.to_string();
     let color = ui.visuals().text_color();
     ui.painter()
-        .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
+        .text(center + vec2(0.0, 16.0), Align2::CENTER_CENTER, text, font, color);
 }
 
 /// What every screen shows of the image at `place`: actions, and within them titles (EBU R 95).
-fn safe_frames(painter: &egui::Painter, place: Rect) {
+fn safe_frames(painter: &Painter, place: Rect) {
     for share in [0.93, 0.9] {
         let frame = Rect::from_center_size(place.center(), share * place.size());
         // Seen before light and dark.
@@ -477,7 +455,7 @@ fn safe_frames(painter: &egui::Painter, place: Rect) {
             (3.0, Color32::from_black_alpha(80)),
             (1.0, Color32::from_white_alpha(160)),
         ] {
-            painter.rect_stroke(frame, 0.0, egui::Stroke::new(width, color), egui::StrokeKind::Middle);
+            painter.rect_stroke(frame, 0.0, Stroke::new(width, color), StrokeKind::Middle);
         }
     }
 }
@@ -486,16 +464,13 @@ fn drop_hint(ui: &Ui, area: Rect) {
     if ui.input(|input| input.raw.hovered_files.is_empty()) {
         return;
     }
-    let accent = theme::accent(ui.visuals().dark_mode);
+    let accent = theme::accent(ui);
     ui.painter().rect_filled(area, 0.0, Color32::from_black_alpha(140));
-    ui.painter().rect_stroke(
-        area.shrink(6.0),
-        4.0,
-        egui::Stroke::new(2.0, accent),
-        egui::StrokeKind::Inside,
-    );
-    let font = egui::TextStyle::Heading.resolve(ui.style());
+    let frame = Stroke::new(2.0, accent);
+    ui.painter()
+        .rect_stroke(area.shrink(6.0), 4.0, frame, StrokeKind::Inside);
+    let font = TextStyle::Heading.resolve(ui.style());
     let text = "Drop to open: model, environment, material, project or texture";
     ui.painter()
-        .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
+        .text(area.center(), Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

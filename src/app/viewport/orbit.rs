@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use super::*;
 use crate::document::CameraSettings;
-use crate::job::Job;
 use crate::scene::camera::framing_distance;
 
 /// Degrees of a turn for a drag of one point.
@@ -12,7 +12,7 @@ const DEG_PER_POINT: f64 = 0.35;
 const DISTANCE_RADII: [f64; 2] = [0.01, 200.0];
 
 /// The camera with every number filled in, scene units.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Orbit {
     target: DVec3,
     yaw_deg: f64,
@@ -53,6 +53,9 @@ impl Orbit {
 
     /// Turns about the target as if it were taken hold of; `points` to the right and down.
     pub fn turn(&mut self, points: [f64; 2]) {
+        if points == [0.0; 2] {
+            return;
+        }
         self.yaw_deg = (self.yaw_deg - DEG_PER_POINT * points[0] + 180.0).rem_euclid(360.0) - 180.0;
         self.pitch_deg = (self.pitch_deg + DEG_PER_POINT * points[1]).clamp(-90.0, 90.0);
     }
@@ -69,22 +72,31 @@ impl Orbit {
     }
 
     pub fn zoom(&mut self, factor: f64) {
-        let [near, far] = DISTANCE_RADII.map(|radii| radii * self.radius);
-        self.distance = (self.distance * factor).clamp(near, far);
+        if factor != 1.0 {
+            let [near, far] = DISTANCE_RADII.map(|radii| radii * self.radius);
+            self.distance = (self.distance * factor).clamp(near, far);
+        }
     }
 
     /// Writes what was moved; the target and the distance only where they were, so that an untouched camera goes on
-    /// framing any model that comes.
-    pub fn write(&self, before: &Self, camera: &mut CameraSettings) {
+    /// framing any model that comes. What the edit is called, and what others of its kind have in common.
+    pub fn write(&self, before: &Self, camera: &mut CameraSettings) -> Option<(&'static str, &'static str)> {
         if self == before {
-            return;
+            return None;
         }
-        if camera.position.take().is_some() || self.distance != before.distance {
+        let is_farther = self.distance != before.distance;
+        if camera.position.take().is_some() || is_farther {
             camera.distance = Some(self.distance);
         }
+        (camera.yaw_deg, camera.pitch_deg) = (self.yaw_deg, self.pitch_deg);
         if self.target != before.target {
             camera.target = Some(self.target.to_array());
+            return Some(("Pan", "pan"));
         }
-        (camera.yaw_deg, camera.pitch_deg) = (self.yaw_deg, self.pitch_deg);
+        Some(if is_farther {
+            ("Zoom", "zoom")
+        } else {
+            ("Turn the camera", "turn")
+        })
     }
 }

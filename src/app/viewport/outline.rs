@@ -3,14 +3,9 @@
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Rect, Ui};
-
-use super::ShownTexture;
-use crate::app::desk::Desk;
-use crate::app::kit::theme;
+use super::*;
 use crate::app::services::beside::started;
 use crate::app::services::selection::Thing;
-use crate::job::Job;
 use crate::render::seen_map::{self, SeenMap, SeenMaps};
 
 /// The line as it is shown.
@@ -24,7 +19,7 @@ pub struct Outline {
 
 impl Outline {
     /// Paints the lines over the image at `place`, once it is known what is seen where.
-    pub fn show(&mut self, ui: &Ui, area: Rect, place: Rect, job: &Arc<Job>, desk: &Desk<'_>) {
+    pub fn show(&mut self, ui: &Ui, area: Rect, place: Rect, job: &Arc<Job>, desk: &Desk) {
         let chosen = chosen(desk);
         let lit = desk.shared.selection.lit;
         if chosen.is_empty() && lit.is_none() {
@@ -36,28 +31,20 @@ impl Outline {
         // In the screen's pixels, at any size of the image.
         let pixels = place.size() * ui.ctx().pixels_per_point();
         let size = [pixels.x, pixels.y].map(|side| (side.round() as u32).max(1));
-        let latest = maps.latest();
-        let is_known = latest
-            .as_ref()
-            .is_some_and(|map| map.is_of(job) && self.asked.as_ref().is_some_and(|asked| asked.1 == size));
-        if !is_known
-            && !self
-                .asked
-                .as_ref()
-                .is_some_and(|asked| Arc::ptr_eq(&asked.0, job) && asked.1 == size)
-        {
+        // Nothing of another view, as while the camera turns.
+        let map = maps.latest().filter(|map| map.is_of(job));
+        let is_asked =
+            |(of, in_size): &(Arc<Job>, [u32; 2])| *in_size == size && (map.is_some() || Arc::ptr_eq(of, job));
+        if !self.asked.as_ref().is_some_and(is_asked) {
             maps.ask((job.clone(), size));
             self.asked = Some((job.clone(), size));
         }
-        // Nothing of another view, as while the camera turns.
-        let Some(map) = latest.filter(|map| map.is_of(job)) else {
-            return;
-        };
+        let Some(map) = map else { return };
         let surface = (!desk.shared.selection.objects.is_empty()).then_some(desk.shared.selection.slot);
         let mut hasher = DefaultHasher::new();
         let of_map = (Arc::as_ptr(&map) as usize, ui.visuals().dark_mode);
         (&chosen, surface, lit, of_map).hash(&mut hasher);
-        let accent = theme::accent(ui.visuals().dark_mode);
+        let accent = theme::accent(ui);
         self.shown.upload(ui, [u64::MAX - 1, hasher.finish()], || {
             let lit: Vec<Thing> = lit.into_iter().collect();
             picture(&map, [(&chosen, accent, surface), (&lit, Color32::WHITE, None)])
@@ -67,7 +54,7 @@ impl Outline {
 }
 
 /// What is outlined because the user chose it, where that is seen: objects, else slots where there is more than one.
-fn chosen(desk: &Desk<'_>) -> Vec<Thing> {
+fn chosen(desk: &Desk) -> Vec<Thing> {
     let selection = &desk.shared.selection;
     if !selection.is_made || (!selection.is_shown && !selection.was_shown) {
         return Vec::new();
@@ -96,10 +83,11 @@ fn picture(map: &SeenMap, kinds: [(&Vec<Thing>, Color32, Option<usize>); 2]) -> 
             true => map.edges(is_surface),
             false => map.edges(is_chosen),
         };
-        let pixels = image.pixels.iter_mut().zip(edges);
-        pixels
-            .filter(|(_, is_edge)| *is_edge)
-            .for_each(|(pixel, _)| *pixel = color);
+        for (pixel, is_edge) in image.pixels.iter_mut().zip(edges) {
+            if is_edge {
+                *pixel = color;
+            }
+        }
     }
     image
 }

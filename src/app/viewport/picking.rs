@@ -1,19 +1,15 @@
 //! What of the scene the pointer is over in the viewport, what a click chooses, and materials that are dropped there.
 
-use egui::{DragAndDrop, Rect, Response, Ui};
-
 use super::seen::{hit_at, pixel_at};
-use crate::app::actions::Action;
-use crate::app::desk::Desk;
+use super::*;
 use crate::app::services::look::SeenSurface;
 use crate::app::services::selection::Thing;
 use crate::app::services::viewing::Pick;
 use crate::document::MaterialSettings;
-use crate::render::worker::Scene;
 
 /// Lights up what the pointer is over while the tree of the scene is shown, and what a material would be dropped on; gives
 /// it the material where that is dropped.
-pub fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+pub fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk) {
     let is_dropping = DragAndDrop::has_payload_of_type::<MaterialSettings>(ui.ctx());
     if !(is_dropping || desk.shared.selection.was_shown) || !response.contains_pointer() {
         return;
@@ -30,20 +26,14 @@ pub fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mu
     if let Some(material) = response.dnd_release_payload::<MaterialSettings>()
         && let Some(slot) = seen.and_then(|seen| seen.slot)
     {
-        desk.actions.push(Action::SelectSlot(slot));
-        desk.actions
-            .push(Action::UseMaterial(Box::new(MaterialSettings::clone(&material))));
+        desk.drop_on(slot, &material);
     }
 }
 
 /// Whether a click was for more than choosing: ctrl stands for the focus.
-pub fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> bool {
-    let picks = if is_focus {
-        Some(Pick::Focus)
-    } else {
-        desk.shared.viewing.picks
-    };
-    match picks {
+pub fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk) -> bool {
+    let focus = is_focus.then_some(Pick::Focus);
+    match focus.or(desk.shared.viewing.picks) {
         Some(Pick::Focus) if desk.document.camera.aperture > 0.0 => {
             desk.document.camera.focus_distance = Some(seen.depth);
             desk.edits.note("Focus", "");
@@ -63,7 +53,7 @@ pub fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> boo
 }
 
 /// Chooses what was clicked: its material, and while the tree of the scene is shown the object.
-pub fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk<'_>) {
+pub fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk) {
     let selection = &mut desk.shared.selection;
     if let Some(object) = seen.object.filter(|_| selection.was_shown) {
         selection.choose_object(object, beside_others);

@@ -2,19 +2,16 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Color32, ColorImage, Layout, Rect, Sense, Ui, UiBuilder, pos2, vec2};
-
-use super::ShownTexture;
+use super::header::in_bar;
+use super::*;
+use crate::app::kit::widgets::rgb;
 use crate::app::services::beside::started;
-use crate::job::Job;
 use crate::job::precision::{Fault, PrecisionMap};
 use crate::render::precision_maps::{self, PrecisionMaps};
 
 /// Height of the legend, and its distance from the viewport's edges, points.
 const HEIGHT: f32 = 26.0;
 const MARGIN: f32 = 14.0;
-/// Widest that the legend is.
-const WIDTH: f32 = 480.0;
 /// Side of a colour's square.
 const SQUARE: f32 = 10.0;
 
@@ -54,24 +51,19 @@ impl PrecisionView {
 
 fn legend(ui: &mut Ui, area: Rect, map: Option<&PrecisionMap>, is_busy: bool) {
     let corner = pos2(area.left() + MARGIN, area.bottom() - MARGIN - HEIGHT);
-    let rect = Rect::from_min_size(corner, vec2(WIDTH.min(area.width() - 2.0 * MARGIN), HEIGHT));
+    let rect = Rect::from_min_size(corner, vec2(480.0_f32.min(area.width() - 2.0 * MARGIN), HEIGHT));
     ui.painter().rect_filled(rect, 4.0, Color32::from_black_alpha(170));
-    let layout = Layout::left_to_right(Align::Center);
-    let inside = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 4.0))).layout(layout);
-    let mut ui = ui.new_child(inside);
-    ui.set_clip_rect(rect.intersect(ui.clip_rect()));
+    let mut ui = in_bar(ui, "precision", rect);
     if let Some(map) = map {
         for (fault, label, help) in Fault::ALL {
             let (square, _) = ui.allocate_exact_size(vec2(SQUARE, SQUARE), Sense::hover());
-            let [red, green, blue] = fault.color();
-            ui.painter()
-                .rect_filled(square, 2.0, Color32::from_rgb(red, green, blue));
+            ui.painter().rect_filled(square, 2.0, rgb(fault.color()));
             let text = format!("{} {label}", map.count(fault));
             ui.colored_label(Color32::WHITE, text).on_hover_text(help);
         }
         ui.colored_label(Color32::LIGHT_GRAY, format!("of {} pixels", map.findings.len()));
     }
     if is_busy {
-        ui.add(egui::Spinner::new().size(12.0));
+        ui.add(Spinner::new().size(12.0));
     }
 }

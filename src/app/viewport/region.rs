@@ -1,13 +1,6 @@
 //! The part of the image that is rendered: drawn with the mouse, outlined, taken away again.
 
-use egui::{
-    Align2, Color32, CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, vec2,
-};
-
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::theme;
+use super::*;
 
 /// A rectangle with a side shorter than this was a click, points.
 const SIDE_MIN: f32 = 6.0;
@@ -20,7 +13,7 @@ pub struct RegionTool {
     /// Where the drag began, points.
     from: Option<Pos2>,
     /// What had the keys in the frame before: escape takes them from it before it is seen here.
-    focused: Option<egui::Id>,
+    focused: Option<Id>,
 }
 
 impl RegionTool {
@@ -29,7 +22,7 @@ impl RegionTool {
     }
 
     /// Shows the region over the image at `place`; true while the viewport's drags are its own.
-    pub fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) -> bool {
+    pub fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk) -> bool {
         let is_wanted = self.is_armed || desk.document.render.region.is_some();
         if is_wanted && self.takes_escape(ui, response) {
             if !self.is_armed {
@@ -52,15 +45,18 @@ impl RegionTool {
     fn takes_escape(&self, ui: &Ui, response: &Response) -> bool {
         let is_free = self.focused.is_none_or(|id| id == response.id)
             && ui.memory(|memory| memory.top_modal_layer().is_none())
-            && !egui::Popup::is_any_open(ui.ctx());
+            && !Popup::is_any_open(ui.ctx());
         is_free && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
     }
 
-    fn draw(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) {
+    fn draw(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk) {
         if response.hovered() || self.from.is_some() {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
-        hint(ui, place);
+        let text = "Drag a rectangle: only that part is rendered. Escape leaves it.";
+        let top = place.center_top() + vec2(0.0, 10.0);
+        let colors = [ui.visuals().panel_fill, ui.visuals().strong_text_color()];
+        plate(ui.painter(), Align2::CENTER_TOP, top, text, colors);
         if response.drag_started_by(PointerButton::Primary) {
             self.from = ui.input(|input| input.pointer.press_origin());
         }
@@ -85,12 +81,9 @@ impl RegionTool {
 
 /// Left, top, right and bottom of a rectangle as shares of the image.
 fn region_of(drawn: Rect, place: Rect) -> [f64; 4] {
-    let share = |value: f32, from: f32, length: f32| f64::from(((value - from) / length).clamp(0.0, 1.0));
-    let (x, y) = (
-        |x| share(x, place.left(), place.width()),
-        |y| share(y, place.top(), place.height()),
-    );
-    [x(drawn.left()), y(drawn.top()), x(drawn.right()), y(drawn.bottom())]
+    let share = |at: Pos2| (at - place.min) / place.size();
+    let (from, to) = (share(drawn.min), share(drawn.max));
+    [from.x, from.y, to.x, to.y].map(|share| f64::from(share.clamp(0.0, 1.0)))
 }
 
 fn place_of([left, top, right, bottom]: [f64; 4], place: Rect) -> Rect {
@@ -100,38 +93,20 @@ fn place_of([left, top, right, bottom]: [f64; 4], place: Rect) -> Rect {
 
 /// Light and dark, so that it is seen against everything.
 fn frame(ui: &Ui, area: Rect, at: Rect) {
-    let painter = ui.painter().with_clip_rect(area);
-    painter.rect_stroke(
-        at.expand(1.0),
-        0.0,
-        Stroke::new(1.0, Color32::from_black_alpha(160)),
-        StrokeKind::Inside,
-    );
-    let accent = theme::accent(ui.visuals().dark_mode);
-    painter.rect_stroke(at, 0.0, Stroke::new(1.0, accent), StrokeKind::Inside);
+    let painter = ui.painter_at(area);
+    let accent = theme::accent(ui);
+    for (at, color) in [(at.expand(1.0), Color32::from_black_alpha(160)), (at, accent)] {
+        painter.rect_stroke(at, 0.0, Stroke::new(1.0, color), StrokeKind::Inside);
+    }
 }
 
-fn outline(ui: &mut Ui, area: Rect, at: Rect, desk: &mut Desk<'_>) {
+fn outline(ui: &mut Ui, area: Rect, at: Rect, desk: &mut Desk) {
     frame(ui, area, at);
-    let seen = at.intersect(area);
-    let corner = Rect::from_min_size(
-        seen.right_top() + vec2(-26.0, 4.0),
-        egui::Vec2::splat(theme::ROW_HEIGHT),
-    );
-    let builder = egui::UiBuilder::new().max_rect(corner).id_salt("clear region");
-    let mut inside = ui.new_child(builder);
+    let corner = at.intersect(area).right_top() + vec2(-26.0, 4.0);
+    let corner = Rect::from_min_size(corner, Vec2::splat(theme::ROW_HEIGHT));
+    let mut inside = over(ui, "clear region", corner);
     let help = "Render the whole image again (Esc)";
     if icons::button(&mut inside, Icon::Close, Command::ClearRegion.label(), help).clicked() {
         desk.act(Command::ClearRegion);
     }
-}
-
-fn hint(ui: &Ui, place: Rect) {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let text = "Drag a rectangle: only that part is rendered. Escape leaves it.";
-    let color = ui.visuals().strong_text_color();
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
-    let around = Align2::CENTER_TOP.anchor_size(place.center_top() + vec2(0.0, 10.0), galley.size() + vec2(16.0, 8.0));
-    ui.painter().rect_filled(around, 4.0, ui.visuals().panel_fill);
-    ui.painter().galley(around.min + vec2(8.0, 4.0), galley, color);
 }

@@ -1,12 +1,11 @@
 //! What is seen at a place of the image.
 
-use egui::{Pos2, Rect};
 use glam::DVec3;
 
+use super::*;
 use crate::app::services::look::SeenSurface;
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
-use crate::render::worker::Scene;
 use crate::scene::camera::camera_ray;
 use crate::scene::surface::surface_at;
 

@@ -5,41 +5,47 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow, bail};
 use clap::Parser;
-use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use serde::Deserialize;
+use toml::{Spanned, Table, Value};
 
 use crate::cli::scene::SceneArguments;
 use crate::document::turntable::Turn;
-use crate::named::Named as _;
 use crate::render::output::format_of;
 use crate::scene::path_text::path_text;
 
-/// The lists, in the order in which images count through them, each with the option that a plain text stands for.
-const LISTS: [(&str, Option<&str>); 5] = [
-    ("models", Some("model")),
-    ("materials", Some("material")),
-    ("environments", Some("environment")),
-    ("cameras", None),
-    ("settings", None),
-];
-/// What else stands at the top of the file.
-const OTHERS: [&str; 5] = ["common", "folder", "formats", "frames", "turn"];
 /// Options whose values name files: these are looked for beside the batch's file first.
 const FILES: [&str; 4] = ["model", "material", "environment", "project"];
-/// Most frames of a turn.
-const FRAMES: std::ops::RangeInclusive<i64> = 1..=9999;
+
+type List = Option<Spanned<Vec<Spanned<Value>>>>;
+
+/// The file as it is written. The lists stand in the order in which images count through them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parts {
+    models: List,
+    materials: List,
+    environments: List,
+    cameras: List,
+    settings: List,
+    common: Option<Spanned<Table>>,
+    folder: Option<PathBuf>,
+    formats: Option<Spanned<Vec<String>>>,
+    frames: Option<Spanned<u32>>,
+    #[serde(default)]
+    turn: Turn,
+}
 
 /// The part of the arguments of `glossmith render` that an entry may set; of options given twice the last counts.
 #[derive(Debug, Parser)]
 #[command(no_binary_name = true, args_override_self = true, disable_help_flag = true)]
-pub(super) struct Scene {
+pub struct Scene {
     #[command(flatten)]
-    pub(super) arguments: SceneArguments,
+    pub arguments: SceneArguments,
 }
 
 impl Scene {
     /// The scene of arguments as they are written on the command line.
-    pub(super) fn parse(arguments: &[String]) -> anyhow::Result<Self> {
+    pub fn parse(arguments: &[String]) -> anyhow::Result<Self> {
         Self::try_parse_from(arguments).map_err(|error| {
             let message = error.render().to_string();
             let first = message.lines().next().unwrap_or_default();
@@ -50,200 +56,104 @@ impl Scene {
 
 /// An entry of a list.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Entry {
+pub struct Entry {
     /// Its part of the images' names.
-    pub(super) name: String,
+    pub name: String,
     /// What it sets, as arguments of `glossmith render`.
-    pub(super) arguments: Vec<String>,
+    pub arguments: Vec<String>,
 }
 
 /// What a file says.
 #[derive(Clone, Debug)]
-pub(super) struct BatchFile {
+pub struct BatchFile {
     /// Where it is.
-    pub(super) path: PathBuf,
+    pub path: PathBuf,
     /// Where the images go.
-    pub(super) folder: PathBuf,
+    pub folder: PathBuf,
     /// Endings of the files of each image.
-    pub(super) formats: Vec<String>,
+    pub formats: Vec<String>,
     /// What all images have in common, as arguments.
-    pub(super) common: Vec<String>,
+    pub common: Vec<String>,
     /// The lists that are there.
-    pub(super) lists: Vec<Vec<Entry>>,
+    pub lists: Vec<Vec<Entry>>,
     /// Frames of a whole turn; none where nothing turns.
-    pub(super) frames: Option<u32>,
+    pub frames: Option<u32>,
     /// What turns.
-    pub(super) turn: Turn,
+    pub turn: Turn,
 }
 
-/// A file's text with its name, to say where something is.
-struct Source<'a> {
-    path: &'a Path,
-    text: &'a str,
+/// Values as they are written on the command line.
+fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Array(list) => list.iter().map(text).collect::<Vec<_>>().join(","),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) => number.to_string(),
+        Value::Boolean(is_on) => is_on.to_string(),
+        Value::Datetime(_) | Value::Table(_) => "{…}".to_owned(),
+    }
 }
 
-type Value<'a> = Spanned<DeValue<'a>>;
-
-impl Source<'_> {
-    /// What is wrong at a place.
-    fn wrong(&self, at: std::ops::Range<usize>, reason: impl std::fmt::Display) -> anyhow::Error {
-        let line = 1 + self.text[..at.start.min(self.text.len())].matches('\n').count();
-        anyhow!("{}, line {line}: {reason}", self.path.display())
-    }
-
-    fn folder(&self) -> &Path {
-        self.path.parent().unwrap_or(Path::new(""))
-    }
-
-    fn text_of<'v>(&self, value: &'v Value<'_>, key: &str) -> anyhow::Result<&'v str> {
-        let expected = || self.wrong(value.span(), format!("{key} is no text; put it in quotation marks"));
-        value.get_ref().as_str().ok_or_else(expected)
-    }
-
-    /// A value as it is written behind an option.
-    fn scalar(&self, value: &Value<'_>, key: &str) -> anyhow::Result<String> {
-        Ok(match value.get_ref() {
-            DeValue::String(text) => text.to_string(),
-            DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),
-            DeValue::Float(number) => number.as_str().to_owned(),
-            DeValue::Boolean(is_on) => is_on.to_string(),
-            DeValue::Array(list) => {
-                let parts: anyhow::Result<Vec<String>> = list.iter().map(|part| self.scalar(part, key)).collect();
-                parts?.join(",")
+/// The arguments of an entry's options; a list of texts gives its option several times.
+fn arguments(folder: &Path, table: &Table) -> anyhow::Result<Vec<String>> {
+    let mut arguments = Vec::new();
+    for (name, value) in table.iter().filter(|(name, _)| *name != "name") {
+        match value {
+            Value::Table(inner) => assignments(name, inner, &mut arguments),
+            Value::Array(list) if list.iter().all(Value::is_str) => {
+                arguments.extend(list.iter().map(|value| option(folder, name, value)));
             }
-            _ => {
-                return Err(self.wrong(
-                    value.span(),
-                    format!("{key} takes a text, a number, true or false, or a list of these"),
-                ));
-            }
-        })
-    }
-
-    /// The options that a table sets, as arguments. `skipped` is no option.
-    fn arguments(&self, table: &DeTable<'_>, skipped: Option<&str>) -> anyhow::Result<Vec<String>> {
-        let mut arguments = Vec::new();
-        for (key, value) in table {
-            let name = key.get_ref().as_ref();
-            if Some(name) == skipped {
-                continue;
-            }
-            let before = arguments.len();
-            match value.get_ref() {
-                DeValue::Table(inner) => self.assignments(name, inner, &mut arguments)?,
-                // Several of an option that may be repeated.
-                DeValue::Array(list) if list.iter().all(|part| part.get_ref().is_str()) => {
-                    for part in list {
-                        arguments.push(self.option(name, part)?);
-                    }
-                }
-                _ => arguments.push(self.option(name, value)?),
-            }
-            Scene::parse(&arguments[before..]).map_err(|reason| self.wrong(key.span(), reason))?;
-        }
-        Ok(arguments)
-    }
-
-    fn option(&self, name: &str, value: &Value<'_>) -> anyhow::Result<String> {
-        let mut text = self.scalar(value, name)?;
-        if FILES.contains(&name) {
-            let beside = self.folder().join(&text);
-            if beside.exists() {
-                text = path_text(&beside).into_owned();
-            }
-        }
-        // A project is what an image begins with.
-        Ok(if name == "project" {
-            text
-        } else {
-            format!("--{name}={text}")
-        })
-    }
-
-    /// `specular.roughness = 0.2`, however deep.
-    fn assignments(&self, path: &str, table: &DeTable<'_>, arguments: &mut Vec<String>) -> anyhow::Result<()> {
-        for (key, value) in table {
-            let path = format!("{path}.{}", key.get_ref());
-            match value.get_ref() {
-                DeValue::Table(inner) => self.assignments(&path, inner, arguments)?,
-                _ => arguments.push(format!("--set={path}={}", self.scalar(value, &path)?)),
-            }
-        }
-        Ok(())
-    }
-
-    /// An entry: a text, or a table with a name and options.
-    fn entry(&self, value: &Value<'_>, list: &str, option: Option<&str>) -> anyhow::Result<Entry> {
-        match (value.get_ref(), option) {
-            (DeValue::String(text), Some(option)) => {
-                let argument = self.option(option, value)?;
-                Scene::parse(std::slice::from_ref(&argument)).map_err(|reason| self.wrong(value.span(), reason))?;
-                let stem = Path::new(text.as_ref()).file_stem().unwrap_or_default();
-                Ok(Entry {
-                    name: plain(&stem.to_string_lossy()),
-                    arguments: vec![argument],
-                })
-            }
-            (DeValue::Table(table), _) => {
-                let Some(name) = table.get("name") else {
-                    return Err(self.wrong(
-                        value.span(),
-                        format!("this entry of {list} has no name; add name = \"…\""),
-                    ));
-                };
-                Ok(Entry {
-                    name: plain(self.text_of(name, "name")?),
-                    arguments: self.arguments(table, Some("name"))?,
-                })
-            }
-            (_, Some(_)) => Err(self.wrong(
-                value.span(),
-                format!("an entry of {list} is a text, or a table with a name and options"),
-            )),
-            (_, None) => Err(self.wrong(
-                value.span(),
-                format!("an entry of {list} is a table, such as {{ name = \"a\", samples = 64 }}"),
-            )),
+            _ => arguments.push(option(folder, name, value)),
         }
     }
+    Scene::parse(&arguments)?;
+    Ok(arguments)
+}
 
-    fn list(&self, value: &Value<'_>, key: &str, option: Option<&str>) -> anyhow::Result<Vec<Entry>> {
-        let Some(list) = value.get_ref().as_array().filter(|list| !list.is_empty()) else {
-            return Err(self.wrong(
-                value.span(),
-                format!("{key} is no list with entries; write {key} = [ … ]"),
-            ));
-        };
-        let mut entries: Vec<Entry> = Vec::new();
-        for value in list {
-            let entry = self.entry(value, key, option)?;
-            if entries.iter().any(|other| other.name == entry.name) {
-                let reason = format!(
-                    "{key} has two entries of the name {}; give one another name",
-                    entry.name
-                );
-                return Err(self.wrong(value.span(), reason));
-            }
-            entries.push(entry);
-        }
-        Ok(entries)
+fn option(folder: &Path, name: &str, value: &Value) -> String {
+    let mut text = text(value);
+    let beside = folder.join(&text);
+    if FILES.contains(&name) && beside.exists() {
+        text = path_text(&beside).into_owned();
     }
+    match name {
+        "project" => text,
+        _ => format!("--{name}={text}"),
+    }
+}
 
-    fn formats(&self, value: &Value<'_>) -> anyhow::Result<Vec<String>> {
-        let Some(list) = value.get_ref().as_array().filter(|list| !list.is_empty()) else {
-            return Err(self.wrong(value.span(), "formats is no list of endings; write formats = [\"png\"]"));
-        };
-        let mut formats = Vec::new();
-        for value in list {
-            let ending = self.text_of(value, "a format")?.trim_start_matches('.').to_owned();
-            let example = PathBuf::from(format!("a.{ending}"));
-            if format_of(&example).is_err() || formats.contains(&ending) {
-                return Err(self.wrong(value.span(), "formats are png, exr and hdr, each once"));
-            }
-            formats.push(ending);
+fn assignments(path: &str, table: &Table, arguments: &mut Vec<String>) {
+    for (key, value) in table {
+        let path = format!("{path}.{key}");
+        match value {
+            Value::Table(inner) => assignments(&path, inner, arguments),
+            _ => arguments.push(format!("--set={path}={}", text(value))),
         }
-        Ok(formats)
     }
+}
+
+/// An entry of a list whose texts stand for an option.
+fn entry(folder: &Path, value: &Value, option: Option<&str>) -> anyhow::Result<Entry> {
+    let (name, options) = match (value, option) {
+        (Value::String(text), Some(option)) => {
+            let stem = Path::new(text)
+                .file_stem()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            (stem, &Table::from_iter([(option.to_owned(), value.clone())]))
+        }
+        (Value::Table(table), _) => match table.get("name") {
+            Some(Value::String(name)) => (name.clone(), table),
+            _ => bail!("an entry has no name; add name = \"…\""),
+        },
+        (_, Some(_)) => bail!("an entry is a text, or a table with a name and options"),
+        (_, None) => bail!("an entry is a table, such as {{ name = \"a\", samples = 64 }}"),
+    };
+    Ok(Entry {
+        name: plain(&name),
+        arguments: arguments(folder, options)?,
+    })
 }
 
 /// A name that is a part of a file's name everywhere.
@@ -260,72 +170,77 @@ fn plain(name: &str) -> String {
 }
 
 impl BatchFile {
-    /// What the file at `path` says.
-    ///
-    /// # Errors
-    /// What is wrong with it, and in which line.
-    pub(super) fn read(path: &Path) -> anyhow::Result<Self> {
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(path)
             .with_context(|| format!("{}: cannot be read; give a batch's file in TOML", path.display()))?;
-        Self::parse(path, &text)
-    }
-
-    fn parse(path: &Path, text: &str) -> anyhow::Result<Self> {
-        let source = Source { path, text };
-        let table = DeTable::parse(text).map_err(|error| {
+        let wrong = |at: std::ops::Range<usize>, reason: String| {
+            let line = 1 + text[..at.start.min(text.len())].matches('\n').count();
+            anyhow!("{}, line {line}: {reason}", path.display())
+        };
+        let parts: Parts = toml::from_str(&text).map_err(|error| {
             let reason = format!("{}; correct the TOML there", error.message().replace('\n', ", "));
-            source.wrong(error.span().unwrap_or_default(), reason)
+            wrong(error.span().unwrap_or_default(), reason)
         })?;
-        let table = table.get_ref();
-        for key in table.keys() {
-            let name = key.get_ref().as_ref();
-            if !LISTS.iter().any(|(list, _)| *list == name) && !OTHERS.contains(&name) {
-                let lists = LISTS.map(|(list, _)| list).join(", ");
-                let reason = format!(
-                    "{name} is no part of a batch; the parts are {lists}, {}",
-                    OTHERS.join(", ")
-                );
-                return Err(source.wrong(key.span(), reason));
-            }
-        }
+        let beside = path.parent().unwrap_or(Path::new(""));
         let mut file = Self {
             path: path.to_owned(),
-            folder: source.folder().join("pictures"),
+            folder: beside.join(parts.folder.unwrap_or("pictures".into())),
             formats: vec!["png".to_owned()],
             common: Vec::new(),
             lists: Vec::new(),
             frames: None,
-            turn: Turn::default(),
+            turn: parts.turn,
         };
-        for (key, option) in LISTS {
-            if let Some(value) = table.get(key) {
-                file.lists.push(source.list(value, key, option)?);
+        let lists = [
+            ("models", Some("model"), parts.models),
+            ("materials", Some("material"), parts.materials),
+            ("environments", Some("environment"), parts.environments),
+            ("cameras", None, parts.cameras),
+            ("settings", None, parts.settings),
+        ];
+        for (key, option, list) in lists {
+            let Some(list) = list else { continue };
+            let mut entries: Vec<Entry> = Vec::new();
+            for value in list.get_ref() {
+                let entry = entry(beside, value.get_ref(), option);
+                let entry = entry.map_err(|error| wrong(value.span(), format!("{key}: {error:#}")))?;
+                if entries.iter().any(|other| other.name == entry.name) {
+                    let reason = format!(
+                        "{key} has two entries of the name {}; give one another name",
+                        entry.name
+                    );
+                    return Err(wrong(value.span(), reason));
+                }
+                entries.push(entry);
+            }
+            if entries.is_empty() {
+                return Err(wrong(
+                    list.span(),
+                    format!("{key} is no list with entries; write {key} = [ … ]"),
+                ));
+            }
+            file.lists.push(entries);
+        }
+        if let Some(common) = parts.common {
+            let arguments = arguments(beside, common.get_ref());
+            file.common = arguments.map_err(|error| wrong(common.span(), format!("common: {error:#}")))?;
+        }
+        if let Some(formats) = parts.formats {
+            let span = formats.span();
+            file.formats = formats.into_inner();
+            let is_known = |ending: &String| format_of(Path::new(&format!("a.{ending}"))).is_ok();
+            let mut once = file.formats.clone();
+            once.sort();
+            once.dedup();
+            if file.formats.is_empty() || once.len() < file.formats.len() || !once.iter().all(is_known) {
+                return Err(wrong(span, "formats are png, exr and hdr, each once".to_owned()));
             }
         }
-        if let Some(value) = table.get("common") {
-            let Some(common) = value.get_ref().as_table() else {
-                return Err(source.wrong(value.span(), "common is no table; write [common] and options below it"));
-            };
-            file.common = source.arguments(common, None)?;
-        }
-        if let Some(value) = table.get("folder") {
-            file.folder = source.folder().join(source.text_of(value, "folder")?);
-        }
-        if let Some(value) = table.get("formats") {
-            file.formats = source.formats(value)?;
-        }
-        if let Some(value) = table.get("frames") {
-            let count = source
-                .scalar(value, "frames")?
-                .parse()
-                .ok()
-                .filter(|n| FRAMES.contains(n));
-            let expected = || source.wrong(value.span(), "frames is no number from 1 to 9999");
-            file.frames = Some(count.ok_or_else(expected)? as u32);
-        }
-        if let Some(value) = table.get("turn") {
-            let turn = Turn::by_name(source.text_of(value, "turn")?);
-            file.turn = turn.ok_or_else(|| source.wrong(value.span(), "turn is camera, model or light"))?;
+        if let Some(frames) = parts.frames {
+            file.frames = Some(*frames.get_ref());
+            if !(1..=9999).contains(frames.get_ref()) {
+                return Err(wrong(frames.span(), "frames is no number from 1 to 9999".to_owned()));
+            }
         }
         if file.lists.is_empty() && file.frames.is_none() {
             bail!(
@@ -337,7 +252,7 @@ impl BatchFile {
     }
 
     /// The folder of the images, and the names and arguments of all, in order. Frames of a turn follow one another.
-    pub(super) fn pictures(&self) -> Vec<Picture> {
+    pub fn pictures(&self) -> Vec<Picture> {
         let mut pictures = vec![Picture::default()];
         pictures[0].arguments = self.common.clone();
         for list in &self.lists {
@@ -374,11 +289,11 @@ fn joined(first: &str, second: &str) -> String {
 
 /// An image of a batch.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Picture {
+pub struct Picture {
     /// The names of its entries.
-    pub(super) name: String,
+    pub name: String,
     /// What is rendered, as arguments of `glossmith render`.
-    pub(super) arguments: Vec<String>,
+    pub arguments: Vec<String>,
     /// The frame of the turn, from 0.
-    pub(super) frame: Option<u32>,
+    pub frame: Option<u32>,
 }

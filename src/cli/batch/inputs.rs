@@ -17,10 +17,10 @@ use crate::store::project::document_text;
 const VERSION: u32 = 2;
 
 /// A hash that grows; its numbers are the same on every machine and with every compiler.
-pub(super) struct Inputs(SipHasher13);
+pub struct Inputs(SipHasher13);
 
 impl Inputs {
-    pub(super) fn new() -> Self {
+    pub fn new() -> Self {
         let mut inputs = Self(SipHasher13::new());
         inputs.text(env!("CARGO_PKG_VERSION"));
         inputs.text(&VERSION.to_string());
@@ -28,7 +28,7 @@ impl Inputs {
     }
 
     /// Adds a text.
-    pub(super) fn text(&mut self, text: &str) {
+    pub fn text(&mut self, text: &str) {
         self.bytes(text.as_bytes());
     }
 
@@ -40,7 +40,7 @@ impl Inputs {
 
     /// Adds a document, the contents of its model, the environment's files, the user's own textures and the table of colours. Files beside the batch's file may move with
     /// it.
-    pub(super) fn document(&mut self, document: &Document, model: &Model, batch: &Path) -> anyhow::Result<()> {
+    pub fn document(&mut self, document: &Document, model: &Model, batch: &Path) -> anyhow::Result<()> {
         self.text(&document_text(batch, document)?);
         self.model(model);
         if let EnvironmentSource::File(path) = &document.lighting.environment {
@@ -85,7 +85,7 @@ impl Inputs {
     }
 
     /// A file's contents, or those of a folder's files.
-    pub(super) fn file(&mut self, path: &Path) -> anyhow::Result<()> {
+    pub fn file(&mut self, path: &Path) -> anyhow::Result<()> {
         let message = || format!("{}: cannot be read; check the path and its permissions", path.display());
         if path.is_dir() {
             let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path).with_context(message)?.collect();
@@ -111,7 +111,7 @@ impl Inputs {
     }
 
     /// 32 hexadecimal digits.
-    pub(super) fn hash(&self) -> String {
+    pub fn hash(&self) -> String {
         format!("{:032x}", self.0.finish128().as_u128())
     }
 }

@@ -4,25 +4,25 @@ use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 
-use super::Part;
+use super::BatchArguments;
 use super::file::{BatchFile, Picture, Scene};
 use super::inputs::Inputs;
 use super::row::{Row, Status};
 use super::sheet;
-use crate::cli::merge::denoised;
-use crate::cli::render::render_to_end;
+use crate::cli::merge::{denoised, joined};
+use crate::cli::render::{render_to_end, rendered};
 use crate::document::turntable::turned;
 use crate::document::{Denoise, Document};
 use crate::job::film::Image;
+use crate::render::Session;
 use crate::render::output::{self, Rendered};
-use crate::render::sums::{self, KeptFilm};
-use crate::render::{EngineChoice, Progress, Session};
+use crate::render::sums;
 use crate::store::replace::{remove_leftovers, save_atomically};
 
 /// What makes the images of a batch.
-pub(super) struct Maker<'a> {
+pub struct Maker<'a> {
     file: &'a BatchFile,
-    engine: EngineChoice,
+    arguments: &'a BatchArguments,
     session: Session,
 }
 
@@ -38,21 +38,25 @@ struct Wanted<'a> {
 impl<'a> Maker<'a> {
     /// A session for images, or for a part of the samples of each; removes what a batch that was killed has left half
     /// written.
-    pub(super) fn open(file: &'a BatchFile, engine: EngineChoice, part: Part) -> anyhow::Result<Self> {
-        let mut session = Session::open(engine)?;
-        if part != Part::Whole {
+    pub fn open(file: &'a BatchFile, arguments: &'a BatchArguments) -> anyhow::Result<Self> {
+        let mut session = Session::open(arguments.engine)?;
+        if arguments.is_of_parts() {
             session.keep_guides("sums of the image are kept");
         }
         remove_leftovers(&file.folder);
         remove_leftovers(&file.folder.join(sheet::THUMBNAILS));
-        Ok(Self { file, engine, session })
+        Ok(Self {
+            file,
+            arguments,
+            session,
+        })
     }
 
     /// The document of an image, and the hash of what it is made of.
-    fn wanted<'p>(&mut self, number: usize, picture: &'p Picture, part: Part) -> anyhow::Result<Wanted<'p>> {
+    fn wanted<'p>(&mut self, number: usize, picture: &'p Picture) -> anyhow::Result<Wanted<'p>> {
         let scene = Scene::parse(&picture.arguments)?.arguments;
         let mut document = scene.document(&mut self.session)?;
-        let part = part.range(document.render.samples);
+        let part = self.arguments.part(document.render.samples);
         if let Some(range) = part {
             put_part(&mut document, range)?;
         }
@@ -76,27 +80,13 @@ impl<'a> Maker<'a> {
         Ok(inputs.hash())
     }
 
-    /// An image, or a part of its samples: rendered, unless it is there.
-    pub(super) fn make(&mut self, number: usize, picture: &Picture, part: Part) -> Row {
-        self.made_by(number, picture, part, Self::rendered)
-    }
-
-    /// An image of the parts in the folder that were made of the same inputs, unless it is there.
-    pub(super) fn join(&mut self, number: usize, picture: &Picture) -> Row {
-        self.made_by(number, picture, Part::Whole, Self::joined)
-    }
-
-    fn made_by<'p>(
-        &mut self,
-        number: usize,
-        picture: &'p Picture,
-        part: Part,
-        make: impl FnOnce(&mut Self, Wanted<'p>) -> anyhow::Result<Row>,
-    ) -> Row {
-        let wanted = self.wanted(number, picture, part);
+    /// Renders an image or a part of it, or joins its parts, unless it is there.
+    pub fn make(&mut self, number: usize, picture: &Picture) -> Row {
+        let wanted = self.wanted(number, picture);
         let made = wanted.and_then(|wanted| match self.kept(&wanted) {
             Some(row) => Ok(row),
-            None => make(self, wanted),
+            None if self.arguments.merge => self.joined(&wanted),
+            None => self.rendered(&wanted),
         });
         made.unwrap_or_else(|error| Row::failed(number, picture, &error))
     }
@@ -136,7 +126,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    fn rendered(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
+    fn rendered(&mut self, wanted: &Wanted<'_>) -> anyhow::Result<Row> {
         let document = match (wanted.picture.frame, self.file.frames) {
             (Some(frame), Some(frames)) => {
                 self.session.submit(&wanted.document)?;
@@ -151,31 +141,30 @@ impl<'a> Maker<'a> {
             }
             _ => wanted.document.clone(),
         };
-        let (progress, denoised) = render_to_end(&mut self.session, self.engine, &document)?;
-        let mut row = self.message(&wanted, Status::Rendered, &progress);
-        let (image, lights) = (self.session.image()?, self.session.light_layers()?);
-        let rendered = Rendered {
-            lights: &lights,
-            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
-            ..Rendered::from(&image)
+        let (progress, denoised) = render_to_end(&mut self.session, self.arguments.engine, &document)?;
+        let row = Row {
+            samples: wanted.part,
+            samples_per_pixel: Some(progress.samples_per_pixel),
+            render_seconds: Some(progress.render_seconds),
+            noise: progress.noise.map(|noise| noise.relative),
+            ..self.row(wanted, Status::Rendered)
         };
+        let (image, lights) = (self.session.image()?, self.session.light_layers()?);
+        let rendered = rendered(&image, denoised.as_ref(), &lights);
         if wanted.part.is_some() {
             let sums = Some(&self.session.kept_film()?);
             output::write(&row.files[0], Rendered { sums, ..rendered }, &document)?;
         } else {
             self.write(&row.files, rendered, &document, wanted.picture)?;
         }
-        row.hash = Some(wanted.hash.clone());
-        self.finish(&wanted, row)
+        self.finish(wanted, row)
     }
 
-    fn message(&self, wanted: &Wanted<'_>, status: Status, progress: &Progress) -> Row {
+    fn row(&self, wanted: &Wanted<'_>, status: Status) -> Row {
+        let hash = Some(wanted.hash.clone());
         Row {
             files: self.files(wanted),
-            samples: wanted.part,
-            samples_per_pixel: Some(progress.samples_per_pixel),
-            render_seconds: Some(progress.render_seconds),
-            noise: progress.noise.map(|noise| noise.relative),
+            hash,
             ..Row::new(wanted.number, wanted.picture, status)
         }
     }
@@ -203,51 +192,40 @@ impl<'a> Maker<'a> {
         Ok(row)
     }
 
-    fn joined(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
+    fn joined(&mut self, wanted: &Wanted<'_>) -> anyhow::Result<Row> {
         let samples = wanted.document.render.samples;
-        let mut done = 0;
-        let mut whole: Option<(PathBuf, KeptFilm)> = None;
-        let mut seconds = 0.0;
-        for (range, row) in self.parts(&wanted)? {
+        let (mut done, mut seconds) = (0, 0.0);
+        let mut paths = Vec::new();
+        for (range, row) in self.parts(wanted)? {
             // Ignores slices that another split has left.
             if range[0] != done || range[1] > samples {
                 continue;
             }
-            let path = self.path(wanted.picture, Some(range), "exr");
-            let film = KeptFilm::read(&path)?;
-            match &mut whole {
-                Some((first, whole)) => whole.add(&film, &path, first)?,
-                None => whole = Some((path, film)),
-            }
+            paths.push(self.path(wanted.picture, Some(range), "exr"));
             done = range[1];
             seconds += row.render_seconds.unwrap_or_default();
         }
-        let Some((_, mut whole)) = whole.filter(|_| done == samples) else {
+        if done < samples {
             bail!(
                 "{}: samples {done} to {samples} of {} are missing or of other settings; render them by --slice or \
                  --samples-from and --samples-to, then join again",
                 self.file.folder.display(),
                 wanted.picture.name
             );
-        };
+        }
+        let mut whole = joined(&paths)?;
         whole.document.view.denoise = wanted.document.view.denoise;
         let denoised = denoised(&whole)?;
         let (image, lights) = (whole.mixed().image(), whole.light_layers());
-        let rendered = Rendered {
-            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
-            lights: &lights,
-            ..Rendered::from(&image)
-        };
+        let rendered = rendered(&image, denoised.as_ref(), &lights);
         let row = Row {
-            files: self.files(&wanted),
             samples_per_pixel: Some(whole.sample_count()),
             render_seconds: Some(seconds),
-            hash: Some(wanted.hash.clone()),
-            ..Row::new(wanted.number, wanted.picture, Status::Merged)
+            ..self.row(wanted, Status::Merged)
         };
         // The frame that was rendered, with the number of all samples.
         self.write(&row.files, rendered, &whole.document, wanted.picture)?;
-        self.finish(&wanted, row)
+        self.finish(wanted, row)
     }
 
     /// The parts of an image in the folder, in order; of those that begin alike the longest first.

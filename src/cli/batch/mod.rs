@@ -75,46 +75,25 @@ fn numbers(text: &str) -> Result<RangeInclusive<usize>, String> {
 
 /// `2/5`: the second of five.
 fn slice(text: &str) -> Result<[u32; 2], String> {
-    let parsed = text.split_once('/');
-    let parsed = parsed.and_then(|(part, of)| Some([part.trim().parse().ok()?, of.trim().parse().ok()?]));
     let is_one = |[part, of]: &[u32; 2]| (1..=*of).contains(part);
-    parsed
-        .filter(is_one)
-        .ok_or_else(|| "give the number of the part and how many there are, such as 2/5".to_owned())
+    let expected = || "give the number of the part and how many there are, such as 2/5".to_owned();
+    parse::pair(text, &['/']).filter(is_one).ok_or_else(expected)
 }
 
-/// Which samples of an image are rendered.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
-    /// All.
-    Whole,
-    /// From a number up to another.
-    Numbers([u32; 2]),
-    /// A part of each image's samples: its number, and how many parts there are.
-    Slice([u32; 2]),
-}
-
-impl Part {
-    /// What the arguments ask for.
-    fn of(arguments: &BatchArguments) -> anyhow::Result<Self> {
-        let from = arguments.samples_from.unwrap_or(0);
-        Ok(match (arguments.slice, arguments.samples_to) {
-            (Some(slice), _) => Self::Slice(slice),
-            (None, Some(to)) if to <= from => bail!("--samples-to {to} must be above --samples-from {from}"),
-            (None, Some(to)) => Self::Numbers([from, to]),
-            (None, None) => Self::Whole,
-        })
+impl BatchArguments {
+    fn is_of_parts(&self) -> bool {
+        self.slice.is_some() || self.samples_to.is_some()
     }
 
     /// The first sample of a part and the one after its last, of an image with this many samples.
-    fn range(self, samples: u32) -> Option<[u32; 2]> {
-        match self {
-            Self::Whole => None,
-            Self::Numbers(range) => Some(range),
-            Self::Slice([part, of]) => {
+    fn part(&self, samples: u32) -> Option<[u32; 2]> {
+        let from = self.samples_from.unwrap_or(0);
+        match self.slice {
+            Some([part, of]) => {
                 let bound = |part: u32| (u64::from(samples) * u64::from(part) / u64::from(of)) as u32;
                 Some([bound(part - 1), bound(part)])
             }
+            None => self.samples_to.map(|to| [from, to]),
         }
     }
 }
@@ -145,7 +124,10 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let chosen = chosen(&file, &all, arguments)?;
-    let part = Part::of(arguments)?;
+    let from = arguments.samples_from.unwrap_or(0);
+    if let Some(to) = arguments.samples_to.filter(|to| *to <= from) {
+        bail!("--samples-to {to} must be above --samples-from {from}");
+    }
     std::fs::create_dir_all(&file.folder).with_context(|| {
         format!(
             "{}: the folder cannot be made; give another by --folder",
@@ -153,18 +135,15 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
         )
     })?;
     let mut lines = Lines::open(&arguments.json)?;
-    let mut maker = Maker::open(&file, arguments.engine, part)?;
+    let mut maker = Maker::open(&file, arguments)?;
     let mut failed = 0;
     for (number, picture) in &chosen {
-        let row = match arguments.merge {
-            true => maker.join(*number, picture),
-            false => maker.make(*number, picture, part),
-        };
+        let row = maker.make(*number, picture);
         report(&row, &mut lines, all.len())?;
         failed += usize::from(row.status == Status::Failed);
     }
     // Where several programs render at once, none of them has all images.
-    if part == Part::Whole && (chosen.len() == all.len() || arguments.merge) {
+    if !arguments.is_of_parts() && (chosen.len() == all.len() || arguments.merge) {
         sheet::write(&file, &all)?;
     }
     match failed {
@@ -223,9 +202,10 @@ fn report(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
         status,
         ..
     } = row;
-    match &row.error {
-        Some(error) => message!("{number} of {count}, {picture}: {error}"),
-        None => message!("{number} of {count}, {picture}: {}", status.word()),
-    }
+    let outcome = row
+        .error
+        .clone()
+        .unwrap_or_else(|| format!("{status:?}").to_lowercase());
+    message!("{number} of {count}, {picture}: {outcome}");
     Ok(())
 }

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::file::Picture;
 
 /// What became of an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Status {
+pub enum Status {
     /// It was rendered.
     Rendered,
     /// Its parts were joined.
@@ -17,73 +17,57 @@ pub(super) enum Status {
     /// It was there, made of the same inputs.
     Kept,
     /// It could not be made.
+    #[default]
     Failed,
 }
 
-impl Status {
-    pub(super) fn word(self) -> &'static str {
-        match self {
-            Self::Rendered => "rendered",
-            Self::Merged => "merged",
-            Self::Kept => "kept",
-            Self::Failed => "failed",
-        }
-    }
-}
-
 /// An image's record: printed as a line of JSON, and kept beside it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Row {
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Row {
     /// Its number from 1.
-    pub(super) number: usize,
+    pub number: usize,
     /// Its name.
-    pub(super) picture: String,
+    pub picture: String,
     /// What became of it.
-    pub(super) status: Status,
+    pub status: Status,
     /// Its files.
     #[serde(with = "crate::scene::path_text::list")]
-    pub(super) files: Vec<PathBuf>,
+    pub files: Vec<PathBuf>,
     /// The hash of what it was made of.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) hash: Option<String>,
+    pub hash: Option<String>,
     /// The hash of its files: one that was damaged since is made again. Records of older versions have none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) files_hash: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub files_hash: Option<String>,
     /// The numbers of the first sample and the one after the last, of a part.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) samples: Option<[u32; 2]>,
+    pub samples: Option<[u32; 2]>,
     /// Samples per pixel.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) samples_per_pixel: Option<u32>,
+    pub samples_per_pixel: Option<u32>,
     /// The engine's own time.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) render_seconds: Option<f64>,
+    pub render_seconds: Option<f64>,
     /// The estimated error of the image's mean brightness.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) noise: Option<f64>,
+    pub noise: Option<f64>,
     /// Why it is not there.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) error: Option<String>,
+    pub error: Option<String>,
 }
 
 impl Row {
-    pub(super) fn new(number: usize, picture: &Picture, status: Status) -> Self {
+    pub fn new(number: usize, picture: &Picture, status: Status) -> Self {
         Self {
             number,
             picture: picture.name.clone(),
             status,
-            files: Vec::new(),
-            hash: None,
-            files_hash: None,
-            samples: None,
-            samples_per_pixel: None,
-            render_seconds: None,
-            noise: None,
-            error: None,
+            ..Self::default()
         }
     }
 
-    pub(super) fn failed(number: usize, picture: &Picture, error: &anyhow::Error) -> Self {
+    pub fn failed(number: usize, picture: &Picture, error: &anyhow::Error) -> Self {
         Self {
             error: Some(format!("{error:#}")),
             ..Self::new(number, picture, Status::Failed)
@@ -91,7 +75,7 @@ impl Row {
     }
 
     /// The record beside an image; none where there is none that can be read.
-    pub(super) fn read(path: &Path) -> Option<Self> {
+    pub fn read(path: &Path) -> Option<Self> {
         serde_json::from_slice(&std::fs::read(path).ok()?).ok()
     }
 }

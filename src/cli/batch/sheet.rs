@@ -5,22 +5,22 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use image::RgbImage;
-use image::imageops::{FilterType, overlay, resize};
+use image::imageops::overlay;
 
 use super::file::{BatchFile, Picture};
 use super::row::Row;
+use crate::cli::render::thumbnail;
 use crate::console::message;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
-use crate::plot::{PictureSheet, write_picture_sheet};
-use crate::render::display::display;
+use crate::plot::{PictureSheet, plot_file};
 use crate::store::picture::png_bytes;
-use crate::store::replace::{save_atomically, save_by};
+use crate::store::replace::save_atomically;
 
 /// Longest side of a thumbnail, pixels.
 const SIDE: u32 = 192;
 /// The folder of the thumbnails, and the names of the sheets.
-pub(super) const THUMBNAILS: &str = "thumbnails";
+pub const THUMBNAILS: &str = "thumbnails";
 const SHEET: &str = "contact-sheet";
 /// Codes of the paper where an image is missing or lets light through.
 const PAPER: u8 = 230;
@@ -30,19 +30,13 @@ fn thumbnail_path(folder: &Path, name: &str) -> PathBuf {
 }
 
 /// Writes the thumbnail of one that was made.
-pub(super) fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &ViewSettings) -> anyhow::Result<()> {
+pub fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &ViewSettings) -> anyhow::Result<()> {
     let path = thumbnail_path(folder, name);
     std::fs::create_dir_all(folder.join(THUMBNAILS))
         .with_context(|| format!("{}: the folder cannot be made", folder.join(THUMBNAILS).display()))?;
-    let pixels = image::RgbaImage::from_raw(image.width, image.height, display(image, view));
-    let pixels = pixels.context("an image of another size")?;
-    let longest = image.width.max(image.height).max(1);
-    let small = if longest > SIDE {
-        let side = |length: u32| (length * SIDE / longest).max(1);
-        resize(&pixels, side(image.width), side(image.height), FilterType::Triangle)
-    } else {
-        pixels
-    };
+    let small = thumbnail(image, view, SIDE)
+        .context("an image of another size")?
+        .into_rgba8();
     let bytes = png_bytes([small.width(), small.height()], &small, None).map_err(anyhow::Error::msg)?;
     Ok(save_atomically(&path, &bytes)?)
 }
@@ -59,7 +53,7 @@ fn cell(path: &Path) -> RgbImage {
 }
 
 /// Writes both sheets of all images, those that are missing among them.
-pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()> {
+pub fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()> {
     let folder = &file.folder;
     let title = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let cells = pictures.iter().map(|picture| {
@@ -71,7 +65,7 @@ pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()
         pictures: cells.collect(),
     };
     let path = folder.join(format!("{SHEET}.png"));
-    save_by(&path, |file| write_picture_sheet(file, &sheet))?;
+    save_atomically(&path, &plot_file(&path, &sheet)?)?;
     let page = folder.join(format!("{SHEET}.html"));
     save_atomically(&page, html(folder, &title, pictures).as_bytes())?;
     message!("wrote {} and {}", path.display(), page.display());

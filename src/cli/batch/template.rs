@@ -13,7 +13,7 @@ use super::file::BatchFile;
 const NAME_LENGTH_MAX: usize = 128;
 
 /// The template at `path` of a batch, by its number of images and of tasks per image.
-pub(super) fn text(path: &Path, file: &BatchFile, pictures: usize, slices: u32) -> String {
+pub fn text(path: &Path, file: &BatchFile, pictures: usize, slices: u32) -> String {
     let stem = file.path.file_stem().unwrap_or_default().to_string_lossy();
     let name: String = format!("Glossmith {stem}").chars().take(NAME_LENGTH_MAX).collect();
     let slice_definition = match slices {

@@ -1,5 +1,6 @@
 //! Pairs of directions, from a file or as a grid.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use anyhow::{Context, bail};
@@ -12,13 +13,13 @@ const COLUMNS: [&str; 4] = ["theta_o", "phi_o", "theta_i", "phi_i"];
 const ADDED: [&str; 4] = ["r", "g", "b", "density"];
 
 /// Pairs of directions with the rows that hold them.
-pub(super) struct Pairs {
+pub struct Pairs {
     /// Names of the columns, with commas between them.
-    pub(super) header: String,
+    pub header: String,
     /// Cells of each pair, with commas between them.
-    pub(super) rows: Vec<String>,
+    pub rows: Vec<String>,
     /// (theta, phi) to the viewer and to the light, in degrees.
-    pub(super) angles_deg: Vec<[[f64; 2]; 2]>,
+    pub angles_deg: Vec<[[f64; 2]; 2]>,
 }
 
 impl Pairs {
@@ -26,10 +27,16 @@ impl Pairs {
     ///
     /// # Errors
     /// Names the file, the line and what is wrong with it.
-    pub(super) fn read(path: &Path) -> anyhow::Result<Self> {
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
         let name = path.display();
-        let text =
-            std::fs::read_to_string(path).with_context(|| format!("{name}: the table cannot be read as text"))?;
+        let text = std::fs::read_to_string(path);
+        Self::parse(
+            &name,
+            &text.with_context(|| format!("{name}: the table cannot be read as text"))?,
+        )
+    }
+
+    fn parse(name: &dyn Display, text: &str) -> anyhow::Result<Self> {
         let lines = (1..).zip(text.lines().map(str::trim));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
         let (_, header) = lines.next().with_context(|| format!("{name}: the table is empty"))?;
@@ -78,34 +85,25 @@ impl Pairs {
     }
 
     /// `steps` views in the plane of the tangent, each with a grid of lights over the hemisphere, or over the sphere.
-    pub(super) fn grid(steps: u32, on_both_sides: bool) -> Self {
+    pub fn grid(steps: u32, on_both_sides: bool) -> anyhow::Result<Self> {
         let step_deg = 90.0 / f64::from(steps);
+        let theta_deg = |index: u32| step_deg * (f64::from(index) + 0.5);
         let heights = if on_both_sides { 2 * steps } else { steps };
-        let mut pairs = Self {
-            header: COLUMNS.join(","),
-            rows: Vec::new(),
-            angles_deg: Vec::new(),
-        };
+        let mut text = COLUMNS.join(",");
         for view in 0..steps {
             for height in 0..heights {
                 for turn in 0..2 * steps {
-                    let theta_deg = |index: u32| step_deg * (f64::from(index) + 0.5);
-                    let pair = [
-                        [theta_deg(view), 0.0],
-                        [theta_deg(height), 2.0 * step_deg * f64::from(turn)],
-                    ];
-                    let [[theta_o, phi_o], [theta_i, phi_i]] = pair;
-                    pairs.rows.push(format!("{theta_o},{phi_o},{theta_i},{phi_i}"));
-                    pairs.angles_deg.push(pair);
+                    let phi_deg = 2.0 * step_deg * f64::from(turn);
+                    text += &format!("\n{},0,{},{phi_deg}", theta_deg(view), theta_deg(height));
                 }
             }
         }
-        pairs
+        Self::parse(&"the grid", &text)
     }
 }
 
 /// The unit direction of angles in degrees; `up` is the z of the normal from which theta counts.
-pub(super) fn unit_direction([theta_deg, phi_deg]: [f64; 2], up: f64) -> Vec3<f32> {
+pub fn unit_direction([theta_deg, phi_deg]: [f64; 2], up: f64) -> Vec3<f32> {
     let (sine, cosine) = theta_deg.to_radians().sin_cos();
     let (across, along) = phi_deg.to_radians().sin_cos();
     Vec3::from_f64([sine * along, sine * across, up * cosine])

@@ -2,21 +2,21 @@
 
 mod directions;
 
-use std::io::{self, Write};
+use std::io::Write as _;
 use std::path::PathBuf;
+use std::str::FromStr as _;
 
 use anyhow::bail;
 use clap::Args;
 
 use self::directions::{Pairs, unit_direction};
 use super::answer::{Answer, file_names};
-use super::{names, parse};
+use super::{names, parse, scene};
 use crate::console::message;
 use crate::document::parameter::assign;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::named::named;
 use crate::render::{EngineChoice, Precision};
-use crate::store::exchange::{self, ReadOptions};
 use crate::store::replace::save_by;
 use crate::study::evaluate::{Albedo, BATCHES, Evaluation, Evaluator};
 
@@ -39,7 +39,7 @@ named! {
 #[derive(Debug, Args)]
 pub struct EvaluateArguments {
     /// The material: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
-    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(parse::material))]
+    #[arg(long, value_name = "FILE|NAME", value_parser = parse::name_of_file(String::from_str))]
     material: String,
     #[command(flatten)]
     asked: Asked,
@@ -72,6 +72,13 @@ pub struct EvaluateArguments {
 }
 
 /// What is asked, one of three.
+impl EvaluateArguments {
+    /// The sign of heights above the side that is asked for.
+    fn up(&self) -> f64 {
+        if self.side == Side::Above { 1.0 } else { -1.0 }
+    }
+}
+
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Asked {
@@ -125,13 +132,7 @@ pub fn run(arguments: &EvaluateArguments) -> anyhow::Result<()> {
 }
 
 fn material(arguments: &EvaluateArguments) -> anyhow::Result<MaterialSettings> {
-    let options = ReadOptions {
-        lobe: arguments.import_lobe,
-        ..ReadOptions::default()
-    };
-    let found = exchange::find(&arguments.material, options)?;
-    found.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-    let mut material = found.value;
+    let mut material = scene::material(&arguments.material, arguments.import_lobe)?;
     for assignment in &arguments.assignments {
         assign(&mut material, assignment)?;
     }
@@ -141,46 +142,36 @@ fn material(arguments: &EvaluateArguments) -> anyhow::Result<MaterialSettings> {
     Ok(material)
 }
 
-/// The sign of z on a side.
-fn upwards(side: Side) -> f64 {
-    match side {
-        Side::Above => 1.0,
-        Side::Below => -1.0,
-    }
-}
-
 /// Writes value and density for each pair; returns the number of rows.
 fn write_values(arguments: &EvaluateArguments, evaluator: &Evaluator) -> anyhow::Result<usize> {
     let pairs = match &arguments.asked.directions {
         Some(path) => Pairs::read(path)?,
-        None => Pairs::grid(arguments.asked.grid.unwrap_or_default(), evaluator.transmits()),
+        None => Pairs::grid(arguments.asked.grid.unwrap_or_default(), evaluator.transmits())?,
     };
-    let up = upwards(arguments.side);
+    let up = arguments.up();
     let toward = |pair: &[[f64; 2]; 2]| pair.map(|angles_deg| unit_direction(angles_deg, up));
     let directions: Vec<_> = pairs.angles_deg.iter().map(toward).collect();
     let values = evaluator.evaluate(&directions)?;
-    save_by(&arguments.output, |file| write_pairs(file, &pairs, &values))?;
+    save_by(&arguments.output, |file| {
+        writeln!(file, "{},r,g,b,density", pairs.header)?;
+        for (
+            row,
+            Evaluation {
+                value: [r, g, b],
+                density,
+            },
+        ) in pairs.rows.iter().zip(&values)
+        {
+            writeln!(file, "{row},{r},{g},{b},{density}")?;
+        }
+        Ok(())
+    })?;
     Ok(values.len())
-}
-
-fn write_pairs(file: &mut impl Write, pairs: &Pairs, values: &[Evaluation]) -> io::Result<()> {
-    writeln!(file, "{},r,g,b,density", pairs.header)?;
-    for (
-        row,
-        Evaluation {
-            value: [r, g, b],
-            density,
-        },
-    ) in pairs.rows.iter().zip(values)
-    {
-        writeln!(file, "{row},{r},{g},{b},{density}")?;
-    }
-    Ok(())
 }
 
 /// Writes an albedo for each cosine; returns the number of rows.
 fn write_albedos(arguments: &EvaluateArguments, evaluator: &Evaluator) -> anyhow::Result<usize> {
-    let (cosines, up) = (&arguments.asked.albedo, upwards(arguments.side));
+    let (cosines, up) = (&arguments.asked.albedo, arguments.up());
     let albedo = |cosine: &f64| evaluator.albedo(up * cosine, arguments.count, arguments.seed);
     let albedos: Vec<Albedo> = cosines.iter().map(albedo).collect::<Result<_, _>>()?;
     save_by(&arguments.output, |file| {

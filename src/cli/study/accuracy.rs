@@ -3,20 +3,18 @@
 use std::time::Duration;
 
 use clap::Args;
-use image::RgbImage;
 
-use super::folder::Folder;
-use super::{Bar, CommonArguments, digits};
+use super::{CommonArguments, ReferenceArguments, watched};
+use crate::cli::render::thumbnail;
 use crate::console::{message, output};
-use crate::document::{Document, ViewSettings};
+use crate::document::Document;
 use crate::job::film::Image;
+use crate::job::plan::Plan;
 use crate::plot::lobe_view::Axis;
-use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_picture_sheet};
-use crate::render::display::display;
+use crate::plot::{NamedPoint, PictureSheet, PointPlot, plot_file};
 use crate::render::{EngineChoice, Session};
-use crate::store::replace::save_by;
 use crate::study::race::{Race, RaceOptions, Runner, race};
-use crate::study::technique::{Technique, TechniqueError, check_techniques, techniques};
+use crate::study::technique::{Technique, TechniqueError, techniques};
 
 /// Those that take part where none are named.
 const DEFAULT: [&str; 6] = ["strategy", "sequence", "adaptive", "bounces", "fresnel", "lobe"];
@@ -29,29 +27,27 @@ const REFERENCE_TIMES: f64 = 6.0;
 /// Images of a sheet are no wider than this.
 const SHEET_SIDE: u32 = 256;
 
+const COLUMNS: &str = "technique,label,seconds,samples_per_pixel,error,error_low,error_high,told_noise,time_to_noise,\
+                       is_extrapolated,bias,bias_low,bias_high,is_unbiased,reference_noise,equal_error_seconds,is_on_front";
+
 /// Arguments of `glossmith study accuracy`.
 #[derive(Debug, Args)]
-pub(super) struct AccuracyArguments {
+pub struct AccuracyArguments {
     /// Who takes part, besides the scene as it is: settings such as strategy=lobe,bounces=4, or all of a kind: strategy,
     /// sequence, adaptive, denoise, bounces, fresnel, lobe, curve, scattering, effect, numbers. May be repeated [default: strategy,
     /// sequence, adaptive, bounces, fresnel and lobe].
     #[arg(long = "technique", value_name = "SETTINGS|KIND", value_parser = parse_techniques)]
     techniques: Vec<String>,
-    /// Longest time for one converged image.
-    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
-    reference_time: Option<f64>,
     #[command(flatten)]
-    common: CommonArguments,
+    reference: ReferenceArguments,
 }
 
 fn parse_techniques(text: &str) -> Result<String, TechniqueError> {
-    check_techniques(text)?;
-    Ok(text.to_owned())
+    techniques(text, &Plan::general()).map(|_| text.to_owned())
 }
 
-pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
-    let common = &arguments.common;
-    common.prepare()?;
+pub fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
+    let common = &arguments.reference.common;
     let mut document = common.document()?;
     // They say how long is raced, not how the scene is rendered.
     let (time_s, noise) = (document.render.time_s.take(), document.render.noise.take());
@@ -70,7 +66,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         seconds,
         noise: noise.unwrap_or(NOISE),
         slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
-        reference_seconds: arguments.reference_time.unwrap_or(REFERENCE_TIMES * seconds),
+        reference_seconds: arguments.reference.reference_time.unwrap_or(REFERENCE_TIMES * seconds),
         ..RaceOptions::new(common.scene.engine, runners)
     };
     message!(
@@ -79,10 +75,7 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         options.seconds,
         options.reference_seconds
     );
-    let found = {
-        let bar = Bar::new()?;
-        race(&document, &options, &mut |progress| bar.show(progress))?
-    };
+    let found = watched(|watch| race(&document, &options, watch))?;
     write(common, &document, &found)?;
     if common.answer.has_words() {
         print(&found);
@@ -124,63 +117,15 @@ fn print(race: &Race) {
 }
 
 fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::Result<()> {
-    let path = &common.output;
-    let folder = Folder { path, name: "accuracy" };
-    folder.json(race, &common.answer)?;
-    let head = [
-        "technique",
-        "label",
-        "seconds",
-        "samples_per_pixel",
-        "error",
-        "error_low",
-        "error_high",
-        "told_noise",
-        "time_to_noise",
-        "is_extrapolated",
-        "bias",
-        "bias_low",
-        "bias_high",
-        "is_unbiased",
-        "reference_noise",
-        "equal_error_seconds",
-        "is_on_front",
-    ];
-    let row = |runner: &Runner| {
-        vec![
-            runner.technique.to_string(),
-            runner.label.clone(),
-            digits(runner.seconds),
-            digits(runner.samples_per_pixel),
-            digits(runner.error.value),
-            digits(runner.error.low),
-            digits(runner.error.high),
-            digits(runner.estimated_noise),
-            digits(runner.time_to_noise),
-            runner.is_extrapolated.to_string(),
-            digits(runner.bias.value),
-            digits(runner.bias.low),
-            digits(runner.bias.high),
-            runner.is_unbiased.to_string(),
-            digits(runner.reference_noise),
-            digits(runner.equal_error_seconds),
-            runner.is_on_front.to_string(),
-        ]
-    };
-    folder.csv(&head, race.runners.iter().map(row))?;
-    folder.plots(&pareto_plot(race), point_plot_file)?;
+    common.write("accuracy", race, ["runners", COLUMNS], &pareto_plot(race))?;
     let sheet = |name: &str, title: String, picture: fn(&Runner) -> &Image, caption: &dyn Fn(&Runner) -> String| {
         let of_runner = |runner: &Runner| {
-            let picture = shown(picture(runner), &document.view)?;
-            Some((caption(runner), picture))
+            let picture = thumbnail(picture(runner), &document.view, SHEET_SIDE)?;
+            Some((caption(runner), picture.into_rgb8()))
         };
         let pictures = race.runners.iter().filter_map(of_runner).collect();
-        let path = path.join(format!("{name}.png"));
-        save_by(&path, |file| {
-            write_picture_sheet(file, &PictureSheet { title, pictures })
-        })?;
-        message!("wrote {}", path.display());
-        anyhow::Ok(())
+        let file = format!("{name}.png");
+        common.write_file(&file, &plot_file(file.as_ref(), &PictureSheet { title, pictures })?)
     };
     let title = format!("After {} s each", race.seconds);
     sheet("equal-time", title, |runner| &runner.equal_time, &|runner| {
@@ -190,19 +135,6 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
     sheet("equal-error", title, |runner| &runner.equal_error, &|runner| {
         format!("{}: {:.2} s", runner.label, runner.equal_error_seconds)
     })
-}
-
-/// An image as a screen shows it, no larger than fits a sheet.
-fn shown(image: &Image, view: &ViewSettings) -> Option<RgbImage> {
-    let rgba = image::RgbaImage::from_raw(image.width, image.height, display(image, view))?;
-    let picture = image::DynamicImage::from(rgba).to_rgb8();
-    let largest = picture.width().max(picture.height());
-    if largest <= SHEET_SIDE {
-        return Some(picture);
-    }
-    let side = |length: u32| (length * SHEET_SIDE / largest).max(1);
-    let [width, height] = [side(picture.width()), side(picture.height())];
-    Some(image::imageops::thumbnail(&picture, width, height))
 }
 
 /// Time to the race's noise against bias.
@@ -218,25 +150,13 @@ fn pareto_plot(race: &Race) -> PointPlot {
         is_best: runner.is_on_front,
     };
     let points: Vec<NamedPoint> = race.runners.iter().map(point).collect();
-    let range = |values: &dyn Fn(&NamedPoint) -> f64| {
-        let ends = points
-            .iter()
-            .map(values)
-            .fold([f64::INFINITY, 0.0_f64], |[low, high], x| [low.min(x), high.max(x)]);
-        [0.7 * ends[0], 1.5 * ends[1]]
-    };
+    let time = format!("Time to a noise of {} % (s)", 100.0 * race.noise);
+    let bias = format!("Bias (%); values under {least:.2} are not significant");
+    let highest = |point: &NamedPoint| point.y_range[1].max(point.place[1]);
     PointPlot {
         title: format!("What accuracy costs: {}", race.machine.adapter),
-        x: Axis {
-            label: format!("Time to a noise of {} % (s)", 100.0 * race.noise),
-            range: range(&|point| point.place[0]),
-            is_logarithmic: true,
-        },
-        y: Axis {
-            label: format!("Bias (%); values under {least:.2} are not significant"),
-            range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),
-            is_logarithmic: true,
-        },
+        x: Axis::logarithmic(&time, points.iter().map(|point| point.place[0])),
+        y: Axis::logarithmic(&bias, points.iter().map(highest).chain([least])),
         points,
     }
 }

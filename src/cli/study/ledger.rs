@@ -2,71 +2,22 @@
 
 use std::time::Duration;
 
-use clap::Args;
-
-use super::folder::Folder;
-use super::{Bar, CommonArguments, digits};
+use super::{CommonArguments, watched};
 use crate::console::output;
-use crate::plot::{BarPlot, bar_plot_file};
+use crate::plot::BarPlot;
 use crate::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
-/// Arguments of `glossmith study ledger`.
-#[derive(Debug, Args)]
-pub(super) struct LedgerArguments {
-    #[command(flatten)]
-    common: CommonArguments,
-}
+const COLUMNS: &str = "name,label,instead,ms_with,ms_without,ms,share_of_frame,noise_share,picture_change,\
+                       picture_change_low,picture_change_high,words";
 
-pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
-    let common = &arguments.common;
-    common.prepare()?;
+pub fn run(common: &CommonArguments) -> anyhow::Result<()> {
     let document = common.document()?;
     let mut options = LedgerOptions::new(common.scene.engine);
     if common.quick {
         (options.turns, options.slice) = (3, Duration::from_millis(5));
     }
-    let found = {
-        let bar = Bar::new()?;
-        ledger(&document, &options, &mut |progress| bar.show(progress))?
-    };
-    let folder = Folder {
-        path: &common.output,
-        name: "ledger",
-    };
-    folder.json(&found, &common.answer)?;
-    let head = [
-        "name",
-        "label",
-        "instead",
-        "ms_with",
-        "ms_without",
-        "ms",
-        "share_of_frame",
-        "noise_share",
-        "picture_change",
-        "picture_change_low",
-        "picture_change_high",
-        "words",
-    ];
-    let row = |entry: &Entry| {
-        let change = &entry.picture_change;
-        let numbers = [
-            entry.ms_with,
-            entry.ms_without,
-            entry.ms,
-            entry.share_of_frame,
-            entry.noise_share,
-            change.value,
-            change.low,
-            change.high,
-        ];
-        let mut cells = vec![entry.name.to_owned(), entry.label.clone(), entry.instead.clone()];
-        cells.extend(numbers.map(digits));
-        cells.push(entry.words.clone());
-        cells
-    };
-    folder.csv(&head, found.entries.iter().map(row))?;
-    folder.plots(&plot(&found), bar_plot_file)?;
+    let found = watched(|watch| ledger(&document, &options, watch))?;
+    common.write("ledger", &found, ["entries", COLUMNS], &plot(&found))?;
     if common.answer.has_words() {
         print(&found);
     }

@@ -2,20 +2,25 @@
 
 mod accuracy;
 mod convergence;
-mod folder;
 mod ledger;
 
 use std::path::PathBuf;
 
+use anyhow::Context as _;
 use clap::{Args, Subcommand};
-use indicatif::ProgressBar;
+use serde::Serialize;
+use serde_json::Value as Json;
 
 use super::answer::Answer;
-use super::render::bar;
+use super::parse::number_in;
+use super::render::Bar;
 use super::scene::SceneArguments;
+use crate::console::message;
 use crate::document::Document;
+use crate::plot::{Figure, plot_file};
 use crate::render::{EngineChoice, Session};
-use crate::study::StudyProgress;
+use crate::store::replace::save_atomically;
+use crate::study::{StudyError, StudyProgress};
 
 /// Largest side of an image of `--quick`.
 const QUICK_SIDE: u32 = 48;
@@ -34,9 +39,9 @@ enum Study {
     /// Race techniques against each other: time to a given noise against bias, images of equal time and of equal error.
     Accuracy(Box<accuracy::AccuracyArguments>),
     /// Show the error of one image against time.
-    Convergence(Box<convergence::ConvergenceArguments>),
+    Convergence(Box<ReferenceArguments>),
     /// Report what each effect and setting costs in time and does to noise and image.
-    Ledger(Box<ledger::LedgerArguments>),
+    Ledger(Box<CommonArguments>),
 }
 
 /// Runs the study.
@@ -66,49 +71,91 @@ struct CommonArguments {
     scene: SceneArguments,
 }
 
-impl CommonArguments {
-    /// Makes sure that there is a place for what is measured.
-    fn prepare(&self) -> anyhow::Result<()> {
-        folder::prepare(&self.output, &self.answer)
-    }
+/// The same, of those that need converged images.
+#[derive(Debug, Args)]
+struct ReferenceArguments {
+    /// Longest time for one converged image.
+    #[arg(long, value_name = "SECONDS", value_parser = number_in(0.001..=1e6), allow_negative_numbers = true)]
+    reference_time: Option<f64>,
+    #[command(flatten)]
+    common: CommonArguments,
+}
 
-    /// What the arguments describe, no larger than is quick where that is asked for.
+impl CommonArguments {
+    /// What the arguments describe, no larger than is quick where that is asked for; makes sure first that there is a place
+    /// for what is measured.
     fn document(&self) -> anyhow::Result<Document> {
-        let mut session = Session::open(EngineChoice::Cpu)?;
-        let mut document = self.scene.document(&mut session)?;
+        let path = self.output.display();
+        std::fs::create_dir_all(&self.output)
+            .with_context(|| format!("{path}: the folder could not be made; check its name and permissions"))?;
+        self.answer.check_writable()?;
+        let mut document = self.scene.document(&mut Session::open(EngineChoice::Cpu)?)?;
         if self.quick {
             let render = &mut document.render;
             (render.width, render.height) = (render.width.min(QUICK_SIDE), render.height.min(QUICK_SIDE));
         }
         Ok(document)
     }
-}
 
-/// A bar that shows how far a study has come, on a terminal.
-pub(super) struct Bar(ProgressBar);
-
-/// Steps of the bar.
-const BAR_STEPS: f64 = 1000.0;
-
-impl Bar {
-    pub(super) fn new() -> anyhow::Result<Self> {
-        bar("{bar:40} {msg}", BAR_STEPS as u64).map(Self)
+    /// Writes a report whole, these columns of its rows as a table, and its plot; answers with it, too.
+    fn write(
+        &self,
+        name: &str,
+        report: &impl Serialize,
+        [rows, columns]: [&str; 2],
+        plot: &impl Figure,
+    ) -> anyhow::Result<()> {
+        let json = serde_json::to_value(report)?;
+        self.write_file(
+            &format!("{name}.json"),
+            (serde_json::to_string_pretty(report)? + "\n").as_bytes(),
+        )?;
+        self.answer.write(report)?;
+        let mut table = format!("{columns}\n");
+        for row in json[rows].as_array().into_iter().flatten() {
+            let cells: Vec<String> = columns.split(',').map(|column| cell(row, column)).collect();
+            table += &(cells.join(",") + "\n");
+        }
+        self.write_file(&format!("{name}.csv"), table.as_bytes())?;
+        for ending in ["svg", "png"] {
+            let file = format!("{name}.{ending}");
+            self.write_file(&file, &plot_file(file.as_ref(), plot)?)?;
+        }
+        Ok(())
     }
 
-    pub(super) fn show(&self, progress: StudyProgress) -> bool {
-        self.0.set_position((BAR_STEPS * progress.share) as u64);
-        self.0.set_message(progress.what);
+    fn write_file(&self, name: &str, contents: &[u8]) -> anyhow::Result<()> {
+        let path = self.output.join(name);
+        save_atomically(&path, contents)?;
+        message!("wrote {}", path.display());
+        Ok(())
+    }
+}
+
+/// Runs a study beside a bar that shows how far it has come.
+pub fn watched<T>(
+    study: impl FnOnce(&mut dyn FnMut(StudyProgress) -> bool) -> Result<T, StudyError>,
+) -> anyhow::Result<T> {
+    let bar = Bar::new("{bar:40} {msg}", 1)?;
+    Ok(study(&mut |progress| {
+        bar.show(progress.share, progress.what);
         true
-    }
+    })?)
 }
 
-impl Drop for Bar {
-    fn drop(&mut self) {
-        self.0.finish_and_clear();
+/// A cell of a table; a column such as `bias_low` is the lower end of the row's bias.
+fn cell(row: &Json, column: &str) -> String {
+    let end = || {
+        column
+            .rsplit_once('_')
+            .map_or(&Json::Null, |(name, end)| &row[name][end])
+    };
+    let found = row.get(column).unwrap_or_else(end);
+    match found.get("value").unwrap_or(found) {
+        Json::Null => String::new(),
+        Json::Number(number) => format!("{:.6e}", number.as_f64().unwrap_or_default()),
+        Json::String(text) if text.contains([',', '"', '\n']) => format!("\"{}\"", text.replace('"', "\"\"")),
+        Json::String(text) => text.clone(),
+        other => other.to_string(),
     }
-}
-
-/// The value as text for a table: enough digits to calculate with.
-fn digits(value: f64) -> String {
-    format!("{value:.6e}")
 }

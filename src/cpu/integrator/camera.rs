@@ -1,21 +1,16 @@
 //! Camera rays of a tile, and the shortcut for tiles of background alone.
 
-use super::Integrator;
-use super::group::Groups;
-use super::paths::Paths;
-use super::results::Results;
+use super::group::groups;
 use super::vectors::Vectors;
-use super::wave::Tile;
-use crate::cpu::recorder::Recorder;
+use super::*;
 use crate::instructions;
 use crate::job::BackgroundKind;
-use crate::optics::elementary::Single;
-use crate::scene::{Hit, PACKET, Packet};
+use crate::scene::{Hit, Packet};
 
 impl<T: Single> Integrator<'_, T> {
     /// Adds the paths of `samples` (first, count) of all pixels of a tile, with their camera rays. Paths of a pixel block
     /// are adjacent.
-    pub(super) fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<R>) {
+    pub fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<R>) {
         let [first, count] = samples;
         paths.clear();
         for block in tile.blocks() {
@@ -26,19 +21,16 @@ impl<T: Single> Integrator<'_, T> {
         if R::KEEPS {
             paths.add_outputs();
         }
-        T::vectorize(
-            #[inline(always)]
-            || {
-                paths.set_counters(self.settings.seed);
-                for group in Groups::new(0..paths.count()) {
-                    self.camera_rays(&group, paths);
-                }
-            },
-        );
+        vectorized!(T, {
+            paths.set_counters(self.settings.seed);
+            for group in groups(0..paths.count()) {
+                self.camera_rays(&group, paths);
+            }
+        });
     }
 
     /// Intersects camera rays in packets of adjacent paths, for scenes without holes. `hits` is left empty if none hits.
-    pub(super) fn trace_camera_rays<R: Recorder>(
+    pub fn trace_camera_rays<R: Recorder>(
         &self,
         paths: &Paths<R>,
         packets: &mut Vec<Packet>,
@@ -62,29 +54,25 @@ impl<T: Single> Integrator<'_, T> {
     }
 
     /// Whether the background is a plain look-up, without blur.
-    pub(super) fn has_plain_background(&self) -> bool {
+    pub fn has_plain_background(&self) -> bool {
         !matches!(self.settings.background, BackgroundKind::Blurred(_))
     }
 
     /// Results of paths whose camera rays all miss.
-    pub(super) fn shade_background<R: Recorder>(&self, paths: &Paths<R>, results: &mut Results) {
+    pub fn shade_background<R: Recorder>(&self, paths: &Paths<R>, results: &mut Results) {
         let count = paths.count();
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for group in Groups::<T>::new(0..count) {
-                    let uv = self.escaped_uv(group.vector(&paths.state.direction), 0);
-                    let (radiance, alpha) = self.plain_background(uv);
-                    let [added, clamped] = self.clamp_fireflies(radiance, 0);
-                    results.set(&group, added, alpha, clamped.luminance());
-                }
-            },
-        );
+        vectorized!(T, {
+            for group in groups::<T>(0..count) {
+                let uv = self.escaped_uv(group.vector(&paths.state.direction), 0);
+                let (radiance, alpha) = self.plain_background(uv);
+                let [added, clamped] = self.clamp_fireflies(radiance, 0);
+                results.set(&group, added, alpha, clamped.luminance());
+            }
+        });
     }
 }
 
 /// A packet's vectors from index `first` on; the fields have room past the last path.
-#[inline(always)]
 fn packet_axes(vectors: &Vectors, first: usize) -> [[f32; PACKET]; 3] {
     let mut axes = [[0.0; PACKET]; 3];
     for (axis, numbers) in axes.iter_mut().zip([&vectors.x, &vectors.y, &vectors.z]) {

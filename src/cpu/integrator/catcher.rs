@@ -6,23 +6,17 @@
 //!
 //! Over a transparent background, alpha is 1 minus the light's luminance.
 
-use super::catcher_hit::CatcherHit;
-use super::paths::Paths;
-use super::{Integrator, Origin, PathVertex};
-use crate::cpu::recorder::{Event, Purpose, Recorder};
+use super::*;
+use crate::cpu::recorder::Purpose;
 use crate::job::Catcher;
-use crate::optics::elementary::Single;
-use crate::optics::real::Mask;
-use crate::optics::vector::Vec3;
 use crate::scene::catcher::{catcher_light, catcher_reflectance};
-use crate::scene::surface::SurfacePoint;
 
 /// Dimensions of the catcher's choice to mirror, and (the next one) of the background's blur: beyond those of every path.
 pub const CATCHER_DIMENSION: u32 = 12288;
 
 /// How the shadow catcher affects the lanes of a group.
 #[derive(Clone, Copy)]
-pub(super) struct CatcherMasks<T: Single> {
+pub struct CatcherMasks<T: Single> {
     /// Lanes with a visible surface; the others show the background unchanged.
     pub is_visible: T::Mask,
     /// Lanes that the catcher mirrors.
@@ -32,7 +26,7 @@ pub(super) struct CatcherMasks<T: Single> {
 impl<T: Single> Integrator<'_, T> {
     /// Applies the shadow catcher to hits.
     #[inline(always)]
-    pub(super) fn apply_catcher<R: Recorder>(
+    pub fn apply_catcher<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         vertex: &mut PathVertex<T>,
@@ -55,10 +49,7 @@ impl<T: Single> Integrator<'_, T> {
                     }
                 });
         } else if catcher.slot == point.slot {
-            masks = T::out_of_line(
-                #[inline(always)]
-                || self.hit_catcher(catcher, point, vertex, paths),
-            );
+            masks = out_of_line!(T, self.hit_catcher(catcher, point, vertex, paths));
         }
         masks
     }
@@ -73,40 +64,29 @@ impl<T: Single> Integrator<'_, T> {
         vertex: &mut PathVertex<T>,
         paths: &mut Paths<R>,
     ) -> CatcherMasks<T> {
-        let (zero, one) = (T::zero(), T::one());
         let (group, members) = (vertex.group, vertex.members);
         let positions = point.position.to_each();
-        let light = Vec3::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions.as_ref()[lane]));
-        let is_visible = vertex.active & vertex.direction.y.less(zero) & zero.less(light.max_component());
+        let light = Vec3::<T>::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions[lane]));
+        let is_visible = vertex.active & vertex.direction.y.below_zero() & light.max_component().above_zero();
         let uv = self.escaped_uv(vertex.direction, 0);
         let (background, alpha) = self.camera_background(&group, vertex.direction, uv, CATCHER_DIMENSION + 1, paths);
         let [choice, _] = group.pairs(paths, CATCHER_DIMENSION, [Purpose::Catcher, Purpose::Unused]);
         let share = catcher_reflectance(self.tables, catcher.table, -vertex.direction.y);
         let is_mirrored = is_visible & choice.less(share);
-        let is_transparent = !zero.less(alpha);
-        let white = Vec3::splat(one);
-        let shown = Vec3::select(is_transparent, white, background);
+        let is_transparent = !alpha.above_zero();
+        let shown = Vec3::select(is_transparent, Vec3::ONE, background);
         let albedo = self.materials[catcher.slot as usize].base_color;
-        let lit = |light: T| T::select(zero.less(light), one, zero);
-        let is_lit = Vec3 {
-            x: lit(light.x),
-            y: lit(light.y),
-            z: lit(light.z),
-        };
-        let reflected = light * albedo + (white - is_lit);
-        let kept = Vec3 {
-            x: one / reflected.x,
-            y: one / reflected.y,
-            z: one / reflected.z,
-        };
+        let is_lit = light.map(|light| T::ONE.masked(light.above_zero()));
+        let reflected = light * albedo + (Vec3::ONE - is_lit);
+        let kept = reflected.map(|light| T::ONE / light);
         vertex.throughput = Vec3::select(is_mirrored, vertex.throughput, shown * is_lit * kept);
         let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
         let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
         members.for_each(&mut paths.catcher_hits, is_visible, |hit, lane| {
             *hit = if mirrors >> lane & 1 == 1 {
                 CatcherHit::Mirrored {
-                    background: backgrounds.as_ref()[lane],
-                    alpha: alphas.as_ref()[lane],
+                    background: backgrounds[lane],
+                    alpha: alphas[lane],
                 }
             } else {
                 CatcherHit::Shadow {
@@ -117,12 +97,12 @@ impl<T: Single> Integrator<'_, T> {
         let throughput = vertex.throughput;
         members.record(&mut paths.outputs, is_visible, |lane| Event::CatcherHit {
             is_mirrored: mirrors >> lane & 1 == 1,
-            background: shown.to_each().as_ref()[lane].to_f32(),
-            light: light.to_each().as_ref()[lane].to_f32(),
-            throughput: throughput.to_each().as_ref()[lane].to_f32(),
+            background: shown.lane(lane).to_f32(),
+            light: light.lane(lane).to_f32(),
+            throughput: throughput.lane(lane).to_f32(),
         });
         // A colour channel without any light has no shadow: it shows the background.
-        let unshadowed = shown * (white - is_lit);
+        let unshadowed = shown * (Vec3::ONE - is_lit);
         self.add(
             &members,
             is_visible & !is_mirrored,

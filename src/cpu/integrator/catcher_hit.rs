@@ -5,7 +5,7 @@ use crate::optics::vector::Vec3;
 
 /// A path's state after its camera ray hit the shadow catcher or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum CatcherHit {
+pub enum CatcherHit {
     /// The camera ray did not hit the catcher, or a mirrored path has hit a surface.
     #[default]
     Miss,
@@ -25,19 +25,18 @@ pub(super) enum CatcherHit {
 
 impl CatcherHit {
     /// True if the path's last surface was the mirroring catcher.
-    #[inline(always)]
-    pub(super) fn is_mirrored(&self) -> bool {
+    pub fn is_mirrored(&self) -> bool {
         matches!(self, Self::Mirrored { .. })
     }
 
     /// True if the path's light becomes alpha.
-    pub(super) fn is_alpha(&self) -> bool {
+    pub fn is_alpha(&self) -> bool {
         matches!(self, Self::Shadow { is_transparent: true })
     }
 
     /// The path's result; over a transparent background the light becomes the shadow's alpha. A render of a part of the
     /// light has no shadow.
-    pub(super) fn result(self, path: PathResult, is_all_light: bool) -> PathResult {
+    pub fn result(self, path: PathResult, is_all_light: bool) -> PathResult {
         if !self.is_alpha() {
             return path;
         }
@@ -46,7 +45,7 @@ impl CatcherHit {
                 true => 1.0 - path.radiance.luminance(),
                 false => 0.0,
             },
-            radiance: Vec3::zero(),
+            radiance: Vec3::ZERO,
             ..path
         }
     }

@@ -1,19 +1,14 @@
 //! Light at path vertices: the environment, emission and next-event estimation, combined by multiple importance sampling
 //! (MIS).
 
-use super::group::Group;
-use super::paths::Paths;
 use super::shadow_rays::{ShadowRay, ShadowRays};
-use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, Origin, PathVertex};
-use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
-use crate::job::{BackgroundKind, Strategy};
+use super::*;
+use crate::cpu::recorder::Purpose;
+use crate::job::BackgroundKind;
 use crate::optics::coat_medium::coat_over_emission;
-use crate::optics::elementary::Single;
 use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::layer::{Layers, material_evaluate};
-use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE, Material};
-use crate::optics::real::Mask;
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::layer::material_evaluate;
+use crate::optics::material::{COAT_ABSORBS, HAS_PROFILE};
 use crate::optics::warp::{split, uniform_disc};
 use crate::scene::environment::{
     drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
@@ -21,7 +16,6 @@ use crate::scene::environment::{
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::light_profile::profile_share;
-use crate::scene::surface::SurfacePoint;
 
 impl<T: Single> Integrator<'_, T> {
     /// Coordinates of world directions in the environment map.
@@ -38,389 +32,371 @@ impl<T: Single> Integrator<'_, T> {
 
     /// The environment's radiance for escaped paths, times the MIS weight of BSDF sampling.
     #[inline(always)]
-    pub(super) fn weighted_environment<R: Recorder>(
-        &self,
-        ray: &PathVertex<T>,
-        uv: [T; 2],
-        paths: &mut Paths<R>,
-    ) -> Vec3<T> {
+    pub fn weighted_environment<R: Recorder>(&self, ray: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) -> Vec3<T> {
         let radiance = self.world_environment_radiance(uv);
-        let mut density = T::zero();
+        let mut density = T::ZERO;
         if self.samples_environment {
             density = self.environment_probability * environment_density_at(self.distribution, uv);
         }
         self.mis_weighted(Source::Environment, radiance, density, ray, paths)
     }
 
-    /// Environment map coordinates of escaped rays; 0 if they do not show the map unblurred.
-    #[inline(always)]
-    pub(super) fn escaped_uv(&self, direction: Vec3<T>, bounce: u32) -> [T; 2] {
-        if bounce > 0 || self.settings.background == BackgroundKind::Environment {
-            self.world_environment_uv(direction)
-        } else {
-            [T::zero(); 2]
+    inlined! {
+        /// Environment map coordinates of escaped rays; 0 if they do not show the map unblurred.
+        pub fn escaped_uv(&self, direction: Vec3<T>, bounce: u32) -> [T; 2] {
+            if bounce > 0 || self.settings.background == BackgroundKind::Environment {
+                self.world_environment_uv(direction)
+            } else {
+                [T::ZERO; 2]
+            }
         }
-    }
 
-    /// Computes where escaped paths look up the environment map, and prefetches its texels.
-    #[inline(always)]
-    pub(super) fn locate_escaped<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
-        let uv = self.escaped_uv(group.vector(&paths.state.direction), bounce);
-        prefetch_texels(self.environment, uv);
-        if bounce > 0 && self.samples_environment {
-            prefetch_cell(self.distribution, uv);
+        /// Computes where escaped paths look up the environment map, and prefetches its texels.
+        pub fn locate_escaped<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
+            let uv = self.escaped_uv(group.vector(&paths.state.direction), bounce);
+            prefetch_texels(self.environment, uv);
+            if bounce > 0 && self.samples_environment {
+                prefetch_cell(self.distribution, uv);
+            }
+            store_uv(group, &mut paths.environment_uv, uv);
         }
-        store_uv(group, &mut paths.environment_uv, uv);
-    }
 
-    /// Computes where unoccluded shadow rays look up the environment map, and prefetches its texels.
-    #[inline(always)]
-    pub(super) fn locate_unoccluded<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
-        let uv = self.world_environment_uv(group.vector(&paths.unoccluded_rays.direction));
-        prefetch_texels(self.environment, uv);
-        store_uv(group, &mut paths.unoccluded_rays.environment_uv, uv);
-    }
+        /// Computes where unoccluded shadow rays look up the environment map, and prefetches its texels.
+        pub fn locate_unoccluded<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
+            let uv = self.world_environment_uv(group.vector(&paths.unoccluded_rays.direction));
+            prefetch_texels(self.environment, uv);
+            store_uv(group, &mut paths.unoccluded_rays.environment_uv, uv);
+        }
 
-    /// Draws the random numbers of light sampling and prefetches the environment cells that they select. The first number
-    /// chooses between environment and emitters.
-    #[inline(always)]
-    pub(super) fn light_xi<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
-        let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
-        let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
-        let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
-        if self.samples_emitters {
-            let mut is_environment = T::Mask::splat(false);
+        /// Draws the random numbers of light sampling and prefetches the environment cells that they select. The first number
+        /// chooses between environment and emitters.
+        pub fn light_xi<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<R>) {
+            let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
+            let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
+            let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
+            if self.samples_emitters {
+                let mut is_environment = T::Mask::splat(false);
+                if self.samples_environment {
+                    (is_environment, a) = split(a, self.environment_probability);
+                }
+                group.set_flags(&mut paths.shadow_rays.is_environment, group.mask(), is_environment);
+            }
+            group.set_vector(&mut paths.light_xi, group.mask(), vec3(a, b, c));
             if self.samples_environment {
-                (is_environment, a) = split(a, self.environment_probability);
+                let rows = drawn_rows(self.distribution, b);
+                prefetch_guide(self.distribution, &rows, a);
+                group.set_each(&mut paths.light_rows, &rows);
             }
-            group.set_flags(&mut paths.shadow_rays.is_environment, group.mask(), is_environment);
         }
-        group.set_vector(&mut paths.light_xi, group.mask(), vec3(a, b, c));
-        if self.samples_environment {
-            let rows = drawn_rows(self.distribution, b);
-            prefetch_guide(self.distribution, &rows, a);
-            group.set_each(&mut paths.light_rows, &rows);
-        }
-    }
 
-    /// Prefetches what sampling the environment with the drawn numbers looks up next.
-    #[inline(always)]
-    pub(super) fn prefetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<R>) {
-        let numbers = group.padded_number(&paths.light_xi.x);
-        prefetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
-    }
-
-    /// Emission of hit surfaces towards the path, times the MIS weight of BSDF sampling.
-    #[inline(always)]
-    pub(super) fn emitted_light<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        vertex: &PathVertex<T>,
-        paths: &mut Paths<R>,
-    ) -> Vec3<T> {
-        let cosine = point.flat_normal().dot(point.surface.wo);
-        let mut emission = material.emission;
-        if is_spot(material) {
-            let facing = T::select(point.surface.is_inside, -cosine, cosine);
-            emission = emission * spot_share(material, facing);
+        /// Prefetches what sampling the environment with the drawn numbers looks up next.
+        pub fn prefetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<R>) {
+            let numbers = group.padded_number(&paths.light_xi.x);
+            prefetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
         }
-        if material.has_flag(COAT_ABSORBS) {
-            emission = emission * coat_over_emission(material, cosine, point.surface.is_inside);
-        }
-        if material.has_flag(HAS_PROFILE) {
-            emission = emission * self.profile_shares(material, point.surface.wo);
-        }
-        let density = light_density(
-            material.light_luminance,
-            cosine,
-            vertex.distance,
-            self.density_per_luminance,
-        );
-        self.mis_weighted(Source::Surface, emission, density, vertex, paths)
-    }
 
-    /// The share of its mean radiance that a light with a profile sends in each lane's direction.
-    #[inline(always)]
-    fn profile_shares(&self, material: &Material<T>, directions: Vec3<T>) -> T {
-        let table = &self.tables[material.lobe_table as usize..];
-        let directions = directions.to_each();
-        T::from_lanes(|lane| profile_share(table, directions.as_ref()[lane]))
-    }
-
-    /// Radiance times the MIS weight of BSDF sampling. The weight is 1 if light sampling does not sample this source or
-    /// could not have drawn this direction.
-    #[inline(always)]
-    fn mis_weighted<R: Recorder>(
-        &self,
-        source: Source,
-        radiance: Vec3<T>,
-        light_density: T,
-        vertex: &PathVertex<T>,
-        paths: &mut Paths<R>,
-    ) -> Vec3<T> {
-        let is_sampled = match source {
-            Source::Surface => self.samples_emitters,
-            _ => self.samples_environment,
-        };
-        let (zero, one) = (T::zero(), T::one());
-        let (mut density, mut weight) = (zero, one);
-        if is_sampled {
-            let is_only_sampled = self.settings.strategy == Strategy::Light;
-            let share = mis_weight_lobe(vertex.lobe_density, light_density);
-            let share = if is_only_sampled { zero } else { share };
-            weight = T::select(vertex.is_mirror, one, share);
-            density = T::select(
-                vertex.is_mirror,
-                zero,
-                if is_only_sampled { zero } else { light_density },
+        /// Emission of hit surfaces towards the path, times the MIS weight of BSDF sampling.
+        pub fn emitted_light<R: Recorder>(
+            &self,
+            point: &SurfacePoint<T>,
+            material: &Material<T>,
+            vertex: &PathVertex<T>,
+            paths: &mut Paths<R>,
+        ) -> Vec3<T> {
+            let cosine = point.flat_normal().dot(point.surface.wo);
+            let mut emission = material.emission;
+            if is_spot(material) {
+                let facing = T::select(point.surface.is_inside, -cosine, cosine);
+                emission = emission * spot_share(material, facing);
+            }
+            if material.has_flag(COAT_ABSORBS) {
+                emission = emission * coat_over_emission(material, cosine, point.surface.is_inside);
+            }
+            if material.has_flag(HAS_PROFILE) {
+                emission = emission * self.profile_shares(material, point.surface.wo);
+            }
+            let density = light_density(
+                material.light_luminance,
+                cosine,
+                vertex.distance,
+                self.density_per_luminance,
             );
+            self.mis_weighted(Source::Surface, emission, density, vertex, paths)
         }
-        if R::KEEPS {
-            vertex
-                .members
-                .record(&mut paths.outputs, vertex.active & radiance.is_any(), |lane| {
-                    Event::LightHit {
-                        source,
-                        radiance: radiance.to_each().as_ref()[lane].to_f32(),
-                        lobe_density: vertex.lobe_density.lane(lane),
-                        light_density: density.lane(lane),
-                        weight: weight.lane(lane),
-                    }
-                });
-        }
-        // A weight of 0 removes NaN, too.
-        Vec3::select(zero.less(weight), radiance * weight, Vec3::zero())
-    }
 
-    /// Samples a direction per lane from the emitters or the environment. The environment's radiance is left out: it is
-    /// looked up only if the shadow ray is unoccluded.
-    #[inline(always)]
-    fn sample_light_directions<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        group: &Group<T>,
-        paths: &Paths<R>,
-    ) -> LightSample<T> {
-        // Lanes beyond the group, too, need numbers that match their rows.
-        let numbers = &paths.light_xi;
-        let xi = vec3(
-            group.padded_number(&numbers.x),
-            group.padded_number(&numbers.y),
-            group.padded_number(&numbers.z),
-        );
-        let is_environment = self.samples_of_environment(group, &paths.shadow_rays);
-        let (of_environment, of_emitters) = (group.mask() & is_environment, group.mask() & !is_environment);
-        let mut sampled = LightSample {
-            direction: Vec3::zero(),
-            density: T::zero(),
-            distance: T::from_f64(f64::from(f32::MAX)),
-            radiance: Vec3::zero(),
-            group: T::zero(),
-        };
-        if of_environment.any() {
-            let rows = group.each(&paths.light_rows);
-            let (local, density) = sample_in_rows(self.distribution, &rows, xi);
-            sampled.direction = environment_world_from_local(local, self.rotation);
-            sampled.density = density * self.environment_probability;
+        /// The share of its mean radiance that a light with a profile sends in each lane's direction.
+        fn profile_shares(&self, material: &Material<T>, directions: Vec3<T>) -> T {
+            let table = &self.tables[material.lobe_table as usize..];
+            let directions = directions.to_each();
+            T::from_lanes(|lane| profile_share(table, directions[lane]))
         }
-        if !of_emitters.any() {
-            return sampled;
-        }
-        let emitted = self.sample_emitter_directions(point, xi);
-        LightSample {
-            direction: Vec3::select(of_emitters, emitted.direction, sampled.direction),
-            density: T::select(of_emitters, emitted.density, sampled.density),
-            distance: T::select(of_emitters, emitted.distance, sampled.distance),
-            radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
-            group: emitted.group,
-        }
-    }
 
-    /// Lanes whose light sample is of the environment; arbitrary beyond the group.
-    #[inline(always)]
-    fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays) -> T::Mask {
-        if self.samples_emitters {
-            group.flags(&shadow_rays.is_environment)
-        } else {
-            T::Mask::splat(true)
+        /// Radiance times the MIS weight of BSDF sampling. The weight is 1 if light sampling does not sample this source or
+        /// could not have drawn this direction.
+        fn mis_weighted<R: Recorder>(
+            &self,
+            source: Source,
+            radiance: Vec3<T>,
+            light_density: T,
+            vertex: &PathVertex<T>,
+            paths: &mut Paths<R>,
+        ) -> Vec3<T> {
+            let is_sampled = match source {
+                Source::Surface => self.samples_emitters,
+                _ => self.samples_environment,
+            };
+            let (zero, one) = (T::ZERO, T::ONE);
+            let (mut density, mut weight) = (zero, one);
+            if is_sampled {
+                let is_only_sampled = self.settings.strategy == Strategy::Light;
+                let share = mis_weight_lobe(vertex.lobe_density, light_density);
+                let share = if is_only_sampled { zero } else { share };
+                weight = T::select(vertex.is_mirror, one, share);
+                density = T::select(
+                    vertex.is_mirror,
+                    zero,
+                    if is_only_sampled { zero } else { light_density },
+                );
+            }
+            if R::KEEPS {
+                vertex
+                    .members
+                    .record(&mut paths.outputs, vertex.active & radiance.is_any(), |lane| {
+                        Event::LightHit {
+                            source,
+                            radiance: radiance.lane(lane).to_f32(),
+                            lobe_density: vertex.lobe_density.lane(lane),
+                            light_density: density.lane(lane),
+                            weight: weight.lane(lane),
+                        }
+                    });
+            }
+            // A weight of 0 removes NaN, too.
+            (radiance * weight).masked(weight.above_zero())
         }
-    }
 
-    /// Samples directions to emitting triangles, lane by lane.
-    #[inline(always)]
-    fn sample_emitter_directions(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
-        let emitters = Emitters {
-            geometry: self.geometry,
-            materials: self.scalar_materials,
-            textures: self.textures,
-            lights: self.lights,
-            tables: self.tables,
-            density_per_luminance: self.density_per_luminance.lane(0),
-        };
-        let (positions, errors, numbers) = (point.position.to_each(), point.error.to_each(), xi.to_each());
-        let samples = T::each(|lane| {
-            let number = numbers.as_ref()[lane];
-            light_sample(&emitters, positions.as_ref()[lane], errors.as_ref()[lane], number)
-        });
-        let samples = samples.as_ref();
-        LightSample {
-            direction: Vec3::from_lanes(|lane| samples[lane].direction),
-            density: T::from_lanes(|lane| samples[lane].density),
-            distance: T::from_lanes(|lane| samples[lane].distance),
-            radiance: Vec3::from_lanes(|lane| samples[lane].radiance),
-            group: T::from_lanes(|lane| samples[lane].group),
-        }
-    }
-
-    /// Next-event estimation, first half: samples one light direction per lane, evaluates the material, and leaves a pending
-    /// shadow ray. Lanes that cannot receive light from there get none. If events are recorded, it returns the material's
-    /// value without the MIS weight.
-    #[inline(always)]
-    pub(super) fn sample_direct_light<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        layers: &Layers<T>,
-        vertex: &PathVertex<T>,
-        paths: &mut Paths<R>,
-    ) -> Vec3<T> {
-        let (group, zero) = (vertex.group, T::zero());
-        let sampled = self.sample_light_directions(point, &group, paths);
-        let wi = sampled.direction;
-        let transmits = material.transmits();
-        let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;
-        let reaches = vertex.active & zero.less(sampled.density) & is_ahead;
-        let competing = match self.settings.strategy {
-            Strategy::Mis => T::one(),
-            _ => zero,
-        };
-        let (tables, surface, density) = (self.tables, &point.surface, sampled.density);
-        let evaluate = |competing| material_evaluate(material, tables, surface, layers, wi, density, competing);
-        let mut value = Vec3::zero();
-        if reaches.any() {
-            value = Vec3::select(reaches, evaluate(competing), value);
-        }
-        let mut unweighted = Vec3::zero();
-        if R::KEEPS {
-            unweighted = Vec3::select(zero.less(sampled.density), evaluate(zero), unweighted);
-        }
-        let mut radiance = sampled.radiance;
-        if self.samples_emitters {
-            radiance = self.attenuated_emission(point, material, [wi, radiance], sampled.distance, vertex, paths);
-        }
-        let largest = value.max_component();
-        let is_lit = vertex.active & (zero.less(largest) | largest.is_nan());
-        let all = group.mask();
-        let shadow_rays = &mut paths.shadow_rays;
-        group.set_vector(&mut shadow_rays.direction, all, wi);
-        group.set_number(&mut shadow_rays.density, all, sampled.density);
-        group.set_number(&mut shadow_rays.distance, all, sampled.distance);
-        group.set_vector(&mut shadow_rays.origin, all, point.ray_origin(wi, transmits));
-        group.set_vector(&mut shadow_rays.value, all, value);
-        group.set_vector(&mut shadow_rays.throughput, all, vertex.throughput);
-        group.set_number(&mut shadow_rays.visibility, all, T::one());
-        group.set_flags(&mut shadow_rays.is_known_miss, all, self.is_known_miss(point, wi));
-        group.set_flags(&mut shadow_rays.is_pending, all, is_lit);
-        if self.samples_emitters {
-            group.set_vector(&mut shadow_rays.radiance, all, radiance);
-            if self.light_groups > 0 {
-                group.set_number(&mut shadow_rays.groups, all, sampled.group);
+        /// Samples a direction per lane from the emitters or the environment. The environment's radiance is left out: it is
+        /// looked up only if the shadow ray is unoccluded.
+        fn sample_light_directions<R: Recorder>(
+            &self,
+            point: &SurfacePoint<T>,
+            group: &Group<T>,
+            paths: &Paths<R>,
+        ) -> LightSample<T> {
+            // Lanes beyond the group, too, need numbers that match their rows.
+            let numbers = &paths.light_xi;
+            let xi = vec3(
+                group.padded_number(&numbers.x),
+                group.padded_number(&numbers.y),
+                group.padded_number(&numbers.z),
+            );
+            let is_environment = self.samples_of_environment(group, &paths.shadow_rays);
+            let (of_environment, of_emitters) = (group.mask() & is_environment, group.mask() & !is_environment);
+            let mut sampled = LightSample {
+                direction: Vec3::ZERO,
+                density: T::ZERO,
+                distance: T::from_f64(f64::from(f32::MAX)),
+                radiance: Vec3::ZERO,
+                group: T::ZERO,
+            };
+            if of_environment.any() {
+                let rows = group.each(&paths.light_rows);
+                let (local, density) = sample_in_rows(self.distribution, &rows, xi);
+                sampled.direction = environment_world_from_local(local, self.rotation);
+                sampled.density = density * self.environment_probability;
+            }
+            if !of_emitters.any() {
+                return sampled;
+            }
+            let emitted = self.sample_emitter_directions(point, xi);
+            LightSample {
+                direction: Vec3::select(of_emitters, emitted.direction, sampled.direction),
+                density: T::select(of_emitters, emitted.density, sampled.density),
+                distance: T::select(of_emitters, emitted.distance, sampled.distance),
+                radiance: Vec3::select(of_emitters, emitted.radiance, sampled.radiance),
+                group: emitted.group,
             }
         }
-        if R::KEEPS {
-            let light = paths.shadow_rays.get(0);
-            vertex
-                .members
-                .record(&mut paths.outputs, vertex.active & !is_lit, |lane| {
-                    light.event(unweighted.to_each().as_ref()[lane], 0.0, Vec3::zero())
-                });
-        }
-        unweighted
-    }
 
-    /// Visibility along a shadow ray in [0, 1]: 0 is blocked, values between come from holes.
-    #[inline(always)]
-    pub(super) fn visibility(&self, light: &ShadowRay, rays: &mut u32) -> f32 {
-        if light.is_known_miss {
-            return 1.0;
+        /// Lanes whose light sample is of the environment; arbitrary beyond the group.
+        fn samples_of_environment(&self, group: &Group<T>, shadow_rays: &ShadowRays) -> T::Mask {
+            if self.samples_emitters {
+                group.flags(&shadow_rays.is_environment)
+            } else {
+                T::Mask::splat(true)
+            }
         }
-        self.transmittance(light.origin, light.direction, light.distance, rays)
-    }
 
-    /// Next-event estimation, second half: adds the light of unoccluded shadow rays. `unweighted` is what
-    /// [`Integrator::sample_direct_light`] returned for a path that is recorded.
-    #[inline(always)]
-    pub(super) fn add_direct_light<R: Recorder>(
-        &self,
-        group: &Group<T>,
-        bounce: u32,
-        unweighted: Vec3<T>,
-        paths: &mut Paths<R>,
-    ) {
-        let shadow_rays = &paths.unoccluded_rays;
-        let members = group.members(&shadow_rays.ids);
-        let is_environment = self.samples_of_environment(group, shadow_rays);
-        let mut radiance = Vec3::zero();
-        if is_environment.any() {
-            radiance = self.world_environment_radiance([
-                group.number(&shadow_rays.environment_uv[0]),
-                group.number(&shadow_rays.environment_uv[1]),
-            ]);
-        }
-        if !is_environment.all() {
-            radiance = Vec3::select(is_environment, radiance, group.vector(&shadow_rays.radiance));
-        }
-        let share = group.number(&shadow_rays.visibility) / group.number(&shadow_rays.density);
-        let light = group.vector(&shadow_rays.throughput) * (group.vector(&shadow_rays.value) * radiance * share);
-        if R::KEEPS {
-            let ray = shadow_rays.get(0);
-            members.record(&mut paths.outputs, group.mask(), |lane| {
-                let (unweighted, radiance) = (unweighted.to_each().as_ref()[lane], radiance.to_each().as_ref()[lane]);
-                ray.event(unweighted, ray.visibility, radiance)
+        /// Samples directions to emitting triangles, lane by lane.
+        fn sample_emitter_directions(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
+            let emitters = Emitters {
+                geometry: self.geometry,
+                materials: self.scalar_materials,
+                textures: self.textures,
+                lights: self.lights,
+                tables: self.tables,
+                density_per_luminance: self.density_per_luminance.lane(0),
+            };
+            let (positions, errors, numbers) = (point.position.to_each(), point.error.to_each(), xi.to_each());
+            let samples = T::each(|lane| {
+                let number = numbers[lane];
+                light_sample(&emitters, positions[lane], errors[lane], number)
             });
+            let samples = samples.as_ref();
+            LightSample {
+                direction: Vec3::from_lanes(|lane| samples[lane].direction),
+                density: T::from_lanes(|lane| samples[lane].density),
+                distance: T::from_lanes(|lane| samples[lane].distance),
+                radiance: Vec3::from_lanes(|lane| samples[lane].radiance),
+                group: T::from_lanes(|lane| samples[lane].group),
+            }
         }
-        // A path has one light sample; accounts differ by its source.
-        let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
-        if of_emitters.any() {
-            let groups = group.number(&shadow_rays.groups);
-            let origin = Origin::Surface(groups);
-            self.add(&members, of_emitters, origin, light, bounce + 1, paths);
-        }
-        self.add(&members, of_environment, Origin::Environment, light, bounce + 1, paths);
-    }
 
-    /// Radiance and alpha of the background for camera rays. `dimension` is the random pair that a blur draws.
-    #[inline(always)]
-    pub(super) fn camera_background<R: Recorder>(
-        &self,
-        group: &Group<T>,
-        direction: Vec3<T>,
-        uv: [T; 2],
-        dimension: u32,
-        paths: &mut Paths<R>,
-    ) -> (Vec3<T>, T) {
-        let BackgroundKind::Blurred(sine) = self.settings.background else {
-            return self.plain_background(uv);
-        };
-        let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
-        let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
-        let height = (T::one() - x * x - y * y).safe_sqrt();
-        let around = frame_from_normal(direction);
-        let blurred = world_from_local(&around, vec3(x, y, height));
-        (
-            self.world_environment_radiance(self.world_environment_uv(blurred)),
-            T::one(),
-        )
+        /// Next-event estimation, first half: samples one light direction per lane, evaluates the material, and leaves a pending
+        /// shadow ray. Lanes that cannot receive light from there get none. If events are recorded, it returns the material's
+        /// value without the MIS weight.
+        pub fn sample_direct_light<R: Recorder>(
+            &self,
+            point: &SurfacePoint<T>,
+            material: &Material<T>,
+            layers: &Layers<T>,
+            vertex: &PathVertex<T>,
+            paths: &mut Paths<R>,
+        ) -> Vec3<T> {
+            let (group, zero) = (vertex.group, T::ZERO);
+            let sampled = self.sample_light_directions(point, &group, paths);
+            let wi = sampled.direction;
+            let transmits = material.transmits();
+            let is_ahead = point.surface.normal.dot(wi).above_zero() | transmits;
+            let reaches = vertex.active & sampled.density.above_zero() & is_ahead;
+            let competing = match self.settings.strategy {
+                Strategy::Mis => T::ONE,
+                _ => zero,
+            };
+            let (tables, surface, density) = (self.tables, &point.surface, sampled.density);
+            let evaluate = |competing| material_evaluate(material, tables, surface, layers, wi, density, competing);
+            let mut value = Vec3::ZERO;
+            if reaches.any() {
+                value = Vec3::select(reaches, evaluate(competing), value);
+            }
+            let mut unweighted = Vec3::ZERO;
+            if R::KEEPS {
+                unweighted = Vec3::select(sampled.density.above_zero(), evaluate(zero), unweighted);
+            }
+            let mut radiance = sampled.radiance;
+            if self.samples_emitters {
+                radiance = self.attenuated_emission(point, material, [wi, radiance], sampled.distance, vertex, paths);
+            }
+            let largest = value.max_component();
+            let is_lit = vertex.active & (largest.above_zero() | largest.is_nan());
+            let all = group.mask();
+            let shadow_rays = &mut paths.shadow_rays;
+            group.set_vector(&mut shadow_rays.direction, all, wi);
+            group.set_number(&mut shadow_rays.density, all, sampled.density);
+            group.set_number(&mut shadow_rays.distance, all, sampled.distance);
+            group.set_vector(&mut shadow_rays.origin, all, point.ray_origin(wi, transmits));
+            group.set_vector(&mut shadow_rays.value, all, value);
+            group.set_vector(&mut shadow_rays.throughput, all, vertex.throughput);
+            group.set_number(&mut shadow_rays.visibility, all, T::ONE);
+            group.set_flags(&mut shadow_rays.is_known_miss, all, self.is_known_miss(point, wi));
+            group.set_flags(&mut shadow_rays.is_pending, all, is_lit);
+            if self.samples_emitters {
+                group.set_vector(&mut shadow_rays.radiance, all, radiance);
+                if self.light_groups > 0 {
+                    group.set_number(&mut shadow_rays.groups, all, sampled.group);
+                }
+            }
+            if R::KEEPS {
+                let light = paths.shadow_rays.get(0);
+                vertex
+                    .members
+                    .record(&mut paths.outputs, vertex.active & !is_lit, |lane| {
+                        light.event(unweighted.lane(lane), 0.0, Vec3::ZERO)
+                    });
+            }
+            unweighted
+        }
+
+        /// Visibility along a shadow ray in [0, 1]: 0 is blocked, values between come from holes.
+        pub fn visibility(&self, light: &ShadowRay, rays: &mut u32) -> f32 {
+            if light.is_known_miss {
+                return 1.0;
+            }
+            self.transmittance(light.origin, light.direction, light.distance, rays)
+        }
+
+        /// Next-event estimation, second half: adds the light of unoccluded shadow rays. `unweighted` is what
+        /// [`Integrator::sample_direct_light`] returned for a path that is recorded.
+        pub fn add_direct_light<R: Recorder>(
+            &self,
+            group: &Group<T>,
+            bounce: u32,
+            unweighted: Vec3<T>,
+            paths: &mut Paths<R>,
+        ) {
+            let shadow_rays = &paths.unoccluded_rays;
+            let members = group.members(&shadow_rays.ids);
+            let is_environment = self.samples_of_environment(group, shadow_rays);
+            let mut radiance = Vec3::ZERO;
+            if is_environment.any() {
+                radiance = self.world_environment_radiance([
+                    group.number(&shadow_rays.environment_uv[0]),
+                    group.number(&shadow_rays.environment_uv[1]),
+                ]);
+            }
+            if !is_environment.all() {
+                radiance = Vec3::select(is_environment, radiance, group.vector(&shadow_rays.radiance));
+            }
+            let share = group.number(&shadow_rays.visibility) / group.number(&shadow_rays.density);
+            let light = group.vector(&shadow_rays.throughput) * (group.vector(&shadow_rays.value) * radiance * share);
+            if R::KEEPS {
+                let ray = shadow_rays.get(0);
+                members.record(&mut paths.outputs, group.mask(), |lane| {
+                    let (unweighted, radiance) = (unweighted.lane(lane), radiance.lane(lane));
+                    ray.event(unweighted, ray.visibility, radiance)
+                });
+            }
+            // A path has one light sample; accounts differ by its source.
+            let (of_emitters, of_environment) = (group.mask() & !is_environment, group.mask() & is_environment);
+            if of_emitters.any() {
+                let groups = group.number(&shadow_rays.groups);
+                let origin = Origin::Surface(groups);
+                self.add(&members, of_emitters, origin, light, bounce + 1, paths);
+            }
+            self.add(&members, of_environment, Origin::Environment, light, bounce + 1, paths);
+        }
+
+        /// Radiance and alpha of the background for camera rays. `dimension` is the random pair that a blur draws.
+        pub fn camera_background<R: Recorder>(
+            &self,
+            group: &Group<T>,
+            direction: Vec3<T>,
+            uv: [T; 2],
+            dimension: u32,
+            paths: &mut Paths<R>,
+        ) -> (Vec3<T>, T) {
+            let BackgroundKind::Blurred(sine) = self.settings.background else {
+                return self.plain_background(uv);
+            };
+            let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
+            let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
+            let height = (T::ONE - x * x - y * y).safe_sqrt();
+            let around = frame_from_normal(direction);
+            let blurred = world_from_local(&around, vec3(x, y, height));
+            (
+                self.world_environment_radiance(self.world_environment_uv(blurred)),
+                T::ONE,
+            )
+        }
     }
 
     /// Radiance and alpha of the unblurred background at environment map coordinates.
     #[inline(always)]
-    pub(super) fn plain_background(&self, uv: [T; 2]) -> (Vec3<T>, T) {
+    pub fn plain_background(&self, uv: [T; 2]) -> (Vec3<T>, T) {
         match self.settings.background {
-            BackgroundKind::Environment | BackgroundKind::Blurred(_) => (self.world_environment_radiance(uv), T::one()),
-            BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
-            BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
+            BackgroundKind::Environment | BackgroundKind::Blurred(_) => (self.world_environment_radiance(uv), T::ONE),
+            BackgroundKind::Transparent => (Vec3::ZERO, T::ZERO),
+            BackgroundKind::Color(color) => (Vec3::from_f32(color), T::ONE),
         }
     }
 }

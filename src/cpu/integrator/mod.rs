@@ -22,12 +22,10 @@ use crate::job::effect::EffectId;
 use crate::job::guides::{GUIDE_SAMPLES, GuideSums};
 use crate::job::light_sums::ENVIRONMENT_GROUP;
 use crate::job::{Job, Settings, Strategy};
-use crate::optics::elementary::Single;
 use crate::optics::layer::{Layers, material_albedo, material_normal};
 use crate::optics::material::Material;
+use crate::optics::prelude::*;
 use crate::optics::random::Sequence;
-use crate::optics::real::{Mask, Scalar};
-use crate::optics::vector::Vec3;
 use crate::scene::camera::Camera;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::Lights;
@@ -39,9 +37,9 @@ pub use catcher::CATCHER_DIMENSION;
 use catcher_hit::CatcherHit;
 use group::{Group, Members};
 use paths::{GuideRecord, Paths, StartOptions};
-pub(in crate::cpu) use results::Results;
+pub use results::Results;
 pub use wave::WAVE_SAMPLES;
-pub(in crate::cpu) use wave::{BLOCK_PIXELS, PATHS, Tile, Wave};
+pub use wave::{BLOCK_PIXELS, PATHS, Tile, Wave};
 
 /// Random pairs before the first bounce: pixel and lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -74,7 +72,7 @@ pub struct PathResult {
 }
 
 /// A job's scene and settings, converted to the precision of shading.
-pub(in crate::cpu) struct Integrator<'a, T: Single> {
+pub(super) struct Integrator<'a, T: Single> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     /// Distribution from which light sampling draws environment directions.
@@ -133,7 +131,7 @@ impl<T: Single> Origin<T> {
 
 /// Path vertices of a group: where its rays ended, on a surface or outside the scene, and how they got there.
 #[derive(Clone, Copy)]
-struct PathVertex<T: Single> {
+pub(super) struct PathVertex<T: Single> {
     group: Group<T>,
     members: Members<T>,
     bounce: u32,
@@ -220,187 +218,178 @@ impl<'a, T: Single> Integrator<'a, T> {
         paths.result(number, self.settings.least_reflections == 0)
     }
 
-    /// Surface points of a group's hits, all of one material slot.
-    #[inline(always)]
-    fn surfaces<R: Recorder>(&self, vertex: &PathVertex<T>, slot: u32, paths: &mut Paths<R>) -> SurfacePoint<T> {
-        let hits: Hits<T> = vertex.group.each(&paths.state.hits);
-        let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
-        let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, vertex.direction);
-        // Surfaces that transmit stay flat: refracted light starts on the triangle itself.
-        if self.settings.rounds_surfaces && !materials.1.least_metallic().transmits().any() {
-            point.round(self.geometry, &hits);
-        }
-        vertex
-            .members
-            .record(&mut paths.outputs, vertex.active, |lane| Event::Hit {
-                bounce: vertex.bounce,
-                triangle: hits.as_ref()[lane].triangle,
-                slot,
-                distance: vertex.distance.lane(lane),
-                position: point.position.to_each().as_ref()[lane].to_f32(),
-                normal: point.surface.normal.to_each().as_ref()[lane].to_f32(),
-                shading_normal: point.surface.frame.normal.to_each().as_ref()[lane].to_f32(),
-                is_inside: point.surface.is_inside.to_bits() >> lane & 1 == 1,
-            });
-        point
-    }
-
-    /// Lanes whose continuation is known to miss: outside a convex body, in a scene without interreflection.
-    #[inline(always)]
-    fn is_known_miss(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
-        let is_outside = !point.surface.is_inside & T::zero().less(point.flat_normal().dot(wi));
-        T::Mask::splat(!self.is_interreflecting) & is_outside
-    }
-
-    /// The material at path vertices, with its textures evaluated.
-    #[inline(always)]
-    fn material(&self, point: &SurfacePoint<T>, vertex: &PathVertex<T>) -> Cow<'_, Material<T>> {
-        let slot = match self.settings.catcher {
-            Some(catcher) if vertex.is_catcher_mirror => catcher.reflection_slot,
-            _ => point.slot,
-        };
-        let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
-        if materials.1.is_varied() {
-            let (textures, tables) = (self.textures, self.tables);
-            Cow::Owned(T::out_of_line(
-                #[inline(always)]
-                || textured_materials(textures, tables, materials, &point.uvs, point.vertex_color),
-            ))
-        } else {
-            Cow::Borrowed(materials.0)
-        }
-    }
-
-    /// Shades path vertices but for scattering: absorbs along the segment, records guides, adds emission. Returns false if
-    /// the paths end here, because their bounces are used up.
-    #[inline(always)]
-    fn shade_hit<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        layers: &Layers<T>,
-        vertex: &mut PathVertex<T>,
-        paths: &mut Paths<R>,
-    ) -> bool {
-        self.absorb(point, material, vertex, paths);
-        self.record_guides(point, material, layers, vertex, paths);
-        if material.emission.is_any().any() {
-            let contribution = vertex.throughput * self.emitted_light(point, material, vertex, paths);
-            self.add(
-                &vertex.members,
-                vertex.active,
-                Origin::Surface(T::from_count(material.light_group())),
-                contribution,
-                vertex.bounce,
-                paths,
-            );
-        }
-        let is_active = vertex.bounce < self.settings.bounces;
-        if !is_active {
-            if self.has_transmission {
-                let cut = vertex.throughput.luminance().to_each();
-                let lanes =
-                    std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| vertex.active.to_bits() >> lane & 1 == 1);
-                paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
+    inlined! {
+        /// Surface points of a group's hits, all of one material slot.
+        fn surfaces<R: Recorder>(&self, vertex: &PathVertex<T>, slot: u32, paths: &mut Paths<R>) -> SurfacePoint<T> {
+            let hits: Hits<T> = vertex.group.each(&paths.state.hits);
+            let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
+            let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, vertex.direction);
+            // Surfaces that transmit stay flat: refracted light starts on the triangle itself.
+            if self.settings.rounds_surfaces && !materials.1.least_metallic().transmits().any() {
+                point.round(self.geometry, &hits);
             }
-            let nowhere = T::Mask::splat(false);
-            vertex.group.set_flags(&mut paths.is_active, vertex.active, nowhere);
             vertex
                 .members
-                .record(&mut paths.outputs, vertex.active, |_| Event::Ended {
-                    why: End::Bounces,
+                .record(&mut paths.outputs, vertex.active, |lane| Event::Hit {
+                    bounce: vertex.bounce,
+                    triangle: hits[lane].triangle,
+                    slot,
+                    distance: vertex.distance.lane(lane),
+                    position: point.position.lane(lane).to_f32(),
+                    normal: point.surface.normal.lane(lane).to_f32(),
+                    shading_normal: point.surface.frame.normal.lane(lane).to_f32(),
+                    is_inside: point.surface.is_inside.to_bits() >> lane & 1 == 1,
                 });
+            point
         }
-        is_active
-    }
 
-    /// Records first-hit guides: at the first surface, then behind mirrors and clear glass.
-    #[inline(always)]
-    fn record_guides<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        layers: &Layers<T>,
-        vertex: &PathVertex<T>,
-        paths: &mut Paths<R>,
-    ) {
-        let members = vertex.members;
-        if paths.guides.is_empty() {
-            return;
+        /// Lanes whose continuation is known to miss: outside a convex body, in a scene without interreflection.
+        fn is_known_miss(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
+            let is_outside = !point.surface.is_inside & point.flat_normal().dot(wi).above_zero();
+            T::Mask::splat(!self.is_interreflecting) & is_outside
         }
-        let is_recorded = vertex.active & members.flags(&paths.guides, |record| record.is_active);
-        if !is_recorded.any() {
-            return;
-        }
-        let albedo = vertex.throughput * material_albedo(material, &point.surface, layers);
-        let depth = vertex.distance * vertex.direction.dot(self.camera.forward) - self.camera.parallel_from;
-        let normal = material_normal(material, self.tables, &point.surface, layers);
-        let (albedos, normals) = (albedo.to_each(), normal.to_each());
-        let depths = depth.to_each();
-        members.for_each(&mut paths.guides, is_recorded, |GuideRecord { guides, .. }, lane| {
-            guides.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
-            guides.normal = normals.as_ref()[lane].to_f32();
-            if vertex.bounce == 0 {
-                guides.hits = 1.0;
-                guides.depth = depths.as_ref()[lane];
+
+        /// The material at path vertices, with its textures evaluated.
+        fn material(&self, point: &SurfacePoint<T>, vertex: &PathVertex<T>) -> Cow<'_, Material<T>> {
+            let slot = match self.settings.catcher {
+                Some(catcher) if vertex.is_catcher_mirror => catcher.reflection_slot,
+                _ => point.slot,
+            };
+            let materials = (&self.materials[slot as usize], &self.scalar_materials[slot as usize]);
+            if materials.1.is_varied() {
+                let (textures, tables) = (self.textures, self.tables);
+                Cow::Owned(out_of_line!(
+                    T,
+                    textured_materials(textures, tables, materials, &point.uvs, point.vertex_color)
+                ))
+            } else {
+                Cow::Borrowed(materials.0)
             }
-        });
-    }
+        }
 
-    /// Ends escaped paths: adds the background to camera rays and the environment to others. `uv` is where they look up the
-    /// environment map.
-    #[inline(always)]
-    fn escape<R: Recorder>(&self, vertex: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) {
-        let PathVertex {
-            group,
-            members,
-            bounce,
-            active,
-            ..
-        } = *vertex;
-        if bounce == 0 {
-            // The dimensions of the first bounce are free, because there is none.
-            let (radiance, alpha) = self.camera_background(&group, vertex.direction, uv, FIRST_DIMENSION, paths);
-            self.add(&members, active, Origin::Background, radiance, 0, paths);
-            let alphas = alpha.to_each();
-            members.for_each(&mut paths.outputs, active, |path, lane| {
-                path.alpha = alphas.as_ref()[lane]
+        /// Shades path vertices but for scattering: absorbs along the segment, records guides, adds emission. Returns false if
+        /// the paths end here, because their bounces are used up.
+        fn shade_hit<R: Recorder>(
+            &self,
+            point: &SurfacePoint<T>,
+            material: &Material<T>,
+            layers: &Layers<T>,
+            vertex: &mut PathVertex<T>,
+            paths: &mut Paths<R>,
+        ) -> bool {
+            self.absorb(point, material, vertex, paths);
+            self.record_guides(point, material, layers, vertex, paths);
+            if material.emission.is_any().any() {
+                let contribution = vertex.throughput * self.emitted_light(point, material, vertex, paths);
+                self.add(
+                    &vertex.members,
+                    vertex.active,
+                    Origin::Surface(T::from_count(material.light_group())),
+                    contribution,
+                    vertex.bounce,
+                    paths,
+                );
+            }
+            let is_active = vertex.bounce < self.settings.bounces;
+            if !is_active {
+                if self.has_transmission {
+                    let cut = vertex.throughput.luminance().to_each();
+                    let lanes =
+                        std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| vertex.active.to_bits() >> lane & 1 == 1);
+                    paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
+                }
+                let nowhere = T::Mask::splat(false);
+                vertex.group.set_flags(&mut paths.is_active, vertex.active, nowhere);
+                vertex
+                    .members
+                    .record(&mut paths.outputs, vertex.active, |_| Event::Ended {
+                        why: End::Bounces,
+                    });
+            }
+            is_active
+        }
+
+        /// Records first-hit guides: at the first surface, then behind mirrors and clear glass.
+        fn record_guides<R: Recorder>(
+            &self,
+            point: &SurfacePoint<T>,
+            material: &Material<T>,
+            layers: &Layers<T>,
+            vertex: &PathVertex<T>,
+            paths: &mut Paths<R>,
+        ) {
+            let members = vertex.members;
+            if paths.guides.is_empty() {
+                return;
+            }
+            let is_recorded = vertex.active & members.flags(&paths.guides, |record| record.is_active);
+            if !is_recorded.any() {
+                return;
+            }
+            let albedo = vertex.throughput * material_albedo(material, &point.surface, layers);
+            let depth = vertex.distance * vertex.direction.dot(self.camera.forward) - self.camera.parallel_from;
+            let normal = material_normal(material, self.tables, &point.surface, layers);
+            let (albedos, normals) = (albedo.to_each(), normal.to_each());
+            let depths = depth.to_each();
+            members.for_each(&mut paths.guides, is_recorded, |GuideRecord { guides, .. }, lane| {
+                guides.albedo = albedos[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
+                guides.normal = normals[lane].to_f32();
+                if vertex.bounce == 0 {
+                    guides.hits = 1.0;
+                    guides.depth = depths[lane];
+                }
             });
-        } else {
-            let is_caught = match self.settings.catcher {
-                Some(_) => active & members.flags(&paths.catcher_hits, CatcherHit::is_mirrored),
-                None => T::Mask::splat(false),
-            };
-            if is_caught.any() {
-                self.escape_mirrored(&members, is_caught, bounce, paths);
-            }
-            let ray = PathVertex {
-                active: active & !is_caught,
-                ..*vertex
-            };
-            if ray.active.any() {
-                let contribution = vertex.throughput * self.weighted_environment(&ray, uv, paths);
-                self.add(&members, ray.active, Origin::Environment, contribution, bounce, paths);
-            }
         }
-        group.set_flags(&mut paths.is_active, active, T::Mask::splat(false));
-        members.record(&mut paths.outputs, active, |_| Event::Ended { why: End::Escaped });
+
+        /// Ends escaped paths: adds the background to camera rays and the environment to others. `uv` is where they look up the
+        /// environment map.
+        fn escape<R: Recorder>(&self, vertex: &PathVertex<T>, uv: [T; 2], paths: &mut Paths<R>) {
+            let PathVertex {
+                group,
+                members,
+                bounce,
+                active,
+                ..
+            } = *vertex;
+            if bounce == 0 {
+                // The dimensions of the first bounce are free, because there is none.
+                let (radiance, alpha) = self.camera_background(&group, vertex.direction, uv, FIRST_DIMENSION, paths);
+                self.add(&members, active, Origin::Background, radiance, 0, paths);
+                let alphas = alpha.to_each();
+                members.for_each(&mut paths.outputs, active, |path, lane| path.alpha = alphas[lane]);
+            } else {
+                let is_caught = match self.settings.catcher {
+                    Some(_) => active & members.flags(&paths.catcher_hits, CatcherHit::is_mirrored),
+                    None => T::Mask::splat(false),
+                };
+                if is_caught.any() {
+                    self.escape_mirrored(&members, is_caught, bounce, paths);
+                }
+                let ray = PathVertex {
+                    active: active & !is_caught,
+                    ..*vertex
+                };
+                if ray.active.any() {
+                    let contribution = vertex.throughput * self.weighted_environment(&ray, uv, paths);
+                    self.add(&members, ray.active, Origin::Environment, contribution, bounce, paths);
+                }
+            }
+            group.set_flags(&mut paths.is_active, active, T::Mask::splat(false));
+            members.record(&mut paths.outputs, active, |_| Event::Ended { why: End::Escaped });
+        }
     }
 
     /// Ends escaped paths that the shadow catcher mirrors: they show the camera's background.
     #[inline(always)]
     fn escape_mirrored<R: Recorder>(&self, members: &Members<T>, active: T::Mask, bounce: u32, paths: &mut Paths<R>) {
-        let background = Vec3::from_lanes(|lane| match *members.of(&paths.catcher_hits, lane) {
+        let background = Vec3::from_lanes(|lane| match paths.catcher_hits[members.path(lane)] {
             CatcherHit::Mirrored { background, .. } => background,
-            _ => Vec3::zero(),
+            _ => Vec3::ZERO,
         });
         self.add(members, active, Origin::Background, background, bounce, paths);
-        let Paths {
-            outputs, catcher_hits, ..
-        } = paths;
-        members.for_each(outputs, active, |path, lane| {
-            if let CatcherHit::Mirrored { alpha, .. } = *members.of(catcher_hits, lane) {
-                path.alpha = alpha;
+        members.each_path(active, |path, _| {
+            if let CatcherHit::Mirrored { alpha, .. } = paths.catcher_hits[path] {
+                paths.outputs[path].alpha = alpha;
             }
         });
     }
@@ -420,28 +409,28 @@ impl<'a, T: Single> Integrator<'a, T> {
         let radiances = added.to_each();
         if self.light_groups > 0 {
             let groups = origin.group().to_each();
-            members.add_to_groups(&mut paths.light_groups, self.light_groups, active, |lane| {
-                (groups.as_ref()[lane] as usize, radiances.as_ref()[lane])
+            members.each_path(active, |path, lane| {
+                paths.light_groups[path * self.light_groups + groups[lane] as usize] += radiances[lane];
             });
         }
         let outputs = &mut paths.outputs;
-        members.for_each(outputs, active, |path, lane| path.radiance += radiances.as_ref()[lane]);
+        members.for_each(outputs, active, |path, lane| path.radiance += radiances[lane]);
         if self.firefly_clamp.is_some() {
             let clamped = clamped.luminance().to_each();
-            members.for_each(outputs, active, |path, lane| path.clamped += clamped.as_ref()[lane]);
+            members.for_each(outputs, active, |path, lane| path.clamped += clamped[lane]);
         }
         members.record(outputs, active & light.is_any(), |lane| Event::Contribution {
             source: origin.source(),
             reflections,
-            found: light.to_each().as_ref()[lane].to_f32(),
-            added: added.to_each().as_ref()[lane].to_f32(),
+            found: light.lane(lane).to_f32(),
+            added: added.lane(lane).to_f32(),
         });
     }
 
     /// A contribution's kept part and the part that the firefly clamp removes. Both are zero below `least_reflections`.
     #[inline(always)]
     fn clamp_fireflies(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
-        let nothing = Vec3::zero();
+        let nothing = Vec3::ZERO;
         if reflections < self.settings.least_reflections {
             return [nothing, nothing];
         }
@@ -453,7 +442,7 @@ impl<'a, T: Single> Integrator<'a, T> {
         let kept = limit / largest;
         [
             Vec3::select(is_beyond, contribution * kept, contribution),
-            Vec3::select(is_beyond, contribution * (T::one() - kept), nothing),
+            Vec3::select(is_beyond, contribution * (T::ONE - kept), nothing),
         ]
     }
     /// Traces the pending shadow ray of a recorded path and adds its light. `unweighted` is the result of
@@ -470,15 +459,17 @@ impl<'a, T: Single> Integrator<'a, T> {
             self.locate_unoccluded(&Group::ALONE, paths);
             self.add_direct_light(&Group::ALONE, bounce, unweighted, paths);
         } else {
-            let unweighted = unweighted.to_each().as_ref()[0];
-            paths.outputs[0].record(|| light.event(unweighted, visibility, Vec3::zero()));
+            let unweighted = unweighted.to_each()[0];
+            paths.outputs[0]
+                .recorder
+                .record(|| light.event(unweighted, visibility, Vec3::ZERO));
         }
     }
 }
 
 impl Integrator<'_, f32> {
     /// Traces one path through a pixel, a wave of its own, and appends its events.
-    pub(in crate::cpu) fn record_path(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
+    pub fn record_path(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult {
         let mut wave = Wave::<Vec<Event>>::new(PACKET, 1, self.sequence());
         self.trace_wave(&Tile::new(pixel, [1; 2]), [sample, 1], &mut wave);
         events.append(&mut wave.paths.outputs[0].recorder);
@@ -487,7 +478,6 @@ impl Integrator<'_, f32> {
 }
 
 /// True for a finite, non-negative colour of at most [`RADIANCE_MAX`]: only such samples enter the film.
-#[inline(always)]
 pub fn is_sound<S: Scalar>(color: Vec3<S>) -> bool {
     let is_within = |x: S| (0.0..=RADIANCE_MAX).contains(&x.to_f64());
     is_within(color.x) & is_within(color.y) & is_within(color.z)

@@ -4,20 +4,16 @@
 //! together are adjacent; a position in it is an *index*. [`PathOutput`] holds what a path accumulates, by its *id*: its
 //! fixed number in the wave.
 
-use std::mem::swap;
-
-use super::PathResult;
-use super::catcher_hit::CatcherHit;
 use super::shadow_rays::ShadowRays;
 use super::vectors::{Vectors, gather};
-use crate::cpu::recorder::{Event, Recorder};
-use crate::job::guides::GuideSums;
-use crate::optics::random::{RandomState, Sequence, path_state};
+use super::*;
+use crate::optics::random::{RandomState, path_state};
 use crate::optics::vector::Vec3;
 use crate::scene::Hit;
+use std::mem::swap;
 
 /// What paths need to continue, by index.
-pub(super) struct State {
+pub struct State {
     pub ids: Vec<u16>,
     /// Keys of the random sequences, see [`RandomState`].
     pub keys: Vec<u32>,
@@ -72,7 +68,7 @@ impl State {
 }
 
 /// Which optional state the paths of a wave have.
-pub(super) struct StartOptions {
+pub struct StartOptions {
     /// Samples per pixel that record first-hit guides.
     pub guide_samples: u32,
     /// Light groups that are summed apart.
@@ -85,7 +81,7 @@ pub(super) struct StartOptions {
 }
 
 /// The paths of a wave.
-pub(super) struct Paths<R> {
+pub struct Paths<R> {
     pub sequence: Sequence,
     pub state: State,
     /// Target of [`Paths::reorder`], which then swaps it with `state`.
@@ -123,7 +119,7 @@ pub(super) struct Paths<R> {
 
 impl<R: Recorder> Paths<R> {
     /// Compacts the unoccluded shadow rays, in the given order, see [`ShadowRays::gather_unoccluded`].
-    pub(super) fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
+    pub fn gather_unoccluded(&mut self, order: &[u16], samples_emitters: bool) {
         let (rays, ids) = (&self.shadow_rays, &self.state.ids);
         self.unoccluded_rays
             .gather_unoccluded(rays, ids, order, samples_emitters);
@@ -172,7 +168,6 @@ impl<R: Recorder> Paths<R> {
 
     /// Adds one sample of each pixel, offset by `corner`. [`Paths::set_counters`] and [`Paths::start`] complete the new
     /// paths.
-    #[inline(always)]
     pub fn add(&mut self, corner: [u32; 2], pixels: &[[u32; 2]], sample: u32) {
         let added = self.count..self.count + pixels.len();
         self.count = added.end;
@@ -217,7 +212,7 @@ impl<R: Recorder> Paths<R> {
                 .extend(samples.iter().map(|sample| GuideRecord::new(*sample < guide_samples)));
         }
         self.light_groups
-            .resize(self.count * start_options.light_groups, Vec3::zero());
+            .resize(self.count * start_options.light_groups, Vec3::ZERO);
         if start_options.has_catcher {
             self.catcher_hits.resize(self.count, CatcherHit::Miss);
         }
@@ -244,7 +239,6 @@ impl<R: Recorder> Paths<R> {
     }
 
     /// Random state of a path, by index.
-    #[inline(always)]
     pub fn random_state(&self, index: usize) -> RandomState {
         RandomState {
             key: self.state.keys[index],
@@ -275,19 +269,17 @@ impl<R: Recorder> Paths<R> {
         let groups = self.light_groups.len() / self.count.max(1);
         for (id, hit) in self.catcher_hits.iter().enumerate() {
             if hit.is_alpha() {
-                self.light_groups[id * groups..(id + 1) * groups].fill(Vec3::zero());
+                self.light_groups[id * groups..(id + 1) * groups].fill(Vec3::ZERO);
             }
         }
     }
 
     /// Accumulated result of the path at an index.
-    #[inline(always)]
     pub fn output_at(&mut self, index: usize) -> &mut PathOutput<R> {
         &mut self.outputs[usize::from(self.state.ids[index])]
     }
 
     /// Stores a ray's hit and counts the ray. Returns false for a miss.
-    #[inline(always)]
     pub fn record_hit(&mut self, index: usize, hit: Option<Hit>) -> bool {
         self.output_at(index).rays += 1;
         if let Some(hit) = hit {
@@ -299,7 +291,7 @@ impl<R: Recorder> Paths<R> {
 }
 
 /// Accumulated result of a path.
-pub(super) struct PathOutput<R> {
+pub struct PathOutput<R> {
     pub radiance: Vec3<f32>,
     /// Luminance that the firefly clamp removed.
     pub clamped: f32,
@@ -311,7 +303,7 @@ pub(super) struct PathOutput<R> {
 }
 
 /// First-hit guides of a path.
-pub(super) struct GuideRecord {
+pub struct GuideRecord {
     /// True while the path still records: it has met only mirrors and clear glass.
     pub is_active: bool,
     pub guides: GuideSums,
@@ -328,19 +320,13 @@ impl GuideRecord {
 
 impl<R: Recorder> PathOutput<R> {
     /// An empty result.
-    #[inline(always)]
     pub fn new() -> Self {
         Self {
-            radiance: Vec3::zero(),
+            radiance: Vec3::ZERO,
             clamped: 0.0,
             alpha: 1.0,
             rays: 0,
             recorder: R::default(),
         }
-    }
-
-    #[inline(always)]
-    pub fn record(&mut self, event: impl FnOnce() -> Event) {
-        self.recorder.record(event);
     }
 }

@@ -1,26 +1,21 @@
 //! Rays of a path: camera rays, intersection and transmittance.
 
-use super::group::Group;
-use super::paths::Paths;
-use super::{Integrator, OPACITY_DIMENSION, PASSES_MAX};
-use crate::cpu::recorder::{Event, Purpose, Recorder};
-use crate::optics::elementary::Single;
+use super::*;
+use crate::cpu::recorder::Purpose;
 use crate::optics::random::random_pair;
-use crate::optics::real::Mask;
-use crate::optics::vector::Vec3;
 use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::surface::{hit_opacity, passed_origin};
 
 impl<T: Single> Integrator<'_, T> {
     /// Generates the camera rays.
     #[inline(always)]
-    pub(super) fn camera_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
-        let has_lens = T::zero().less(self.camera.lens_radius).any();
+    pub fn camera_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<R>) {
+        let has_lens = self.camera.lens_radius.above_zero().any();
         let for_pixel = group.pairs(paths, PIXEL_DIMENSION, [Purpose::Pixel; 2]);
         let for_lens = if has_lens {
             group.pairs(paths, LENS_DIMENSION, [Purpose::Lens; 2])
         } else {
-            [T::zero(); 2]
+            [T::ZERO; 2]
         };
         let [x, y] = &paths.pixels;
         let pixel = [group.integer(x), group.integer(y)];
@@ -29,20 +24,14 @@ impl<T: Single> Integrator<'_, T> {
         group.set_vector(&mut paths.state.direction, group.mask(), direction);
         let members = group.members(&paths.state.ids);
         members.record(&mut paths.outputs, group.mask(), |lane| Event::Camera {
-            origin: origin.to_each().as_ref()[lane].to_f32(),
-            direction: direction.to_each().as_ref()[lane].to_f32(),
+            origin: origin.lane(lane).to_f32(),
+            direction: direction.lane(lane).to_f32(),
         });
     }
 
     /// Share of light in [0, 1] that passes along a ray of length `distance`: the product of (1 − opacity) of the surfaces
     /// on it.
-    pub(super) fn transmittance(
-        &self,
-        mut origin: Vec3<f32>,
-        direction: Vec3<f32>,
-        distance: f32,
-        rays: &mut u32,
-    ) -> f32 {
+    pub fn transmittance(&self, mut origin: Vec3<f32>, direction: Vec3<f32>, distance: f32, rays: &mut u32) -> f32 {
         if !self.has_holes {
             *rays += 1;
             let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
@@ -66,7 +55,7 @@ impl<T: Single> Integrator<'_, T> {
 
     /// Intersects the ray of the path at `index`, passing surfaces at random by their opacity. Returns false for a miss.
     #[inline(always)]
-    pub(super) fn intersect<R: Recorder>(&self, bounce: u32, index: usize, paths: &mut Paths<R>) -> bool {
+    pub fn intersect<R: Recorder>(&self, bounce: u32, index: usize, paths: &mut Paths<R>) -> bool {
         if paths.is_known_miss[index] {
             return false;
         }
@@ -77,7 +66,7 @@ impl<T: Single> Integrator<'_, T> {
         }
         let dimension = OPACITY_DIMENSION + bounce;
         let [mut xi, _]: [f32; 2] = random_pair(paths.random_state(index), dimension);
-        paths.output_at(index).record(|| Event::Number {
+        paths.output_at(index).recorder.record(|| Event::Number {
             dimension,
             half: 0,
             value: xi,
@@ -101,7 +90,7 @@ impl<T: Single> Integrator<'_, T> {
             if xi < opacity {
                 return true;
             }
-            paths.output_at(index).record(|| Event::Passed {
+            paths.output_at(index).recorder.record(|| Event::Passed {
                 slot,
                 distance: hit.t,
                 opacity,

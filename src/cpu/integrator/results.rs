@@ -4,9 +4,7 @@ use super::PathResult;
 use super::group::Group;
 use super::vectors::Vectors;
 use crate::job::guides::GuideSums;
-use crate::optics::elementary::Single;
-use crate::optics::real::Scalar;
-use crate::optics::vector::Vec3;
+use crate::optics::prelude::*;
 
 /// Results by path id. The fields have room for one more group of lanes.
 pub struct Results {
@@ -27,7 +25,7 @@ pub struct Results {
 
 impl Results {
     /// Fields for `count` paths.
-    pub(super) fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self {
             count: 0,
             has_extras: false,
@@ -83,14 +81,14 @@ impl Results {
     }
 
     /// Starts over with `count` paths, each counting its camera ray.
-    pub(super) fn start(&mut self, count: usize, has_extras: bool) {
+    pub fn start(&mut self, count: usize, has_extras: bool) {
         (self.count, self.has_extras, self.cut) = (count, has_extras, 0.0);
         self.guides.clear();
         self.rays[..count].fill(1);
     }
 
     /// Stores the results of all paths.
-    pub(super) fn fill(&mut self, results: impl Iterator<Item = PathResult>) {
+    pub fn fill(&mut self, results: impl Iterator<Item = PathResult>) {
         for (path, result) in results.enumerate() {
             self.radiance.set(path, result.radiance);
             self.alpha[path] = result.alpha;
@@ -103,14 +101,14 @@ impl Results {
     }
 
     /// Stores the light of the groups of all paths.
-    pub(super) fn set_groups(&mut self, lights: &[Vec3<f32>]) {
+    pub fn set_groups(&mut self, lights: &[Vec3<f32>]) {
         self.light_groups.clear();
         self.light_groups.extend_from_slice(lights);
     }
 
     /// Stores the results of a group of consecutive paths.
     #[inline(always)]
-    pub(super) fn set<T: Single>(&mut self, group: &Group<T>, radiance: Vec3<T>, alpha: T, clamped: T) {
+    pub fn set<T: Single>(&mut self, group: &Group<T>, radiance: Vec3<T>, alpha: T, clamped: T) {
         let mask = group.mask();
         group.set_vector(&mut self.radiance, mask, radiance);
         group.set_number(&mut self.alpha, mask, alpha);

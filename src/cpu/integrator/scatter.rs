@@ -1,23 +1,13 @@
 //! Scattering at a path vertex: BSDF sampling and Russian roulette.
 
-use super::group::Group;
-use super::paths::Paths;
-use super::{BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, PathVertex, ROULETTE_START};
-use crate::cpu::recorder::{End, Event, LayerChance, Purpose, Recorder};
-use crate::job::Strategy;
-use crate::optics::elementary::Single;
-use crate::optics::layer::{
-    Layer, Layers, MaterialNumbers, MaterialSample, decides_by_facet, material_sample, passes_on,
-};
-use crate::optics::material::Material;
-use crate::optics::real::Mask;
-use crate::optics::vector::Vec3;
-use crate::scene::surface::SurfacePoint;
+use super::*;
+use crate::cpu::recorder::{LayerChance, Purpose};
+use crate::optics::layer::{Layer, MaterialNumbers, MaterialSample, decides_by_facet, material_sample, passes_on};
 
 impl<T: Single> Integrator<'_, T> {
     /// Samples the next direction of each path, or ends it.
     #[inline(always)]
-    pub(super) fn scatter<R: Recorder>(
+    pub fn scatter<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
@@ -41,8 +31,8 @@ impl<T: Single> Integrator<'_, T> {
         if vertex.is_catcher_mirror {
             // The mirrored ray keeps its full weight, also the light that facets would block. Its light must not compete
             // with light sampling, which the catcher does not do.
-            known_miss = known_miss | !T::zero().less(sampled.throughput.max_component());
-            sampled.throughput = Vec3::splat(T::one());
+            known_miss = known_miss | !sampled.throughput.max_component().above_zero();
+            sampled.throughput = Vec3::ONE;
             sampled.is_mirror = T::Mask::splat(true);
         }
         let mut throughput = vertex.throughput * sampled.throughput;
@@ -67,10 +57,7 @@ impl<T: Single> Integrator<'_, T> {
         if self.settings.roulette_floor < 1.0 {
             let counts = vertex.group.each(&paths.state.rough_bounces);
             let rough = (vertex.active & !sampled.is_mirror).to_bits();
-            let counts = T::each(
-                #[inline(always)]
-                |lane| counts.as_ref()[lane] + (rough >> lane & 1),
-            );
+            let counts = T::each(|lane| counts[lane] + (rough >> lane & 1));
             vertex.group.set_each(&mut paths.state.rough_bounces, &counts);
         }
     }
@@ -99,11 +86,11 @@ fn record_scattered<T: Single, R: Recorder>(
         .record(&mut paths.outputs, vertex.active, |lane| Event::Scattered {
             layer: sampled.layer,
             probabilities: Layer::ALL.iter().zip(probabilities).map(probability(lane)).collect(),
-            direction: sampled.wi.to_each().as_ref()[lane].to_f32(),
-            factor: sampled.throughput.to_each().as_ref()[lane].to_f32(),
+            direction: sampled.wi.lane(lane).to_f32(),
+            factor: sampled.throughput.lane(lane).to_f32(),
             density: sampled.density.lane(lane),
             is_mirror: sampled.is_mirror.to_bits() >> lane & 1 == 1,
-            throughput: throughput.to_each().as_ref()[lane].to_f32(),
+            throughput: throughput.lane(lane).to_f32(),
         });
 }
 
@@ -152,23 +139,20 @@ fn russian_roulette<T: Single, R: Recorder>(
     } = *vertex;
     let strength = throughput.max_component();
     // Ends NaN paths, too.
-    let is_left = T::zero().less(strength);
+    let is_left = strength.above_zero();
     members.record(&mut paths.outputs, active & !is_left, |_| Event::Ended {
         why: End::Absorbed,
     });
     if bounce < ROULETTE_START {
         return is_left;
     }
-    let mut limit = T::one();
+    let mut limit = T::ONE;
     if floor < 1.0 {
         let counts = group.each(&paths.state.rough_bounces);
-        limit = T::from_lanes(
-            #[inline(always)]
-            |lane| {
-                let is_early = counts.as_ref()[lane] < ROULETTE_START;
-                (if is_early { floor } else { 1.0 }) as f32
-            },
-        );
+        limit = T::from_lanes(|lane| {
+            let is_early = counts[lane] < ROULETTE_START;
+            (if is_early { floor } else { 1.0 }) as f32
+        });
     }
     let plays = active & is_left & strength.less(limit);
     if !plays.any() {
@@ -191,7 +175,7 @@ fn russian_roulette<T: Single, R: Recorder>(
 impl<T: Single> PathVertex<T> {
     /// The path vertices of a group after `bounce` bounces.
     #[inline(always)]
-    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<R>) -> Self {
+    pub fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<R>) -> Self {
         let state = &paths.state;
         Self {
             group,

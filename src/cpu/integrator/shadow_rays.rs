@@ -5,7 +5,7 @@ use crate::cpu::recorder::{Event, Source};
 use crate::optics::vector::Vec3;
 
 /// Shadow rays as structure of arrays, by path index.
-pub(super) struct ShadowRays {
+pub struct ShadowRays {
     /// Path ids; only of unoccluded rays.
     pub ids: Vec<u16>,
     /// Environment map coordinates; only of unoccluded rays.
@@ -89,7 +89,7 @@ impl ShadowRays {
 
 /// The shadow ray of one path; see [`ShadowRays`] for the fields.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct ShadowRay {
+pub struct ShadowRay {
     pub origin: Vec3<f32>,
     pub direction: Vec3<f32>,
     pub distance: f32,

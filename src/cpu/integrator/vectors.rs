@@ -3,7 +3,7 @@
 use crate::optics::vector::{Vec3, vec3};
 
 /// A vector per path, axis by axis.
-pub(super) struct Vectors {
+pub struct Vectors {
     pub x: Vec<f32>,
     pub y: Vec<f32>,
     pub z: Vec<f32>,
@@ -19,12 +19,10 @@ impl Vectors {
         }
     }
 
-    #[inline(always)]
     pub fn get(&self, index: usize) -> Vec3<f32> {
         vec3(self.x[index], self.y[index], self.z[index])
     }
 
-    #[inline(always)]
     pub fn set(&mut self, index: usize, value: Vec3<f32>) {
         (self.x[index], self.y[index], self.z[index]) = (value.x, value.y, value.z);
     }
@@ -36,7 +34,6 @@ impl Vectors {
     }
 
     /// Gathers vectors from `from` by index.
-    #[inline(always)]
     pub fn gather(&mut self, from: &Self, order: &[u16]) {
         gather(&mut self.x, &from.x, order);
         gather(&mut self.y, &from.y, order);
@@ -45,8 +42,7 @@ impl Vectors {
 }
 
 /// Gathers elements of `from` by index: `field[i] = from[order[i]]`.
-#[inline(always)]
-pub(super) fn gather<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
+pub fn gather<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
     for (to, &index) in field.iter_mut().zip(order) {
         *to = from[usize::from(index)];
     }

@@ -6,21 +6,14 @@
 //! Invariant: a path's result is the same to the last bit in any lane, packet or wave. So the image does not depend on how the
 //! work is divided.
 
-use std::ops::Range;
-
-use super::group::{Group, Groups};
-use super::paths::Paths;
-use super::results::Results;
-use super::{Integrator, PathVertex};
-use crate::cpu::recorder::{Recorder, Unrecorded};
+use super::group::groups;
+use super::*;
+use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
-use crate::optics::elementary::Single;
 use crate::optics::layer::material_layers;
-use crate::optics::random::Sequence;
-use crate::optics::real::Mask;
-use crate::optics::vector::Vec3;
-use crate::scene::{Hit, OCTANTS, PACKET, Packet, ray_octant};
+use crate::scene::{Hit, OCTANTS, Packet, ray_octant};
+use std::ops::Range;
 
 /// Pixels of a tile at most.
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
@@ -38,14 +31,14 @@ const PACKET_MIN: usize = 8;
 
 /// A tile of the image, at most [`TILE_SIDE`] pixels wide and high.
 pub struct Tile {
-    pub(super) origin: [u32; 2],
+    pub origin: [u32; 2],
     /// Its pixels from its corner on, in Morton order, so that the pixels of a block are consecutive.
     places: Vec<[u32; 2]>,
 }
 
 /// The buffers of a wavefront, reused from tile to tile. A `u16` is the index of a path in the fields of [`Paths`].
 pub struct Wave<R = Unrecorded> {
-    pub(super) paths: Paths<R>,
+    pub paths: Paths<R>,
     /// Paths that have not ended.
     active: Vec<u16>,
     /// Paths whose rays hit a surface, with the material slot as sort key.
@@ -118,7 +111,7 @@ impl<T: Single> Integrator<'_, T> {
 
     /// Traces the paths of `samples` (first, count) to their ends. Returns true if every camera ray missed: then `wave.results`
     /// is already complete.
-    pub(super) fn trace_wave<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<R>) -> bool {
+    pub fn trace_wave<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<R>) -> bool {
         // One path per pixel and sample, with its camera ray.
         self.add_paths(tile, samples, &mut wave.paths);
         let has_extras = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
@@ -246,31 +239,25 @@ impl<T: Single> Integrator<'_, T> {
         let samples_light = !R::KEEPS && self.samples_light() && bounce < self.settings.bounces;
         // Look-ups into the environment miss the cache. So each group's addresses are computed and prefetched in one pass and
         // read in a later one; the numbers of light sampling are drawn in between.
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for group in Groups::new(escaped.clone()) {
-                    self.locate_escaped(&group, bounce, paths);
+        vectorized!(T, {
+            for group in groups(escaped.clone()) {
+                self.locate_escaped(&group, bounce, paths);
+            }
+            if samples_light {
+                for group in groups(hits.clone()) {
+                    self.light_xi(&group, bounce, paths);
                 }
-                if samples_light {
-                    for group in Groups::new(hits.clone()) {
-                        self.light_xi(&group, bounce, paths);
-                    }
+            }
+            for group in groups::<T>(escaped.clone()) {
+                let uv = paths.environment_uv.each_ref().map(|axis| group.number(axis));
+                out_of_line!(T, self.escape(&PathVertex::new(group, bounce, paths), uv, paths));
+            }
+            if samples_light && self.samples_environment {
+                for group in groups(hits.clone()) {
+                    self.prefetch_lights(&group, paths);
                 }
-                for group in Groups::<T>::new(escaped.clone()) {
-                    let uv = paths.environment_uv.each_ref().map(|axis| group.number(axis));
-                    T::out_of_line(
-                        #[inline(always)]
-                        || self.escape(&PathVertex::new(group, bounce, paths), uv, paths),
-                    );
-                }
-                if samples_light && self.samples_environment {
-                    for group in Groups::new(hits.clone()) {
-                        self.prefetch_lights(&group, paths);
-                    }
-                }
-            },
-        );
+            }
+        });
         // Groups must not span slots: a group's material is uniform over its lanes.
         let mut first = 0;
         for same in wave.hits.chunk_by(|(a, _), (b, _)| a == b) {
@@ -282,23 +269,17 @@ impl<T: Single> Integrator<'_, T> {
 
     /// Shades hits of one slot, but for direct light.
     fn shade_slot<R: Recorder>(&self, slot: u32, indices: Range<usize>, bounce: u32, paths: &mut Paths<R>) {
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for group in Groups::new(indices.clone()) {
-                    self.shade_group(slot, group, bounce, paths);
-                }
-            },
-        );
+        vectorized!(T, {
+            for group in groups(indices.clone()) {
+                self.shade_group(slot, group, bounce, paths);
+            }
+        });
     }
 
     #[inline(always)]
     fn shade_group<R: Recorder>(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<R>) {
         let mut vertex = PathVertex::new(group, bounce, paths);
-        let point = T::out_of_line(
-            #[inline(always)]
-            || self.surfaces(&vertex, slot, paths),
-        );
+        let point = out_of_line!(T, self.surfaces(&vertex, slot, paths));
         // The shadow catcher is not there from below or without light: those camera rays escape to the background.
         let catcher = self.apply_catcher(&point, &mut vertex, paths);
         let is_passed = vertex.active & !catcher.is_visible;
@@ -307,10 +288,7 @@ impl<T: Single> Integrator<'_, T> {
                 active: is_passed,
                 ..vertex
             };
-            T::out_of_line(
-                #[inline(always)]
-                || self.escape(&ray, self.escaped_uv(ray.direction, ray.bounce), paths),
-            );
+            out_of_line!(T, self.escape(&ray, self.escaped_uv(ray.direction, ray.bounce), paths));
         }
         // Lanes that the catcher mirrors shade with another material: two passes, usually one of them empty.
         let passes = [
@@ -334,18 +312,13 @@ impl<T: Single> Integrator<'_, T> {
                     if R::KEEPS {
                         self.light_xi(&group, bounce, paths);
                     }
-                    let unweighted = T::out_of_line(
-                        #[inline(always)]
-                        || self.sample_direct_light(&point, material, layers, &vertex, paths),
-                    );
+                    let unweighted =
+                        out_of_line!(T, self.sample_direct_light(&point, material, layers, &vertex, paths));
                     if R::KEEPS {
                         self.record_direct_light(unweighted, bounce, paths);
                     }
                 }
-                T::out_of_line(
-                    #[inline(always)]
-                    || self.scatter(&point, material, layers, &vertex, paths),
-                );
+                out_of_line!(T, self.scatter(&point, material, layers, &vertex, paths));
             }
         }
     }
@@ -411,17 +384,14 @@ impl<T: Single> Integrator<'_, T> {
         unoccluded.clear();
         unoccluded.extend((0..hits.len() as u16).filter(is_unoccluded));
         paths.gather_unoccluded(unoccluded, self.samples_emitters);
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for group in Groups::new(0..unoccluded.len()) {
-                    self.locate_unoccluded(&group, paths);
-                }
-                for group in Groups::new(0..unoccluded.len()) {
-                    self.add_direct_light(&group, bounce, Vec3::zero(), paths);
-                }
-            },
-        );
+        vectorized!(T, {
+            for group in groups(0..unoccluded.len()) {
+                self.locate_unoccluded(&group, paths);
+            }
+            for group in groups(0..unoccluded.len()) {
+                self.add_direct_light(&group, bounce, Vec3::ZERO, paths);
+            }
+        });
     }
 }
 
@@ -445,7 +415,6 @@ impl OctantBins {
         self.counts = [0; OCTANTS];
     }
 
-    #[inline(always)]
     fn add(&mut self, octant: usize, index: usize) {
         let count = &mut self.counts[octant];
         self.indices[octant][usize::from(*count)] = index as u16;
@@ -488,7 +457,6 @@ pub struct PixelBlock<'a> {
 
 impl PixelBlock<'_> {
     /// The id in the wave of the first pixel's path for a sample out of `count` per pixel; the other pixels' follow.
-    #[inline(always)]
     pub fn path(&self, [sample, count]: [u32; 2]) -> usize {
         self.first * count as usize + sample as usize * self.places.len()
     }

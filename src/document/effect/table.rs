@@ -238,16 +238,16 @@ effects! {
         Textures(&[On::Emission, On::Opacity]);
     CoatTexture "Coat textures" "Weight, roughness and colour of coats from textures."
         AnyMaterial(|m| m.has_texture(On::OF_COAT), "has a texture of its coat"),
-        Textures(&[On::Coat, On::CoatRoughness, On::CoatColor]);
+        Textures(On::OF_COAT);
     CoatNormalMap "Coat normal maps" "Normals of coats bent by a texture of their own."
         AnyMaterial(|m| m.has_texture(&[On::CoatNormal]), "bends the normals of its coat"),
         Textures(&[On::CoatNormal]);
     FilmTexture "Thin film textures" "Weights and thicknesses of thin films from textures."
         AnyMaterial(|m| m.has_texture(On::OF_FILM), "takes its thin film from a texture"),
-        Textures(&[On::Film, On::FilmThickness]);
+        Textures(On::OF_FILM);
     FuzzTexture "Fuzz textures" "Weight, colour and roughness of fuzz from textures."
         AnyMaterial(|m| m.has_texture(On::OF_FUZZ), "has a texture of its fuzz"),
-        Textures(&[On::Fuzz, On::FuzzColor, On::FuzzRoughness]);
+        Textures(On::OF_FUZZ);
     BoxProjection "Box projection" "Images that lie on a surface as on a box, without texture coordinates."
         AnyMaterial(|m| m.has_flag(HAS_BOX), "has a texture that lies on it as on a box"),
         EachMaterial(MaterialSettings::without_boxes);

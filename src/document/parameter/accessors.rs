@@ -1,5 +1,7 @@
 //! Rows of the tables of parameters: what each takes, and how it reads and writes the value that it stands for.
 
+use super::Value;
+
 /// Parameters by key, stage where the table has several, label, help, the value by the path of its field, and what a row adds.
 macro_rules! rows {
     ($($key:literal $($stage:ident)? $label:literal $help:literal $what:ident($($of:tt)*) $(.$add:ident($($with:tt)*))*;)*) => {
@@ -7,36 +9,14 @@ macro_rules! rows {
     };
 }
 
-/// A field through the variant of [`Value`](super::Value) that holds it: `field(Number lens.radius, UNIT)`.
+/// A field by its path: `field(lens.radius, real(RADIUS, ""))`.
 macro_rules! field {
-    ($variant:ident $($path:ident).+ $([$at:expr])?, $kind:expr) => {
+    ($($path:ident).+ $([$at:expr])?, $kind:expr) => {
         (
             $kind,
             (
-                |owner| $crate::document::Value::$variant(owner.$($path).+ $([$at])?),
-                |owner, value| {
-                    if let $crate::document::Value::$variant(value) = value {
-                        owner.$($path).+ $([$at])? = value;
-                    }
-                },
-            ),
-        )
-    };
-}
-
-/// The same for a field that may be left to the program.
-macro_rules! optional {
-    ($variant:ident $($path:ident).+, $kind:expr) => {
-        (
-            $kind,
-            (
-                |owner| owner.$($path).+.map_or($crate::document::Value::Absent, $crate::document::Value::$variant),
-                |owner, value| {
-                    owner.$($path).+ = match value {
-                        $crate::document::Value::$variant(value) => Some(value),
-                        _ => None,
-                    };
-                },
+                |owner| $crate::document::parameter::accessors::Field::value(&owner.$($path).+ $([$at])?),
+                |owner, value| $crate::document::parameter::accessors::Field::take(&mut owner.$($path).+ $([$at])?, value),
             ),
         )
     };
@@ -44,13 +24,20 @@ macro_rules! optional {
 
 macro_rules! toggle {
     ($($path:tt)+) => {
-        field!(Toggle $($path)+, $crate::document::Kind::Toggle)
+        field!($($path)+, $crate::document::Kind::Toggle)
+    };
+}
+
+/// A number between 0 and 1.
+macro_rules! share {
+    ($path:ident) => {
+        field!($path, single(0.0..=1.0, ""))
     };
 }
 
 macro_rules! color {
     ($($path:tt)+) => {
-        field!(Color $($path)+, $crate::document::Kind::Color)
+        field!($($path)+, $crate::document::Kind::Color { most: 1.0 })
     };
 }
 
@@ -80,4 +67,52 @@ macro_rules! own {
     };
 }
 
-pub(super) use {choice, color, field, optional, own, rows, toggle};
+pub(super) use {choice, color, field, own, rows, share, toggle};
+
+/// A field of a document that a [`Value`] stands for.
+pub(super) trait Field {
+    fn value(&self) -> Value;
+    /// Nothing changes where the value is of another kind.
+    fn take(&mut self, value: Value);
+}
+
+/// Types with the variant of [`Value`] that holds them, and the ways there and back.
+macro_rules! fields {
+    ($($type:ty, $variant:ident($x:ident) $value:expr, $back:expr;)*) => {
+        $(impl Field for $type {
+            fn value(&self) -> Value {
+                let $x = *self;
+                Value::$variant($value)
+            }
+
+            fn take(&mut self, value: Value) {
+                if let Value::$variant($x) = value {
+                    *self = $back;
+                }
+            }
+        })*
+    };
+}
+
+fields! {
+    f32, Number(x) x.into(), x as f32;
+    f64, Number(x) x, x;
+    u32, Number(x) x.into(), x as u32;
+    bool, Toggle(x) x, x;
+    [f32; 3], Color(x) x, x;
+    [f64; 3], Place(x) x, x;
+}
+
+/// What may be left to the program.
+impl<F: Field + Default> Field for Option<F> {
+    fn value(&self) -> Value {
+        self.as_ref().map_or(Value::Absent, F::value)
+    }
+
+    fn take(&mut self, value: Value) {
+        *self = (value != Value::Absent).then(F::default);
+        if let Some(field) = self {
+            field.take(value);
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::{Kind, Parameter, RowStyle, Stage, Takes};
+use super::{Kind, Parameter, Precision, RowStyle, Stage, Takes};
 
 impl<T> Parameter<T> {
     /// A parameter in no group, which always has an effect.
@@ -93,12 +93,26 @@ pub(super) fn ends(range: RangeInclusive<f64>) -> [f64; 2] {
 }
 
 pub(super) fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
-    let range = ends(range);
-    Kind::Real { range, unit }
+    Kind::Number {
+        range: ends(range),
+        unit,
+        precision: Precision::Double,
+    }
 }
 
-/// A number in single precision.
+/// A number in single precision, as its ends are.
 pub(super) fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
-    let range = ends(range).map(|end| end as f32);
-    Kind::Number { range, unit }
+    Kind::Number {
+        range: ends(range).map(|end| f64::from(end as f32)),
+        unit,
+        precision: Precision::Single,
+    }
+}
+
+pub(super) fn count(range: RangeInclusive<f64>) -> Kind {
+    Kind::Number {
+        range: ends(range),
+        unit: "",
+        precision: Precision::Whole,
+    }
 }

@@ -12,7 +12,6 @@ mod text;
 use serde_json::Value as Json;
 
 use super::custom_curve::CustomCurve;
-use super::material_textures::{map_key, target_of_key};
 use super::{Document, MaterialSettings};
 use crate::named::Named;
 use crate::scene::texture::{TextureTarget, UserTexture};
@@ -29,10 +28,7 @@ pub(crate) use text::{nearest, nearest_key};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A number in the parameter's unit.
-    Number(f32),
-    /// The same in double precision.
-    Real(f64),
-    Count(u32),
+    Number(f64),
     /// Coordinates in scene units.
     Place([f64; 3]),
     /// Left to the program.
@@ -53,20 +49,10 @@ pub enum Value {
 pub enum Kind {
     Number {
         /// Least and largest value that it takes.
-        range: [f32; 2],
-        /// Unit, or empty.
-        unit: &'static str,
-    },
-    /// A number in double precision.
-    Real {
-        /// Least and largest value that it takes.
         range: [f64; 2],
         /// Unit, or empty.
         unit: &'static str,
-    },
-    Count {
-        /// Least and largest value that it takes.
-        range: [u32; 2],
+        precision: Precision,
     },
     /// Coordinates in scene units.
     Place {
@@ -82,10 +68,8 @@ pub enum Kind {
         /// What it is once switched on; `None` if only the scene knows it.
         at_first: Option<Value>,
     },
-    /// Linear RGB, each in [0, 1].
-    Color,
-    /// Linear RGB that may be above 1.
-    Tint {
+    /// Linear RGB; above 1 it is a tint.
+    Color {
         /// Largest value that each takes.
         most: f32,
     },
@@ -98,6 +82,14 @@ pub enum Kind {
     Toggle,
     /// The points of a [`CustomCurve`].
     Curve,
+}
+
+/// How a number is kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Precision {
+    Single,
+    Double,
+    Whole,
 }
 
 /// One of several values to choose from.
@@ -216,7 +208,7 @@ pub fn parameter(key: &str) -> Result<&'static Parameter, ParameterError> {
 /// Parameter that an image textures, and parameter of the image, of a key such as `base.color_map.rotation`.
 fn texture_key(key: &str) -> Option<(TextureTarget, &str)> {
     let (of_target, of_texture) = key.rsplit_once('.')?;
-    Some((target_of_key(of_target)?, of_texture))
+    Some((TextureTarget::of_key(of_target, "_map")?, of_texture))
 }
 
 /// The parameter of an image on a material with this key.
@@ -270,7 +262,7 @@ pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), P
             .user_textures
             .get_mut(target)
             .ok_or(ParameterError::NoTexture {
-                key: map_key(target),
+                key: target.map_key(),
                 target: target.name(),
             })?;
         return parameter.set(texture, value);
@@ -283,18 +275,14 @@ impl MaterialSettings {
     /// Brings numbers and colours into their ranges.
     pub fn bring_into_range(&mut self) {
         for parameter in PARAMETERS.iter() {
-            let value = match (&parameter.kind, parameter.get(self)) {
-                (
-                    Kind::Number {
-                        range: [least, most], ..
-                    },
-                    Value::Number(x),
-                ) => Value::Number(x.clamp(*least, *most)),
-                (Kind::Color, Value::Color(color)) => Value::Color(color.map(|x| x.clamp(0.0, 1.0))),
-                (Kind::Tint { most }, Value::Color(color)) => Value::Color(color.map(|x| x.clamp(0.0, *most))),
+            let [least, most] = match &parameter.kind {
+                Kind::Number { range, .. } => range.map(|end| end as f32),
+                Kind::Color { most } => [0.0, *most],
                 _ => continue,
             };
-            parameter.put(self, value);
+            if let Some(numbers) = parameter.rgb(self) {
+                parameter.put_rgb(self, numbers.map(|x| x.clamp(least, most)));
+            }
         }
     }
 }
@@ -355,6 +343,26 @@ impl<T> Parameter<T> {
         (self.set)(of, value);
     }
 
+    /// The value as formats of other programs have it: a colour, or a number three times.
+    pub(crate) fn rgb(&self, of: &T) -> Option<[f32; 3]> {
+        match self.get(of) {
+            Value::Number(x) => Some([x as f32; 3]),
+            Value::Color(color) => Some(color),
+            _ => None,
+        }
+    }
+
+    /// Sets such a value, which may be out of range.
+    pub(crate) fn put_rgb(&self, of: &mut T, numbers: [f32; 3]) {
+        let value = match self.kind {
+            Kind::Number { .. } => Value::Number(numbers[0].into()),
+            Kind::Color { .. } => Value::Color(numbers),
+            Kind::Toggle => Value::Toggle(numbers[0] != 0.0),
+            _ => return,
+        };
+        self.put(of, value);
+    }
+
     /// Whether the parameter takes a value.
     pub fn check(&self, value: &Value) -> Result<(), ParameterError> {
         let kind = match (&self.kind, value) {
@@ -364,11 +372,8 @@ impl<T> Parameter<T> {
         };
         let is_valid = match (kind, value) {
             (Kind::Number { range, .. }, Value::Number(x)) => within(*range, *x),
-            (Kind::Real { range, .. }, Value::Real(x)) => within(*range, *x),
-            (Kind::Count { range }, Value::Count(n)) => within(*range, *n),
             (Kind::Place { range }, Value::Place(place)) => place.iter().all(|x| within(*range, *x)),
-            (Kind::Color, Value::Color(color)) => color.iter().all(|x| within([0.0, 1.0], *x)),
-            (Kind::Tint { most }, Value::Color(color)) => color.iter().all(|x| within([0.0, *most], *x)),
+            (Kind::Color { most }, Value::Color(color)) => color.iter().all(|x| within([0.0, *most], *x)),
             (Kind::Triple { range }, Value::Triple(triple)) => triple.iter().all(|x| within(*range, *x)),
             (Kind::Choice(choices), Value::Choice(name)) => choices.iter().any(|choice| choice.name == *name),
             (Kind::Toggle, Value::Toggle(_)) => true,
@@ -402,9 +407,7 @@ impl<T> Parameter<T> {
     /// The value as [`Parameter::parse`] reads it, exact.
     pub fn text(&self, value: &Value) -> String {
         match value {
-            Value::Number(x) => x.to_string(),
-            Value::Real(x) => x.to_string(),
-            Value::Count(n) => n.to_string(),
+            Value::Number(x) => self.kind.precision().text(*x),
             Value::Place([x, y, z]) => format!("{x},{y},{z}"),
             Value::Absent => self.kind.word_for_absent().to_owned(),
             Value::Color([r, g, b]) | Value::Triple([r, g, b]) => format!("{r},{g},{b}"),
@@ -444,8 +447,7 @@ impl<T> Parameter<T> {
 
     fn expected_in_json(&self) -> String {
         match &self.kind {
-            Kind::Color => "give [r, g, b] (linear, each from 0 to 1)".to_owned(),
-            Kind::Tint { most } => format!("give [r, g, b] (linear, each from 0 to {most})"),
+            Kind::Color { most } => format!("give [r, g, b] (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("give [r, g, b], each from {low} to {high}"),
             Kind::Curve => "give points [[ξ, D], …] such as [[0, 0], [0.5, 0.4], [1, 1]]".to_owned(),
             _ => self.expected(),

@@ -11,20 +11,20 @@ use crate::document::{AreaLight, AreaLightShape, range};
 pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new(|| {
     rows! {
         "lighting.area_lights.shape" "Shape" "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away." choice(AreaLightShape shape);
-        "lighting.area_lights.yaw_deg" "Yaw" "Turns the light around its target." field(Real yaw_deg, real(range::YAW_DEG, "°"))
+        "lighting.area_lights.yaw_deg" "Yaw" "Turns the light around its target." field(yaw_deg, real(range::YAW_DEG, "°"))
             .bar(-180.0, 180.0).decimals(1);
-        "lighting.area_lights.pitch_deg" "Pitch" "Height of the light above the horizon of its target." field(Real pitch_deg, real(range::PITCH_DEG, "°"))
+        "lighting.area_lights.pitch_deg" "Pitch" "Height of the light above the horizon of its target." field(pitch_deg, real(range::PITCH_DEG, "°"))
             .bar(-90.0, 90.0).decimals(1);
-        "lighting.area_lights.distance" "Distance" "From its target, in bounding radii of the model." field(Real distance, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 10.0);
-        "lighting.area_lights.target" "Target" "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii." field(Place target, Kind::Place { range: ends(range::LIGHT_TARGET) }).idle(of_lamps);
-        "lighting.area_lights.turn_deg" "Turn" "About the line to its target, clockwise seen from there." field(Real turn_deg, real(range::YAW_DEG, "°")).idle(of_lamps).bar(-180.0, 180.0).decimals(1);
-        "lighting.area_lights.width" "Width" "In bounding radii of the model. A small light makes sharp shadows." field(Real width, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 4.0);
-        "lighting.area_lights.height" "Height" "In bounding radii of the model." field(Real height, real(range::AREA_LENGTH, "")).idle(of_flat).bar(0.0, 4.0);
-        "lighting.area_lights.cone_deg" "Cone" "The angle across the cone into which a spot shines." field(Real cone_deg, real(range::CONE_DEG, "°")).idle(of_spots).bar(1.0, 120.0).decimals(1);
-        "lighting.area_lights.softness" "Softness" "The share of the cone over which a spot fades to its edge." field(Real softness, real(range::SOFTNESS, "")).idle(of_spots).bar(0.0, 1.0);
-        "lighting.area_lights.angle_deg" "Angle" "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows." field(Real angle_deg, real(range::SUN_ANGLE_DEG, "°")).idle(of_suns).bar(0.05, 10.0);
+        "lighting.area_lights.distance" "Distance" "From its target, in bounding radii of the model." field(distance, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 10.0);
+        "lighting.area_lights.target" "Target" "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii." field(target, Kind::Place { range: ends(range::LIGHT_TARGET) }).idle(of_lamps);
+        "lighting.area_lights.turn_deg" "Turn" "About the line to its target, clockwise seen from there." field(turn_deg, real(range::YAW_DEG, "°")).idle(of_lamps).bar(-180.0, 180.0).decimals(1);
+        "lighting.area_lights.width" "Width" "In bounding radii of the model. A small light makes sharp shadows." field(width, real(range::AREA_LENGTH, "")).idle(of_lamps).bar(0.0, 4.0);
+        "lighting.area_lights.height" "Height" "In bounding radii of the model." field(height, real(range::AREA_LENGTH, "")).idle(of_flat).bar(0.0, 4.0);
+        "lighting.area_lights.cone_deg" "Cone" "The angle across the cone into which a spot shines." field(cone_deg, real(range::CONE_DEG, "°")).idle(of_spots).bar(1.0, 120.0).decimals(1);
+        "lighting.area_lights.softness" "Softness" "The share of the cone over which a spot fades to its edge." field(softness, real(range::SOFTNESS, "")).idle(of_spots).bar(0.0, 1.0);
+        "lighting.area_lights.angle_deg" "Angle" "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows." field(angle_deg, real(range::SUN_ANGLE_DEG, "°")).idle(of_suns).bar(0.05, 10.0);
         "lighting.area_lights.color" "Colour" "Colour of the light." color(color);
-        "lighting.area_lights.strength" "Strength" "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it." field(Number strength, single(range::STRENGTH, ""))
+        "lighting.area_lights.strength" "Strength" "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it." field(strength, single(range::STRENGTH, ""))
             .bar(0.0, 100.0);
         "lighting.area_lights.hidden_from_camera" "Hidden" "It shines, but the camera doesn't see it: only mirrors and glass show it." toggle(is_hidden);
     }
@@ -65,8 +65,7 @@ impl Parameter<AreaLight> {
     pub(in crate::document) fn numbers(&self, light: &AreaLight) -> Vec<(&'static str, f64, [f64; 2])> {
         let key = self.key;
         match (self.get(light), &self.kind) {
-            (Value::Real(x), Kind::Real { range, .. }) => vec![(key, x, *range)],
-            (Value::Number(x), Kind::Number { range, .. }) => vec![(key, x.into(), range.map(f64::from))],
+            (Value::Number(x), Kind::Number { range, .. }) => vec![(key, x, *range)],
             (Value::Place(place), Kind::Place { range }) => place.map(|x| (key, x, *range)).to_vec(),
             (Value::Color(color), _) => color.map(|x| (key, x.into(), [0.0, 1.0])).to_vec(),
             _ => Vec::new(),

@@ -1,11 +1,11 @@
 //! Values as text and as JSON.
 
-use std::fmt::{Display, Write as _};
+use std::fmt::Write as _;
 use std::str::FromStr;
 
 use serde_json::Value as Json;
 
-use super::{Choice, Kind, Parameter, Value, keys};
+use super::{Choice, Kind, Parameter, Precision, Value, keys};
 use crate::document::custom_curve::DISTANCE_MAX;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
@@ -14,14 +14,16 @@ impl Kind {
     /// The value that a text says; `None` where it says none of this kind. Ranges are not looked at.
     pub(super) fn parse(&self, text: &str) -> Option<Value> {
         match self {
-            Kind::Number { .. } => parse_number(text).map(Value::Number),
-            Kind::Real { .. } => parse_number(text).map(Value::Real),
-            Kind::Count { .. } => text.parse().ok().map(Value::Count),
+            Kind::Number { precision, .. } => match precision {
+                Precision::Single => parse_number::<f32>(text).map(f64::from),
+                Precision::Double => parse_number(text),
+                Precision::Whole => text.parse::<u32>().ok().map(f64::from),
+            }
+            .map(Value::Number),
             Kind::Place { .. } => parse_list(text).map(Value::Place),
             Kind::Optional { word, .. } if text == *word => Some(Value::Absent),
             Kind::Optional { kind, .. } => kind.parse(text),
-            Kind::Color => parse_color(text).ok().map(Value::Color),
-            Kind::Tint { .. } => parse_hex_color(text).or_else(|| parse_list(text)).map(Value::Color),
+            Kind::Color { .. } => parse_hex_color(text).or_else(|| parse_list(text)).map(Value::Color),
             Kind::Triple { .. } => parse_list(text).map(Value::Triple),
             Kind::Choice(choices) => choose(choices, text),
             Kind::Toggle => match text {
@@ -36,16 +38,19 @@ impl Kind {
     /// The value that a file says; `None` where it says none of this kind. Ranges are not looked at.
     pub(super) fn value_from_json(&self, json: &Json) -> Option<Value> {
         match (self, json) {
-            (Kind::Number { .. }, json) => json_number(json).map(Value::Number),
-            (Kind::Real { .. }, json) => json.as_f64().map(Value::Real),
-            (Kind::Count { .. }, json) => json.as_u64()?.try_into().ok().map(Value::Count),
+            (Kind::Number { precision, .. }, json) => match precision {
+                Precision::Single => json_number(json).map(f64::from),
+                Precision::Double => json.as_f64(),
+                Precision::Whole => json.as_u64()?.try_into().ok().map(|n: u32| n.into()),
+            }
+            .map(Value::Number),
             (Kind::Place { .. }, Json::Array(place)) => {
                 let numbers: Option<Vec<f64>> = place.iter().map(Json::as_f64).collect();
                 numbers?.try_into().ok().map(Value::Place)
             }
             (Kind::Optional { .. }, Json::Null) => Some(Value::Absent),
             (Kind::Optional { kind, .. }, json) => kind.value_from_json(json),
-            (Kind::Color | Kind::Tint { .. }, json) => json_numbers(json).map(Value::Color),
+            (Kind::Color { .. }, json) => json_numbers(json).map(Value::Color),
             (Kind::Triple { .. }, json) => json_numbers(json).map(Value::Triple),
             (Kind::Choice(choices), Json::String(name)) => choose(choices, name),
             (Kind::Toggle, Json::Bool(on)) => Some(Value::Toggle(*on)),
@@ -58,24 +63,16 @@ impl Kind {
 
     /// What it takes, in words.
     pub(super) fn expected(&self) -> String {
-        let number = |low: &dyn Display, high: &dyn Display, unit: &str| {
-            let space = if unit.is_empty() { "" } else { " " };
-            format!("a number from {low} to {high}{space}{unit}")
-        };
         match self {
-            Kind::Number {
-                range: [low, high],
-                unit,
-            } => number(low, high, unit),
-            Kind::Real {
-                range: [low, high],
-                unit,
-            } => number(low, high, unit),
-            Kind::Count { range: [low, high] } => format!("a whole number from {low} to {high}"),
+            Kind::Number { range, unit, precision } => {
+                let whole = if *precision == Precision::Whole { "whole " } else { "" };
+                let space = if unit.is_empty() { "" } else { " " };
+                let [low, high] = range.map(|end| precision.text(end));
+                format!("a {whole}number from {low} to {high}{space}{unit}")
+            }
             Kind::Place { range: [low, high] } => format!("x,y,z: three numbers, each from {low} to {high}"),
             Kind::Optional { kind, word, .. } => format!("{}, or {word}", kind.expected()),
-            Kind::Color => COLOR_EXPECTED.to_owned(),
-            Kind::Tint { most } => format!("#rrggbb (sRGB) or r,g,b (linear, each from 0 to {most})"),
+            Kind::Color { most } => format!("#rrggbb (sRGB) or r,g,b (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
             Kind::Choice(choices) => {
                 let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
@@ -98,15 +95,27 @@ impl Kind {
             unit => unit.to_owned(),
         };
         match self {
-            Kind::Number { unit, .. } | Kind::Real { unit, .. } => of_unit(unit),
-            Kind::Count { .. } => "N".to_owned(),
+            Kind::Number {
+                precision: Precision::Whole,
+                ..
+            } => "N".to_owned(),
+            Kind::Number { unit, .. } => of_unit(unit),
             Kind::Place { .. } => "X,Y,Z".to_owned(),
             Kind::Optional { kind, word, .. } => format!("{}|{word}", kind.placeholder()),
-            Kind::Color | Kind::Tint { .. } => "#RRGGBB".to_owned(),
+            Kind::Color { .. } => "#RRGGBB".to_owned(),
             Kind::Triple { .. } => "R,G,B".to_owned(),
             Kind::Choice(choices) => choices.iter().map(|choice| choice.name).collect::<Vec<_>>().join("|"),
             Kind::Toggle => "on|off".to_owned(),
             Kind::Curve => "ξ:D,…".to_owned(),
+        }
+    }
+
+    /// How its numbers are kept.
+    pub(super) fn precision(&self) -> Precision {
+        match self {
+            Kind::Number { precision, .. } => *precision,
+            Kind::Optional { kind, .. } => kind.precision(),
+            _ => Precision::Double,
         }
     }
 
@@ -119,13 +128,25 @@ impl Kind {
     }
 }
 
+impl Precision {
+    /// A number that reads back as it is.
+    pub(super) fn text(self, x: f64) -> String {
+        match self {
+            Self::Single => (x as f32).to_string(),
+            Self::Double | Self::Whole => x.to_string(),
+        }
+    }
+}
+
 impl<T> Parameter<T> {
     /// The value as it is written to files, exact.
     pub fn json_from_value(&self, value: &Value) -> Json {
         match value {
-            Value::Number(x) => json_from_number(*x),
-            Value::Real(x) => Json::from(*x),
-            Value::Count(n) => Json::from(*n),
+            Value::Number(x) => match self.kind.precision() {
+                Precision::Single => json_from_number(*x as f32),
+                Precision::Double => Json::from(*x),
+                Precision::Whole => Json::from(*x as u32),
+            },
             Value::Place(place) => place.iter().copied().collect(),
             Value::Absent => Json::Null,
             Value::Color(triple) | Value::Triple(triple) => triple.iter().map(|x| json_from_number(*x)).collect(),
@@ -156,7 +177,7 @@ pub(super) fn parse_list<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<[N
 #[error("{0} is no colour; give {COLOR_EXPECTED}")]
 pub struct ColorError(String);
 
-pub(super) const COLOR_EXPECTED: &str = "#rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)";
+const COLOR_EXPECTED: &str = "#rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)";
 
 /// Linear RGB, each in [0, 1], from `#rrggbb` (sRGB) or `r,g,b` (linear).
 pub fn parse_color(text: &str) -> Result<[f32; 3], ColorError> {

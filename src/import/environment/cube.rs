@@ -5,10 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::decoded::{Picture, Source, io};
+use super::canvas::{Picture, Source};
 use super::error::EnvironmentError;
 use crate::endings::is_picture;
-use crate::scene::environment::{MAX_HEIGHT, environment_direction};
+use crate::scene::environment::{MAX_HEIGHT, texel_direction};
 
 /// Positions of the faces in a horizontal cross, in faces from the top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
@@ -23,22 +23,12 @@ const NAMES: [[&str; 6]; 3] = [
 /// Tolerance for differences among the corners of a cross.
 const CORNER_TOLERANCE: f32 = 0.01;
 
-/// Layout or orientation of a cube's faces.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Axes {
-    /// OpenGL's, turned to our world.
-    OpenGl,
-    /// OpenEXR's: a right-handed world, each face seen from within.
-    OpenExr,
-}
-
-/// A cube: faces in one image, or in one each.
+/// A cube whose faces are in one image.
 struct Cube<'a> {
-    pictures: Vec<&'a Picture>,
-    /// Top left of each face in its image.
+    picture: &'a Picture,
+    /// Top left of each face.
     corners: [[u32; 2]; 6],
     side: u32,
-    axes: Axes,
     /// True if the last face is upside down.
     is_last_turned: bool,
 }
@@ -47,33 +37,28 @@ struct Cube<'a> {
 /// image unchanged.
 pub(super) fn unfolded(picture: Picture) -> Picture {
     let (width, height) = (picture.width, picture.height);
-    let axes = if picture.is_cube { Axes::OpenExr } else { Axes::OpenGl };
-    let strip = |step: [u32; 2]| [0, 1, 2, 3, 4, 5].map(|face| step.map(|side| face * side));
-    let (side, corners, is_last_turned) = if width == 6 * height {
-        (height, strip([height, 0]), false)
+    let faces = [0, 1, 2, 3, 4, 5];
+    // Side and top left of each face in sides, and whether the image is a cross.
+    let (side, places, is_cross) = if width == 6 * height {
+        (height, faces.map(|face| [face, 0]), false)
     } else if height == 6 * width {
-        (width, strip([0, width]), false)
+        (width, faces.map(|face| [0, face]), false)
     } else if 3 * width == 4 * height && width.is_multiple_of(4) {
-        (width / 4, HORIZONTAL_CROSS, false)
+        (width / 4, HORIZONTAL_CROSS, true)
     } else if 4 * width == 3 * height && width.is_multiple_of(3) {
         (width / 3, VERTICAL_CROSS, true)
     } else {
         return picture;
     };
-    let is_cross = corners == HORIZONTAL_CROSS || corners == VERTICAL_CROSS;
-    let corners = if is_cross {
-        corners.map(|corner| corner.map(|place| place * side))
-    } else {
-        corners
-    };
+    let corners = places.map(|place| place.map(|sides| sides * side));
     if is_cross && !has_empty_corners(&picture, side, &corners) {
         return picture;
     }
+    let is_last_turned = places == VERTICAL_CROSS;
     let cube = Cube {
-        pictures: vec![&picture],
+        picture: &picture,
         corners,
         side,
-        axes,
         is_last_turned,
     };
     let mut unfolded = cube.lat_long();
@@ -81,45 +66,38 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
     unfolded
 }
 
-/// Converts six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, to a
-/// latitude-longitude map; `decode` reads one.
+/// Six files in a folder, called `px`, `nx`, … or `right`, `left`, … at the ends of their names, as an upright strip;
+/// `decode` reads one.
 pub(super) fn read_folder(
     source: Source<'_>,
     decode: impl Fn(Source<'_>) -> Result<Picture, EnvironmentError>,
 ) -> Result<Picture, EnvironmentError> {
-    let path = source.path;
-    let files: Vec<PathBuf> = io(path, std::fs::read_dir(path))?
+    let files = source
+        .io(std::fs::read_dir(source.path))?
         .flatten()
-        .map(|entry| entry.path())
-        .filter(|file| is_picture(file))
-        .collect();
-    let faces = faces(&files).ok_or_else(|| EnvironmentError::NoFaces { path: path.to_owned() })?;
-    let pictures: Vec<Picture> = faces
-        .iter()
-        .map(|face| {
-            let name = face.file_name().unwrap_or_default().to_string_lossy();
-            source.loading.step(format!("reading {name}"))?;
-            decode(Source { path: face, ..source })
-        })
-        .collect::<Result<_, _>>()?;
-    let side = pictures
-        .iter()
-        .map(|face| face.width.min(face.height))
-        .min()
-        .unwrap_or(0);
-    let cube = Cube {
-        pictures: pictures.iter().collect(),
-        corners: [[0; 2]; 6],
-        side,
-        axes: Axes::OpenGl,
-        is_last_turned: false,
-    };
-    let mut unfolded = cube.lat_long();
-    if pictures.iter().any(|face| [face.width, face.height] != [side; 2]) {
-        let text = "The six faces are not squares of one size; what they share is used.";
-        unfolded.warnings.push(text.to_owned());
+        .map(|entry| entry.path());
+    let files: Vec<PathBuf> = files.filter(|file| is_picture(file)).collect();
+    let faces = faces(&files).ok_or_else(|| {
+        EnvironmentError::Refused(format!(
+            "the environment {} is a folder without six images whose names end in px, nx, py, ny, pz, nz (or right, left, \
+             top, bottom, front, back): name a file in it",
+            source.path.display()
+        ))
+    })?;
+    let mut strip = Picture::new(0, 0, Vec::new());
+    for path in faces {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        source.loading.step(format!("reading {name}"))?;
+        let face = Source { path, ..source };
+        let picture = decode(face)?;
+        if picture.width != picture.height || ![0, picture.width].contains(&strip.width) {
+            return Err(face.refused("is no square as large as the other faces of its cube: save all six in one size"));
+        }
+        strip.width = picture.width;
+        strip.height += picture.height;
+        strip.texels.extend(picture.texels);
     }
-    Ok(unfolded)
+    Ok(strip)
 }
 
 /// Whether files are the six faces of a cube, by their names.
@@ -159,29 +137,18 @@ impl Cube<'_> {
     fn lat_long(&self) -> Picture {
         let height = (2 * self.side).clamp(1, MAX_HEIGHT);
         let width = 2 * height;
-        let direction = |column: u32, row: u32| {
-            environment_direction([
-                (f64::from(column) + 0.5) / f64::from(width),
-                (f64::from(row) + 0.5) / f64::from(height),
-            ])
-        };
-        let texels = (0..height)
-            .flat_map(|row| (0..width).map(move |column| direction(column, row)))
-            .map(|d| self.radiance([d.x, d.y, d.z]));
-        Picture {
-            width,
-            height,
-            texels: texels.collect(),
-            warnings: Vec::new(),
-            is_cube: false,
-        }
+        let places = (0..height).flat_map(|row| (0..width).map(move |column| [column, row]));
+        let texels = places.map(|place| self.radiance(texel_direction(place, [width, height]).to_f64()));
+        Picture::new(width, height, texels.collect())
     }
 
     /// Radiance from a direction, bilinear within the face that it hits.
     fn radiance(&self, direction: [f64; 3]) -> [f32; 4] {
-        let (face, place) = match self.axes {
-            Axes::OpenGl => opengl_place([-direction[0], direction[1], direction[2]]),
-            Axes::OpenExr => openexr_place(direction),
+        let [x, y, z] = direction;
+        let (face, place) = match self.picture.is_cube {
+            // A right-handed world, each face seen from within.
+            true => openexr_place(direction),
+            false => opengl_place([-x, y, z]),
         };
         let place = if face == 5 && self.is_last_turned {
             place.map(|p| 1.0 - p)
@@ -192,8 +159,7 @@ impl Cube<'_> {
         let [x, y] = place.map(|p| (p * f64::from(self.side) - 0.5).clamp(0.0, last));
         let texel = |x: f64, y: f64| self.texel(face, x as u32, y as u32);
         let mix = |a: [f32; 4], b: [f32; 4], t: f64| {
-            let t = t as f32;
-            [0, 1, 2, 3].map(|channel| a[channel] + t * (b[channel] - a[channel]))
+            [0, 1, 2, 3].map(|channel| a[channel] + t as f32 * (b[channel] - a[channel]))
         };
         let (right, below) = ((x + 1.0).min(last), (y + 1.0).min(last));
         let upper = mix(texel(x, y), texel(right, y), x.fract());
@@ -202,30 +168,22 @@ impl Cube<'_> {
     }
 
     fn texel(&self, face: usize, x: u32, y: u32) -> [f32; 4] {
-        let picture = self.pictures[face.min(self.pictures.len() - 1)];
         let [left, top] = self.corners[face];
-        picture.texels[((top + y) * picture.width + left + x) as usize]
+        self.picture.texels[((top + y) * self.picture.width + left + x) as usize]
     }
-}
-
-/// The axis along which a direction goes farthest, and whether it does so forwards.
-fn major_axis(d: [f64; 3]) -> (usize, bool) {
-    let [x, y, z] = d.map(f64::abs);
-    let axis = if x >= y && x >= z {
-        0
-    } else if y >= z {
-        1
-    } else {
-        2
-    };
-    (axis, d[axis] > 0.0)
 }
 
 /// The face that a direction hits and the position on it, in [0, 1]² from the top left (OpenGL specification, table of
 /// cube-map faces).
 fn opengl_place(d: [f64; 3]) -> (usize, [f64; 2]) {
     let [x, y, z] = d;
-    let (axis, is_positive) = major_axis(d);
+    let sizes = d.map(f64::abs);
+    let axis = match sizes {
+        [x, y, z] if x >= y && x >= z => 0,
+        [_, y, z] if y >= z => 1,
+        _ => 2,
+    };
+    let is_positive = d[axis] > 0.0;
     let (s, t) = match (axis, is_positive) {
         (0, true) => (-z, -y),
         (0, false) => (z, -y),
@@ -235,21 +193,11 @@ fn opengl_place(d: [f64; 3]) -> (usize, [f64; 2]) {
         (_, false) => (-x, -y),
     };
     let face = 2 * axis + usize::from(!is_positive);
-    (face, [s, t].map(|place| 0.5 + 0.5 * place / d[axis].abs()))
+    (face, [s, t].map(|place| 0.5 + 0.5 * place / sizes[axis]))
 }
 
-/// The same for OpenEXR's cubes (OpenEXR, `ImfEnvmap`, `CubeMap::pixelPosition`).
-fn openexr_place(d: [f64; 3]) -> (usize, [f64; 2]) {
-    let [x, y, z] = d;
-    let (axis, is_positive) = major_axis(d);
-    let (s, t) = match (axis, is_positive) {
-        (0, true) => (z, -y),
-        (0, false) => (-z, -y),
-        (1, true) => (x, -z),
-        (1, false) => (x, z),
-        (_, true) => (-x, -y),
-        (_, false) => (x, -y),
-    };
-    let face = 2 * axis + usize::from(!is_positive);
-    (face, [s, t].map(|place| 0.5 + 0.5 * place / d[axis].abs()))
+/// The same for OpenEXR's cubes (OpenEXR, `ImfEnvmap`, `CubeMap::pixelPosition`): mirrored in z, the faces stay where they are.
+fn openexr_place([x, y, z]: [f64; 3]) -> (usize, [f64; 2]) {
+    let (face, place) = opengl_place([x, y, -z]);
+    (if face < 4 { face } else { 9 - face }, place)
 }

@@ -1,24 +1,21 @@
 //! Environments from files: choice of the decoder, and repairs.
 
 mod canvas;
-mod container;
 mod cube;
-mod decoded;
-mod display_referred;
 mod error;
-mod exr_window;
+mod image;
 mod luminance_chroma;
 mod open_exr;
 mod radiance_hdr;
 
 use std::path::Path;
 
+use canvas::{Picture, Source};
 pub use cube::are_faces;
-use decoded::{Picture, Source};
 pub use error::EnvironmentError;
 
-use crate::budget::Budget;
 use crate::endings::{ending, is_picture};
+use crate::limits::Budget;
 use crate::scene::Loading;
 use crate::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
 
@@ -61,13 +58,13 @@ fn load_path(path: &Path, encoding: EnvironmentEncoding, loading: &Loading) -> R
         budget: &Budget::of_import(),
     };
     let check_work = |texels: usize| source.within(source.budget.check(WORK_BYTES * texels as u64));
-    let mut picture = if path.is_dir() {
+    let picture = if path.is_dir() {
         cube::read_folder(source, decode)?
     } else {
-        let picture = decode(source)?;
-        check_work(picture.texels.len())?;
-        cube::unfolded(picture)
+        decode(source)?
     };
+    check_work(picture.texels.len())?;
+    let mut picture = cube::unfolded(picture);
     check_work(picture.texels.len())?;
     loading.step("the environment's distribution")?;
     repair(&mut picture);
@@ -80,11 +77,12 @@ fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     match ending(source.path).as_str() {
         "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
         "exr" => open_exr::read(source),
-        "ktx2" | "dds" => container::read(source),
-        _ if is_picture(source.path) => display_referred::read(source),
-        _ => Err(EnvironmentError::UnknownExtension {
-            path: source.path.to_owned(),
-        }),
+        _ if is_picture(source.path) => image::read(source),
+        _ => Err(EnvironmentError::Refused(format!(
+            "the environment {} is neither a .hdr nor an .exr, .ktx2, .dds, PNG, JPEG, TIFF or WebP file: convert it to one of \
+             them, or use studio, sky or furnace",
+            source.path.display()
+        ))),
     }
 }
 

@@ -1,7 +1,7 @@
 //! OpenEXR files, by the `exr` crate.
 
-use std::io::{BufReader, Read};
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
 
 use exr::block::UncompressedBlock;
 use exr::block::chunk::Chunk;
@@ -15,15 +15,13 @@ use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
 
-use super::canvas::Canvas;
-use super::decoded::{Picture, Source, io};
+use super::canvas::{Canvas, Picture, Source};
 use super::error::EnvironmentError;
-use super::exr_window::{exr_error, window};
 use super::luminance_chroma;
+use crate::limits;
 use crate::panics::contained;
 use crate::parallel;
-use crate::picture::exr_space::space;
-use crate::resource;
+use crate::picture::exr_space;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.
@@ -39,41 +37,39 @@ const CHUNKS_AT_ONCE: usize = 32;
 struct Layer {
     index: usize,
     components: Vec<[bool; 3]>,
-    warnings: Vec<String>,
 }
 
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
-    let path = source.path;
     // Some damaged files fail assertions inside the crate instead of giving errors.
-    contained(|| read_guarded(source)).unwrap_or_else(|| {
-        let detail = "its pixels contradict each other".to_owned();
-        Err(EnvironmentError::damaged(path, detail))
-    })
+    let read = contained(|| read_guarded(source));
+    read.unwrap_or_else(|| Err(source.damaged("its pixels contradict each other")))
 }
 
 /// [`read`] without protection: the crate may panic.
 fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
-    let path = source.path;
-    let file_bytes = check_preamble(path)?;
-    let file = BufReader::new(io(path, resource::open(path))?);
-    let reader = match Reader::read_from_buffered(file, false) {
+    let mut file = source.io(limits::open(source.path))?;
+    let file_bytes = source.io(file.metadata())?.len();
+    check_preamble(source, &mut file)?;
+    source.io(file.rewind())?;
+    let reader = match Reader::read_from_buffered(BufReader::new(file), false) {
         Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(source),
-        result => result.map_err(|error| exr_error(path, error))?,
+        result => result.map_err(|error| exr_error(source, error))?,
     };
     if has_fine_chroma(reader.headers()) {
         return luminance_chroma::read(source);
     }
-    let layer = choose_layer(path, reader.headers())?;
+    let layers = reader.headers().len();
+    let layer = choose_layer(source, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
     let (mut canvas, offset) = window(source, &header)?;
-    check_supported(path, &header, file_bytes)?;
+    check_supported(source, &header, file_bytes)?;
 
     let chunks = reader
         .filter_chunks(false, |_, _, block| {
             block.layer == layer.index && block.level == Vec2(0, 0)
         })
-        .map_err(|error| exr_error(path, error))?;
+        .map_err(|error| exr_error(source, error))?;
     let meta_data = chunks.meta_data().clone();
     for_each_block(source, chunks, &meta_data, |block| {
         for line in block.lines(&header.channels) {
@@ -83,38 +79,60 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         }
     })?;
     let mut picture = canvas.finish();
-    picture.warnings.extend(layer.warnings);
-    picture.bring_to_rec709(path, &space(&header));
+    if layers > 1 {
+        let shown = layer.index + 1;
+        picture
+            .warnings
+            .push(format!("The file has {layers} layers; number {shown} is shown."));
+    }
+    picture.bring_to_rec709(source.path, &exr_space(&header));
     let layout = header.shared_attributes.other.get(&Text::from("envmap"));
     picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
     Ok(picture)
 }
 
-/// Checks the first eight bytes, which the crate's errors do not distinguish; returns the length of the file.
-fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
-    let mut file = io(path, resource::open(path))?;
-    let length = io(path, file.metadata())?.len();
+/// Checks the first eight bytes, which the crate's errors do not distinguish.
+fn check_preamble(source: Source<'_>, file: &mut File) -> Result<(), EnvironmentError> {
     let mut preamble = Vec::new();
-    io(path, file.by_ref().take(8).read_to_end(&mut preamble))?;
+    source.io(file.take(8).read_to_end(&mut preamble))?;
     if preamble.is_empty() {
-        return Err(EnvironmentError::truncated(path, "it has no content"));
+        return Err(source.truncated("it has no content"));
     }
     let Some(version) = preamble.strip_prefix(&MAGIC) else {
-        return Err(EnvironmentError::WrongContent {
-            path: path.to_owned(),
-            expected: "an OpenEXR",
-        });
+        return Err(source.wrong("an OpenEXR"));
     };
-    if let Ok(version) = <[u8; 4]>::try_from(version)
-        && u32::from_le_bytes(version) & DEEP_FLAG != 0
-    {
-        return Err(EnvironmentError::Unsupported {
-            path: path.to_owned(),
-            feature: "deep pixels".to_owned(),
-            remedy: "flatten it and save it as a scan-line EXR with ZIP or PIZ compression",
-        });
+    if <[u8; 4]>::try_from(version).is_ok_and(|version| u32::from_le_bytes(version) & DEEP_FLAG != 0) {
+        let remedy = "flatten it and save it as a scan-line EXR with ZIP or PIZ compression";
+        return Err(source.unsupported("deep pixels", remedy));
     }
-    Ok(length)
+    Ok(())
+}
+
+/// An empty image of the display window, and the position of the first stored pixel in it: negative for pixels outside the
+/// window.
+pub(super) fn window(source: Source<'_>, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
+    let display = header.shared_attributes.display_window;
+    let canvas = Canvas::new(source, display.size.width() as u64, display.size.height() as u64)?;
+    let stored = header.layer_size;
+    Canvas::check_size(source, stored.width() as u64, stored.height() as u64)?;
+    let (own, shown) = (header.own_attributes.layer_position, display.position);
+    let offset = [(own.x(), shown.x()), (own.y(), shown.y())];
+    Ok((canvas, offset.map(|(own, shown)| i64::from(own) - i64::from(shown))))
+}
+
+/// Converts the crate's error.
+pub(super) fn exr_error(source: Source<'_>, error: ExrError) -> EnvironmentError {
+    match error {
+        ExrError::Io(error) => source.unreadable(error),
+        ExrError::NotSupported(feature) => source.unsupported(
+            format_args!("an OpenEXR feature ({feature})"),
+            "re-save it as a plain RGB scan-line EXR with ZIP or PIZ compression",
+        ),
+        ExrError::Invalid(detail) if detail == "reference to missing bytes" => {
+            source.truncated("bytes that it refers to are missing")
+        }
+        error => source.damaged(error),
+    }
 }
 
 /// Whether a file of one part holds luminance and chroma of the same size, line by line.
@@ -129,70 +147,35 @@ fn has_fine_chroma(headers: &[Header]) -> bool {
 
 /// The first layer with red, green and blue, else the first with luminance. In one layer the channels may have a prefix
 /// (`view.R`): the shortest prefix wins.
-fn choose_layer(path: &Path, headers: &[Header]) -> Result<Layer, EnvironmentError> {
-    let names = |header: &Header| -> Vec<String> {
-        header
-            .channels
-            .list
-            .iter()
-            .map(|channel| channel.name.to_string())
-            .collect()
-    };
+fn choose_layer(source: Source<'_>, headers: &[Header]) -> Result<Layer, EnvironmentError> {
+    let channels = headers.iter().map(|header| &header.channels.list);
+    let names = channels.map(|list| list.iter().map(|channel| channel.name.to_string()).collect());
+    let names: Vec<Vec<String>> = names.collect();
     let find = |wanted: &[&str]| {
-        headers.iter().enumerate().find_map(|(index, header)| {
-            let names = names(header);
+        names.iter().enumerate().find_map(|(index, names)| {
             let mut prefixes: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(wanted[0])).collect();
             prefixes.retain(|prefix| prefix.is_empty() || prefix.ends_with('.'));
             prefixes.retain(|prefix| wanted.iter().all(|name| names.contains(&format!("{prefix}{name}"))));
-            prefixes.sort_by_key(|prefix| prefix.len());
-            prefixes.first().map(|prefix| (index, (*prefix).to_owned()))
+            let prefix = prefixes.into_iter().min_by_key(|prefix| prefix.len())?;
+            let fills = |name: &String| {
+                let name = name.strip_prefix(prefix);
+                let fills = |channel: usize| name == Some(wanted[channel % wanted.len()]);
+                [fills(0), fills(1), fills(2)]
+            };
+            let components = names.iter().map(fills).collect();
+            Some(Layer { index, components })
         })
     };
-    let (index, prefix, is_color) = if let Some((index, prefix)) = find(&["R", "G", "B"]) {
-        (index, prefix, true)
-    } else if let Some((index, prefix)) = find(&["Y"]) {
-        (index, prefix, false)
-    } else {
-        let found: Vec<String> = headers.iter().flat_map(names).collect();
-        return Err(EnvironmentError::Unsupported {
-            path: path.to_owned(),
-            feature: format!("only the channels {}", found.join(", ")),
-            remedy: "save it with channels R, G and B, or Y",
-        });
-    };
-    let components = names(&headers[index])
-        .iter()
-        .map(|name| match name.strip_prefix(prefix.as_str()) {
-            Some("R") => [is_color, false, false],
-            Some("G") => [false, is_color, false],
-            Some("B") => [false, false, is_color],
-            Some("Y") => [!is_color; 3],
-            _ => [false; 3],
-        })
-        .collect();
-    let mut warnings = Vec::new();
-    if headers.len() > 1 {
-        warnings.push(format!(
-            "The file has {} layers; number {} is shown.",
-            headers.len(),
-            index + 1
-        ));
-    }
-    Ok(Layer {
-        index,
-        components,
-        warnings,
+    find(&["R", "G", "B"]).or_else(|| find(&["Y"])).ok_or_else(|| {
+        let found = format!("only the channels {}", names.concat().join(", "));
+        source.unsupported(found, "save it with channels R, G and B, or Y")
     })
 }
 
 /// Refuses unsupported files, and headers that claim more than the file can contain.
-fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), EnvironmentError> {
+fn check_supported(source: Source<'_>, header: &Header, file_bytes: u64) -> Result<(), EnvironmentError> {
     if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
-        return Err(EnvironmentError::Unsupported {
-            path: path.to_owned(),
-            feature: "HTJ2K compression".to_owned(),
-            remedy: "re-save it with ZIP or PIZ compression",
-        });
+        return Err(source.unsupported("HTJ2K compression", "re-save it with ZIP or PIZ compression"));
     }
     let promised = (header.layer_size.area() as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
     let least = match header.compression {
@@ -201,10 +184,9 @@ fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), 
         _ => promised / MAX_COMPRESSION,
     };
     if file_bytes < least {
-        return Err(EnvironmentError::Truncated {
-            path: path.to_owned(),
-            detail: format!("it has {file_bytes} bytes, too few for the {promised} that its header promises"),
-        });
+        return Err(source.truncated(format_args!(
+            "it has {file_bytes} bytes, too few for the {promised} that its header promises"
+        )));
     }
     Ok(())
 }
@@ -217,7 +199,7 @@ fn for_each_block(
     meta_data: &MetaData,
     mut use_block: impl FnMut(&UncompressedBlock),
 ) -> Result<(), EnvironmentError> {
-    let failed = |error| exr_error(source.path, error);
+    let failed = |error| exr_error(source, error);
     let count = chunks.len();
     loop {
         let left = chunks.len();
@@ -244,15 +226,26 @@ fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], of
     let first_column = line.location.position.x() as i64 + offset[0];
     let end_column = first_column + line.location.sample_count as i64;
     let columns = first_column.max(0)..end_column.min(width);
-    let bytes = |column: i64, size: usize| &line.value[(column - first_column) as usize * size..][..size];
-    let sample = |column: i64| match sample_type {
-        SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes(column, 2))).to_f32(),
-        SampleType::F32 => bytemuck::pod_read_unaligned(bytes(column, 4)),
-        SampleType::U32 => bytemuck::pod_read_unaligned::<u32>(bytes(column, 4)) as f32,
+    let size = sample_type.bytes_per_sample();
+    let sample = |column: i64| {
+        number(
+            sample_type,
+            &line.value[(column - first_column) as usize * size..][..size],
+        )
     };
     for (component, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
         for column in columns.clone() {
             canvas.add(column as u32, row as u32, component, sample(column));
         }
+    }
+}
+
+/// A sample of a decompressed block.
+#[inline]
+pub(super) fn number(sample_type: SampleType, bytes: &[u8]) -> f32 {
+    match sample_type {
+        SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes)).to_f32(),
+        SampleType::F32 => bytemuck::pod_read_unaligned(bytes),
+        SampleType::U32 => bytemuck::pod_read_unaligned::<u32>(bytes) as f32,
     }
 }

@@ -22,8 +22,8 @@ const ROUNDING: f64 = 1e-6;
 
 /// Glossmith's widths from glTF's roughness and strength. Beyond Glossmith's limit, the longer width is kept.
 pub fn widths_from_gltf(roughness: f32, strength: f32) -> Widths {
-    let across = f64::from(roughness).powi(2);
-    let along = across + (1.0 - across) * f64::from(strength).powi(2);
+    let across = f64::from(roughness.clamp(0.0, 1.0)).powi(2);
+    let along = across + (1.0 - across) * f64::from(strength.clamp(0.0, 1.0)).powi(2);
     if along <= across {
         return Widths {
             roughness,
@@ -61,22 +61,24 @@ pub fn gltf_from_widths(roughness: f32, anisotropy: f32) -> Widths {
 /// Converts a slot from glTF's roughness and strength to ours. A varying roughness texture is copied with the wider
 /// highlight per texel; the anisotropy is that of its mean. Returns whether both widths are exact.
 pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bool {
-    let strength = slot.anisotropy;
+    let [roughness, strength] = ["specular.roughness", "specular.anisotropy"].map(|key| slot.number(key));
     let Some(place) = slot.texture(TextureTarget::Roughness) else {
-        let widths = widths_from_gltf(slot.roughness, strength);
-        (slot.roughness, slot.anisotropy) = (widths.roughness, widths.stretch);
+        let widths = widths_from_gltf(roughness, strength);
+        slot.set("specular.roughness", widths.roughness);
+        slot.set("specular.anisotropy", widths.stretch);
         return widths.is_exact;
     };
     let mut widened = textures[place.texture].clone();
-    let mean = widths_from_gltf(slot.roughness * texture_mean(&widened).codes[1], strength);
+    let mean = widths_from_gltf(roughness * texture_mean(&widened).codes[1], strength);
     widened.rgba16.clear();
     for texel in widened.rgba8.as_chunks_mut::<4>().0 {
-        let roughness = slot.roughness * f32::from(texel[1]) / 255.0;
+        let roughness = roughness * f32::from(texel[1]) / 255.0;
         texel[1] = (255.0 * widths_from_gltf(roughness, strength).roughness).round() as u8;
     }
     let texture = textures.len();
     *slot.texture_mut(TextureTarget::Roughness) = Some(TextureRef { texture, ..place });
     textures.push(widened);
-    (slot.roughness, slot.anisotropy) = (1.0, mean.stretch);
+    slot.set("specular.roughness", 1.0);
+    slot.set("specular.anisotropy", mean.stretch);
     mean.is_exact
 }

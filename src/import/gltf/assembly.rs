@@ -47,7 +47,7 @@ pub(super) fn assemble(
             continue;
         };
         let is_first = !std::mem::replace(&mut source.is_used, true);
-        let skin = document.root.nodes[node.node].skin.map(|skin| skin.value());
+        let skin = document.root.nodes[node.node].skin;
         let weights = pose.weights(document, node.node);
         let joints = skin.and_then(|skin| pose.joints(document, skin));
         let is_bent = skin.is_some() || weights.iter().any(|weight| *weight != 0.0);

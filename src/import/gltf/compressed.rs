@@ -1,13 +1,13 @@
-//! Meshes that are compressed: KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression.
+//! Meshes that are compressed: KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression, by the
+//! draco-gltf crate.
 
 use draco_gltf::{MeshoptFilter, MeshoptMode, PackedGeometry};
-use gltf::json::accessor::ComponentType;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use super::accessor::{decode, unsigned};
+use super::accessor::{Elements, component_size, unsigned};
 use super::container::{Document, MESHOPT_EXTENSIONS};
-use super::draco::decompress;
+use super::json::Primitive;
 use crate::parallel;
 use crate::scene::report::{Fate, ImportReport};
 
@@ -19,8 +19,8 @@ const MESHOPT_GROWTH: [usize; 2] = [2048, 1 << 16];
 struct MeshoptView {
     buffer: usize,
     #[serde(default)]
-    byte_offset: u64,
-    byte_length: u64,
+    byte_offset: usize,
+    byte_length: usize,
     byte_stride: usize,
     count: usize,
     mode: String,
@@ -47,7 +47,7 @@ pub(super) fn decompress_views(document: &mut Document, report: &mut ImportRepor
 
 /// Bytes of a buffer view compressed by meshopt; `None` if not compressed.
 fn meshopt_view(document: &Document, view: usize) -> Option<Result<Vec<u8>, String>> {
-    let extensions = document.raw["bufferViews"][view].get("extensions")?;
+    let extensions = &document.root.buffer_views[view].extensions;
     let found = MESHOPT_EXTENSIONS.iter().find_map(|name| extensions.get(name))?;
     Some(read_meshopt(document, found))
 }
@@ -75,40 +75,68 @@ fn read_meshopt(document: &Document, extension: &Json) -> Result<Vec<u8>, String
 pub(super) struct DracoPrimitive(PackedGeometry);
 
 impl DracoPrimitive {
-    /// Decompresses a primitive from its JSON; `None` if not compressed.
-    pub(super) fn read(document: &Document, primitive: &Json) -> Option<Result<Self, String>> {
-        let extension = primitive.get("extensions")?.get("KHR_draco_mesh_compression")?;
+    /// Decompresses a primitive; `None` if not compressed.
+    pub(super) fn read(document: &Document, primitive: &Primitive) -> Option<Result<Self, String>> {
+        let extension = primitive.extensions.get("KHR_draco_mesh_compression")?;
         Some(decompress(document, primitive, extension).map(Self))
     }
 
     /// The corners of the triangles.
     pub(super) fn indices(&self) -> Vec<u32> {
-        let indices = self.0.indices();
-        indices.map_or_else(Vec::new, |indices| unsigned(ComponentType::U32, indices.bytes()))
+        self.0
+            .indices()
+            .map_or_else(Vec::new, |indices| unsigned(indices.bytes(), 4))
     }
 
     /// An attribute with its components; `None` if stored elsewhere.
     pub(super) fn attribute<const N: usize>(&self, semantic: &str) -> Option<Vec<[f32; N]>> {
         let attribute = self.0.attributes().iter().find(|known| known.semantic() == semantic)?;
-        let component = component_type(attribute.component_type())?;
-        let (size, components) = (component.size(), usize::from(attribute.components()));
-        let vector = |element: &[u8]| {
-            let number = |i: usize| decode(component, attribute.normalized(), &element[i * size..(i + 1) * size]);
-            // A colour without opacity is opaque.
-            std::array::from_fn(|i| if i < components { number(i) } else { 1.0 })
+        let component = attribute.component_type() as u32;
+        let elements = Elements {
+            component,
+            component_size: component_size(component)?,
+            components: attribute.components().into(),
+            normalized: attribute.normalized(),
+            bytes: attribute.bytes(),
         };
-        Some(attribute.bytes().chunks_exact(components * size).map(vector).collect())
+        Some(elements.vectors())
     }
 }
 
-fn component_type(of_crate: draco_gltf::ComponentType) -> Option<ComponentType> {
-    Some(match of_crate {
-        draco_gltf::ComponentType::I8 => ComponentType::I8,
-        draco_gltf::ComponentType::U8 => ComponentType::U8,
-        draco_gltf::ComponentType::I16 => ComponentType::I16,
-        draco_gltf::ComponentType::U16 => ComponentType::U16,
-        draco_gltf::ComponentType::U32 => ComponentType::U32,
-        draco_gltf::ComponentType::F32 => ComponentType::F32,
-        _ => return None,
-    })
+/// A primitive's geometry, given with its extension.
+#[cfg(feature = "draco")]
+pub(super) fn decompress(
+    document: &Document,
+    primitive: &Primitive,
+    extension: &Json,
+) -> Result<PackedGeometry, String> {
+    use draco_gltf::{DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension};
+    /// Largest expansion: factor, and additional bytes. The entropy coder needs almost nothing for predictable data.
+    const GROWTH: [u64; 2] = [4096, 1 << 20];
+    let text = extension.to_string();
+    let value = draco_gltf::JsonValue::parse(text.as_bytes())?;
+    let extension = DracoPrimitiveExtension::from_json(&value).map_err(|error| error.to_string())?;
+    let payload = document.view(extension.buffer_view())?;
+    let most = GROWTH[0] * payload.len() as u64 + GROWTH[1];
+    let limits = DecodeLimits::default()
+        .with_max_points(most / 4)
+        .with_max_faces(most / 4)
+        .with_max_decoded_bytes(most);
+    let mut contract = DracoPrimitiveContract::new().with_limits(limits);
+    // Only the normalisation is used: counts in accessors are often wrong, and never needed.
+    for (semantic, _) in extension.attributes() {
+        let accessor = primitive.attributes.get(semantic);
+        let accessor = accessor.and_then(|index| document.root.accessors.get(*index));
+        contract = contract.with_attribute(semantic, 0, accessor.is_some_and(|accessor| accessor.normalized));
+    }
+    // The crate may panic on a damaged stream.
+    crate::panics::contained(|| extension.decode(&payload, &contract))
+        .ok_or("its stream contradicts itself")?
+        .map_err(|error| error.to_string())
+}
+
+/// Says that the program was built without.
+#[cfg(not(feature = "draco"))]
+pub(super) fn decompress(_: &Document, _: &Primitive, _: &Json) -> Result<PackedGeometry, String> {
+    Err("this program was built without Draco (the feature `draco`)".to_owned())
 }

@@ -1,85 +1,95 @@
-//! JSON of a file without what is not read of it, which may be large.
+//! What is read of a file's JSON, by the names of the format. What a file leaves out has its default; indices may be out of
+//! range, and are checked where they are used.
 
-use std::fmt;
+use std::collections::HashMap;
 
-use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_json::{Map, Value};
+use serde::Deserialize;
+use serde_json::Value as Json;
 
-/// Keys whose values are not read: under the first any program may put anything, the bounds of accessors may be those of
-/// nothing.
-const PASSED_OVER: [&str; 3] = ["extras", "min", "max"];
-
-/// A value without those of these keys, which may be most of a file, and without null, by which some writers say nothing.
-pub(super) struct Plain(pub Value);
-
-impl<'de> Deserialize<'de> for Plain {
-    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
-        source.deserialize_any(PlainVisitor).map(Self)
-    }
+macro_rules! parts {
+    ($($(#[$doc:meta])* $name:ident { $($field:ident: $kind:ty,)* })*) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Default, Deserialize)]
+        #[serde(default, rename_all = "camelCase")]
+        pub(super) struct $name { $(pub $field: $kind,)* }
+    )*};
 }
 
-struct PlainVisitor;
-
-impl<'de> Visitor<'de> for PlainVisitor {
-    type Value = Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("JSON")
+parts! {
+    /// All of a file.
+    Root {
+        extensions_used: Vec<String>,
+        extensions_required: Vec<String>,
+        extensions: Json,
+        scene: usize,
+        scenes: Vec<Scene>,
+        nodes: Vec<Node>,
+        cameras: Vec<Camera>,
+        skins: Vec<Skin>,
+        animations: Vec<Animation>,
+        meshes: Vec<Mesh>,
+        materials: Vec<Json>,
+        textures: Vec<Texture>,
+        samplers: Vec<Sampler>,
+        images: Vec<Image>,
+        accessors: Vec<Accessor>,
+        buffer_views: Vec<BufferView>,
+        buffers: Vec<Buffer>,
     }
-
-    fn visit_unit<E: Error>(self) -> Result<Value, E> {
-        Ok(Value::Null)
+    /// The same as far as every version of the format has it.
+    AnyVersion { asset: Asset, }
+    Asset { version: String, }
+    Scene { name: Option<String>, nodes: Vec<usize>, }
+    Node {
+        name: Option<String>,
+        children: Vec<usize>,
+        matrix: Option<[f32; 16]>,
+        translation: [f32; 3],
+        rotation: Option<[f32; 4]>,
+        scale: Option<[f32; 3]>,
+        mesh: Option<usize>,
+        weights: Vec<f32>,
+        skin: Option<usize>,
+        camera: Option<usize>,
+        extensions: Json,
     }
-
-    fn visit_bool<E: Error>(self, value: bool) -> Result<Value, E> {
-        Ok(value.into())
+    Camera { name: Option<String>, perspective: Option<Perspective>, orthographic: Option<Orthographic>, }
+    Perspective { yfov: f32, aspect_ratio: Option<f32>, }
+    Orthographic { ymag: f32, }
+    Skin { inverse_bind_matrices: Option<usize>, joints: Vec<usize>, }
+    Animation { channels: Vec<Channel>, samplers: Vec<Curve>, }
+    Channel { sampler: usize, target: Target, }
+    Target { node: Option<usize>, path: String, }
+    Curve { input: usize, output: usize, interpolation: String, }
+    Mesh { name: Option<String>, primitives: Vec<Primitive>, weights: Vec<f32>, }
+    Primitive {
+        attributes: HashMap<String, usize>,
+        indices: Option<usize>,
+        material: Option<usize>,
+        mode: Option<u32>,
+        targets: Vec<HashMap<String, usize>>,
+        extensions: Json,
     }
-
-    fn visit_i64<E: Error>(self, value: i64) -> Result<Value, E> {
-        Ok(value.into())
+    Texture { source: Option<usize>, sampler: Option<usize>, extensions: Json, }
+    Sampler { mag_filter: u32, wrap_s: u32, wrap_t: u32, }
+    Image { name: Option<String>, uri: Option<String>, buffer_view: Option<usize>, }
+    Accessor {
+        buffer_view: Option<usize>,
+        byte_offset: usize,
+        component_type: u32,
+        normalized: bool,
+        count: usize,
+        r#type: String,
+        sparse: Option<Sparse>,
     }
-
-    fn visit_u64<E: Error>(self, value: u64) -> Result<Value, E> {
-        Ok(value.into())
+    Sparse { count: usize, indices: SparsePart, values: SparsePart, }
+    SparsePart { buffer_view: usize, byte_offset: usize, component_type: u32, }
+    BufferView {
+        buffer: usize,
+        byte_offset: usize,
+        byte_length: usize,
+        byte_stride: usize,
+        extensions: Json,
     }
-
-    fn visit_f64<E: Error>(self, value: f64) -> Result<Value, E> {
-        if (value as f32).is_infinite() {
-            return Err(E::custom("a number beyond single precision"));
-        }
-        Ok(value.into())
-    }
-
-    fn visit_str<E: Error>(self, value: &str) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_string<E: Error>(self, value: String) -> Result<Value, E> {
-        Ok(value.into())
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
-        let mut values = Vec::new();
-        while let Some(Plain(value)) = list.next_element()? {
-            values.push(value);
-        }
-        // Files have millions of lists of one number.
-        values.shrink_to_fit();
-        Ok(Value::Array(values))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut object: A) -> Result<Value, A::Error> {
-        let mut values = Map::new();
-        while let Some(key) = object.next_key::<String>()? {
-            if PASSED_OVER.contains(&key.as_str()) {
-                object.next_value::<IgnoredAny>()?;
-                continue;
-            }
-            let Plain(value) = object.next_value()?;
-            if !value.is_null() {
-                values.insert(key, value);
-            }
-        }
-        Ok(Value::Object(values))
-    }
+    Buffer { byte_length: u64, uri: Option<String>, extensions: Json, }
 }

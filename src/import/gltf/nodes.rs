@@ -3,10 +3,10 @@
 use std::f64::consts::FRAC_PI_4;
 
 use glam::{DMat4, DVec3};
-use gltf::json;
 use serde_json::Value as Json;
 
 use super::container::Document;
+use super::json::{Camera, Node, Root};
 use super::pose::{Pose, root_nodes, unit_rotation};
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::{LightKind, ModelCamera, ModelLens, ModelLight};
@@ -32,163 +32,147 @@ pub(super) struct Contents {
 /// Walks through a scene: the given one, else the default.
 pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, report: &mut ImportReport) -> Contents {
     let root = &document.root;
-    let mut contents = Contents::default();
+    let contents = Contents::default();
+    let mut walk = Walk {
+        document,
+        report,
+        contents,
+    };
     let mut seen = vec![false; root.nodes.len()];
     // Node, parent's transform, and whether the parent is hidden.
-    let mut open: Vec<(usize, DMat4, bool)> = scene_roots(root, scene)
-        .into_iter()
-        .map(|node| (node, DMat4::IDENTITY, false))
-        .collect();
-    open.reverse();
+    let roots = scene_roots(root, scene).into_iter().rev();
+    let mut open: Vec<(usize, DMat4, bool)> = roots.map(|node| (node, DMat4::IDENTITY, false)).collect();
     while let Some((index, world_from_parent, is_parent_hidden)) = open.pop() {
+        let name = node_name(root, index);
         let Some(node) = root.nodes.get(index) else {
-            report.note(Fate::Missing, "a node that is out of bounds", &format!("node {index}"));
+            walk.report.note(Fate::Missing, "a node that is out of bounds", &name);
             continue;
         };
         if std::mem::replace(&mut seen[index], true) {
             let what = "a node that is in its scene twice, or is its own ancestor";
-            report.note(Fate::Ignored, what, &node_name(root, index));
+            walk.report.note(Fate::Ignored, what, &name);
             continue;
         }
         let world_from_node = world_from_parent * pose.parent_from_node(index, node);
-        let is_hidden = is_parent_hidden || hides(document, index);
+        // Cameras are there all the same.
+        let is_hidden = is_parent_hidden || node.extensions["KHR_node_visibility"]["visible"] == false;
         if is_hidden {
-            report.note(Fate::Used, "hidden nodes, not shown", &node_name(root, index));
+            walk.report.note(Fate::Used, "hidden nodes, not shown", &name);
         } else {
-            contents.add_visible(document, index, node, world_from_node, report);
+            walk.add_mesh(index, node, &name, world_from_node);
+            walk.add_light(node, &name, world_from_node);
         }
-        contents.add_camera(root, index, node, world_from_node, report);
-        let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| (child.value(), world_from_node, is_hidden)));
+        walk.add_camera(node, &name, world_from_node);
+        let children = node.children.iter().rev();
+        open.extend(children.map(|child| (*child, world_from_node, is_hidden)));
     }
-    contents
-}
-
-/// Whether the file hides a node's contents, except cameras (KHR_node_visibility).
-fn hides(document: &Document, node: usize) -> bool {
-    let extension = document.extension(&document.raw["nodes"][node], "KHR_node_visibility");
-    extension.is_some_and(|extension| extension["visible"] == false)
+    walk.contents
 }
 
 /// Name of a node.
-pub(super) fn node_name(root: &json::Root, node: usize) -> String {
+pub(super) fn node_name(root: &Root, node: usize) -> String {
     let name = root.nodes.get(node).and_then(|node| node.name.clone());
     name.unwrap_or_else(|| format!("node {node}"))
 }
 
 /// Root nodes of a scene: of the default one, or the first; all root nodes without a scene.
-fn scene_roots(root: &json::Root, scene: Option<usize>) -> Vec<usize> {
-    let scene = scene.unwrap_or_else(|| root.scene.map_or(0, |scene| scene.value()));
-    match root.scenes.get(scene).or(root.scenes.first()) {
-        Some(scene) => scene.nodes.iter().map(|node| node.value()).collect(),
+fn scene_roots(root: &Root, scene: Option<usize>) -> Vec<usize> {
+    match root.scenes.get(scene.unwrap_or(root.scene)).or(root.scenes.first()) {
+        Some(scene) => scene.nodes.clone(),
         None => root_nodes(&root.nodes),
     }
 }
 
-impl Contents {
-    /// The mesh and the light of a node.
-    fn add_visible(
-        &mut self,
-        document: &Document,
-        index: usize,
-        node: &json::Node,
-        world_from_node: DMat4,
-        report: &mut ImportReport,
-    ) {
-        let root = &document.root;
-        if let Some(mesh) = node.mesh {
-            let mesh = mesh.value();
-            let instances = instances(document, index, report);
-            let places = instances.unwrap_or_else(|| vec![DMat4::IDENTITY]);
-            self.meshes
-                .extend(places.into_iter().map(|node_from_instance| MeshNode {
-                    mesh,
-                    node: index,
-                    world_from_node: world_from_node * node_from_instance,
-                }));
-        }
-        let name = node_name(root, index);
-        let extension = document.extension(&document.raw["nodes"][index], "KHR_lights_punctual");
-        if let Some(light) = extension.and_then(|extension| extension["light"].as_u64()) {
-            let light = &document.raw["extensions"]["KHR_lights_punctual"]["lights"][light as usize];
-            match light_at(light, &name, world_from_node) {
-                Some(light) => self.lights.push(light),
-                None if light.is_null() => report.note(Fate::Missing, "a light that is out of bounds", &name),
-                None => report.note(Fate::Ignored, "a light of an unknown type", &name),
-            }
-            if light.get("range").is_some() {
-                report.note(Fate::Ignored, "the range of a light, which shines beyond it", &name);
-            }
-        }
-    }
-
-    fn add_camera(
-        &mut self,
-        root: &json::Root,
-        index: usize,
-        node: &json::Node,
-        world_from_node: DMat4,
-        report: &mut ImportReport,
-    ) {
-        let Some(camera) = node.camera.and_then(|camera| root.cameras.get(camera.value())) else {
-            return;
-        };
-        let name = node_name(root, index);
-        match camera_at(camera, &name, world_from_node) {
-            Some(seen) => {
-                note_camera(camera, &seen, report);
-                self.cameras.push(seen);
-            }
-            None => report.note(Fate::Ignored, "a camera without a lens", &name),
-        }
-    }
+struct Walk<'a> {
+    document: &'a Document,
+    report: &'a mut ImportReport,
+    contents: Contents,
 }
 
-/// Transforms of a node's instances in its space (EXT_mesh_gpu_instancing); `None` without instances.
-fn instances(document: &Document, node: usize, report: &mut ImportReport) -> Option<Vec<DMat4>> {
-    let extension = document.extension(&document.raw["nodes"][node], "EXT_mesh_gpu_instancing")?;
-    let name = node_name(&document.root, node);
-    let accessor = |semantic: &str| Some(extension["attributes"].get(semantic)?.as_u64()? as usize);
-    let vectors = |semantic: &str| document.read_vectors::<3>(accessor(semantic)?, semantic).ok();
-    let translations = vectors("TRANSLATION");
-    let scales = vectors("SCALE");
-    let rotations = accessor("ROTATION").and_then(|index| document.read_vectors::<4>(index, "ROTATION").ok());
-    let counts = [
-        translations.as_ref().map(Vec::len),
-        scales.as_ref().map(Vec::len),
-        rotations.as_ref().map(Vec::len),
-    ];
-    let Some(count) = counts.into_iter().flatten().min() else {
-        report.note(Fate::Missing, "the places of instances", &name);
-        return None;
-    };
-    report.count(Fate::Used, "instances", &name, count.min(INSTANCES_MAX));
-    report.count(
-        Fate::Ignored,
-        "instances of too many",
-        &name,
-        count.saturating_sub(INSTANCES_MAX),
-    );
-    let vector = |values: &Option<Vec<[f32; 3]>>, i: usize, default: DVec3| {
-        values
+impl Walk<'_> {
+    fn add_mesh(&mut self, index: usize, node: &Node, name: &str, world_from_node: DMat4) {
+        let Some(mesh) = node.mesh else { return };
+        let places = self.instances(node, name).unwrap_or_else(|| vec![DMat4::IDENTITY]);
+        self.contents
+            .meshes
+            .extend(places.into_iter().map(|node_from_instance| MeshNode {
+                mesh,
+                node: index,
+                world_from_node: world_from_node * node_from_instance,
+            }));
+    }
+
+    fn add_light(&mut self, node: &Node, name: &str, world_from_node: DMat4) {
+        let Some(light) = node.extensions["KHR_lights_punctual"]["light"].as_u64() else {
+            return;
+        };
+        let light = &self.document.root.extensions["KHR_lights_punctual"]["lights"][light as usize];
+        match light_at(light, name, world_from_node) {
+            Some(light) => self.contents.lights.push(light),
+            None if light.is_null() => self.report.note(Fate::Missing, "a light that is out of bounds", name),
+            None => self.report.note(Fate::Ignored, "a light of an unknown type", name),
+        }
+        if light.get("range").is_some() {
+            let what = "the range of a light, which shines beyond it";
+            self.report.note(Fate::Ignored, what, name);
+        }
+    }
+
+    fn add_camera(&mut self, node: &Node, name: &str, world_from_node: DMat4) {
+        let Some(camera) = node.camera.and_then(|camera| self.document.root.cameras.get(camera)) else {
+            return;
+        };
+        let Some(seen) = camera_at(camera, name, world_from_node) else {
+            return self.report.note(Fate::Ignored, "a camera without a lens", name);
+        };
+        if camera
+            .perspective
             .as_ref()
-            .map_or(default, |values| DVec3::from_array(values[i].map(f64::from)))
-    };
-    let place = |i: usize| {
-        let rotation = rotations
-            .as_ref()
-            .map_or([0.0, 0.0, 0.0, 1.0], |values| values[i].map(f64::from));
-        DMat4::from_scale_rotation_translation(
-            vector(&scales, i, DVec3::ONE),
-            unit_rotation(rotation),
-            vector(&translations, i, DVec3::ZERO),
-        )
-    };
-    Some((0..count.min(INSTANCES_MAX)).map(place).collect())
+            .is_some_and(|lens| lens.aspect_ratio.is_some())
+        {
+            let what = "the aspect ratio of a camera: the image keeps its own";
+            self.report.note(Fate::Ignored, what, &seen.name);
+        }
+        self.contents.cameras.push(seen);
+    }
+
+    /// Transforms of a node's instances in its space (EXT_mesh_gpu_instancing); `None` without instances.
+    fn instances(&mut self, node: &Node, name: &str) -> Option<Vec<DMat4>> {
+        let attributes = &node.extensions.get("EXT_mesh_gpu_instancing")?["attributes"];
+        let accessor = |semantic: &str| Some(attributes[semantic].as_u64()? as usize);
+        let vectors = |semantic: &str| self.document.read_vectors::<3>(accessor(semantic)?, semantic).ok();
+        let (translations, scales) = (vectors("TRANSLATION"), vectors("SCALE"));
+        let rotations = accessor("ROTATION");
+        let rotations = rotations.and_then(|index| self.document.read_vectors::<4>(index, "ROTATION").ok());
+        let counts = [&translations, &scales].map(|vectors| vectors.as_ref().map(Vec::len));
+        let counts = counts.into_iter().chain([rotations.as_ref().map(Vec::len)]);
+        let Some(count) = counts.flatten().min() else {
+            self.report.note(Fate::Missing, "the places of instances", name);
+            return None;
+        };
+        let shown = count.min(INSTANCES_MAX);
+        self.report.count(Fate::Used, "instances", name, shown);
+        self.report
+            .count(Fate::Ignored, "instances of too many", name, count - shown);
+        let vector = |values: &Option<Vec<[f32; 3]>>, i: usize, default: DVec3| {
+            values
+                .as_ref()
+                .map_or(default, |values| DVec3::from_array(values[i].map(f64::from)))
+        };
+        let place = |i: usize| {
+            let rotation = rotations.as_ref().map_or([0.0, 0.0, 0.0, 1.0], |values| values[i]);
+            DMat4::from_scale_rotation_translation(
+                vector(&scales, i, DVec3::ONE),
+                unit_rotation(rotation.map(f64::from)),
+                vector(&translations, i, DVec3::ZERO),
+            )
+        };
+        Some((0..shown).map(place).collect())
+    }
 }
 
 /// A camera looks along −Z of its node, with +Y up.
-fn camera_at(camera: &json::Camera, name: &str, world_from_node: DMat4) -> Option<ModelCamera> {
+fn camera_at(camera: &Camera, name: &str, world_from_node: DMat4) -> Option<ModelCamera> {
     let lens = match (&camera.perspective, &camera.orthographic) {
         (Some(perspective), _) => ModelLens::Perspective(f64::from(perspective.yfov).to_degrees()),
         (None, Some(orthographic)) => ModelLens::Orthographic(2.0 * f64::from(orthographic.ymag.abs())),
@@ -207,18 +191,6 @@ fn camera_at(camera: &json::Camera, name: &str, world_from_node: DMat4) -> Optio
     })
 }
 
-/// Reports camera properties that a bookmark cannot store.
-fn note_camera(camera: &json::Camera, seen: &ModelCamera, report: &mut ImportReport) {
-    let perspective = camera.perspective.as_ref();
-    if perspective.is_some_and(|perspective| perspective.aspect_ratio.is_some()) {
-        report.note(
-            Fate::Ignored,
-            "the aspect ratio of a camera: the image keeps its own",
-            &seen.name,
-        );
-    }
-}
-
 /// A light shines along −Z of its node.
 fn light_at(light: &Json, name: &str, world_from_node: DMat4) -> Option<ModelLight> {
     let kind = match light["type"].as_str()? {
@@ -227,15 +199,15 @@ fn light_at(light: &Json, name: &str, world_from_node: DMat4) -> Option<ModelLig
         "point" => LightKind::Point,
         _ => return None,
     };
-    let channel = |i: usize| light["color"][i].as_f64().map_or(1.0, |value| value as f32);
+    let number = |value: &Json| value.as_f64().map_or(1.0, |value| value as f32);
     let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
     Some(ModelLight {
         name: light["name"].as_str().unwrap_or(name).to_owned(),
         kind,
         position: world_from_node.transform_point3(DVec3::ZERO).to_array(),
         forward: forward.to_array(),
-        color: [channel(0), channel(1), channel(2)],
-        intensity: light["intensity"].as_f64().map_or(1.0, |value| value as f32),
+        color: [0, 1, 2].map(|channel| number(&light["color"][channel])),
+        intensity: number(&light["intensity"]),
     })
 }
 

@@ -20,7 +20,7 @@ use tobj::{LoadOptions, LoadResult, Material};
 use crate::files::Files;
 use crate::model_error::ModelError;
 use crate::panics::contained;
-use crate::picture::{Encoded, Wanted};
+use crate::picture::Encoded;
 use crate::scene::mesh::Mesh;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::TextureTarget;
@@ -225,14 +225,9 @@ impl<'a> Slots<'a> {
         // NaN counts as 0.
         let within = |x: f32, most: f32| if x.is_nan() { 0.0 } else { x.clamp(0.0, most) };
         let unit = |x: f32| within(x, 1.0);
-        let number = |key: &str| {
-            material
-                .unknown_param
-                .get(key)?
-                .split_whitespace()
-                .next()?
-                .parse::<f32>()
-                .ok()
+        let number = |key: &str| -> Option<f32> {
+            let word = material.unknown_param.get(key)?.split_whitespace().next()?;
+            word.parse().ok().filter(|x: &f32| x.is_finite())
         };
         let shininess = material.shininess.unwrap_or(0.0).max(0.0);
         // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
@@ -241,30 +236,36 @@ impl<'a> Slots<'a> {
         let is_shiny = material.specular.is_some_and(|color| color.iter().any(|x| *x > 0.0)) || number("Pr").is_some();
         let opacity = material.dissolve.or_else(|| Some(1.0 - number("Tr")?));
         let opacity = opacity.map_or(1.0, unit);
+        let ior = material.optical_density.filter(|ior| *ior >= 1.0);
         let mut slot = Slot {
             name: material.name.clone(),
-            base_color: material.diffuse.unwrap_or([0.6; 3]).map(unit),
-            metalness: number("Pm").map_or(0.0, unit),
-            roughness: unit(number("Pr").unwrap_or(alpha.sqrt())),
-            emission: material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
-            opacity,
             alpha_mode: if opacity < 1.0 {
                 AlphaMode::Blend
             } else {
                 AlphaMode::Opaque
             },
             double_sided: true,
-            ior: material.optical_density.filter(|ior| *ior >= 1.0).unwrap_or(1.5),
-            specular: f32::from(u8::from(is_shiny && !is_matte)),
-            coat: number("Pc").map_or(0.0, unit),
-            coat_roughness: number("Pcr").map_or(0.0, unit),
             ..Slot::default()
-        };
+        }
+        .with(&[
+            ("base.metalness", number("Pm").unwrap_or(0.0)),
+            ("specular.roughness", number("Pr").unwrap_or(alpha.sqrt())),
+            ("specular.ior", ior.unwrap_or(1.5)),
+            ("specular.weight", f32::from(u8::from(is_shiny && !is_matte))),
+            ("coat.weight", number("Pc").unwrap_or(0.0)),
+            ("coat.roughness", number("Pcr").unwrap_or(0.0)),
+            ("geometry.opacity", opacity),
+        ]);
+        slot.set_color("base.color", material.diffuse.unwrap_or([0.6; 3]).map(unit));
+        slot.set_color(
+            "emission.color",
+            material.emissive.unwrap_or([0.0; 3]).map(|x| within(x, 1e6)),
+        );
         self.read_color(material, &mut slot, report);
         let normal = material.unknown_param.get("norm").or(material.normal_texture.as_ref());
         let normal = normal.map(|line| Map::parse(line));
         *slot.texture_mut(TextureTarget::Normal) = self.texture(normal.as_ref(), false, report).found();
-        slot.normal_scale = normal.map_or(1.0, |map| map.strength);
+        slot.set("geometry.normal_strength", normal.map_or(1.0, |map| map.strength));
         if let Some(reference) = slot.texture(TextureTarget::Normal)
             && is_height(&self.textures[reference.texture])
         {
@@ -275,11 +276,11 @@ impl<'a> Slots<'a> {
         match self.texture(emissive.as_ref(), true, report) {
             Picture::Found(texture) => {
                 *slot.texture_mut(TextureTarget::Emission) = Some(texture);
-                if slot.emission == [0.0; 3] {
-                    slot.emission = [1.0; 3];
+                if slot.color("emission.color") == [0.0; 3] {
+                    slot.set("emission.color", 1.0);
                 }
             }
-            Picture::Missing => slot.emission = [0.0; 3],
+            Picture::Missing => slot.set("emission.color", 0.0),
             Picture::Unnamed => {}
         }
         table::report_unread(material, report);
@@ -296,12 +297,12 @@ impl<'a> Slots<'a> {
         let [color, opacity] =
             [&material.diffuse_texture, &material.dissolve_texture].map(|line| line.as_deref().map(Map::parse));
         let texture = self.texture(color.as_ref(), true, report);
-        if texture != Picture::Unnamed && slot.base_color == [0.0; 3] {
+        if texture != Picture::Unnamed && slot.color("base.color") == [0.0; 3] {
             // Many exporters write black beside a texture and mean white.
-            slot.base_color = [1.0; 3];
+            slot.set("base.color", 1.0);
         }
         if texture == Picture::Missing {
-            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
+            slot.multiply("base.color", [0.5; 3]);
         }
         *slot.texture_mut(TextureTarget::BaseColor) = texture.found();
         let Some(opacity) = opacity else { return };
@@ -338,14 +339,10 @@ impl<'a> Slots<'a> {
     /// Adds a texture file to the model and returns its index.
     fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
         let budget = &self.files.import.budget;
-        let wanted = Wanted {
-            is_color,
-            side_max: self.side_max,
-        };
         let read = self.files.read(name).map_err(|error| error.to_string());
         let scaled = read.and_then(|bytes| {
             let (name, bytes) = (name.to_owned(), bytes.into());
-            let scaled = Encoded { name, bytes }.texture(wanted, budget)?;
+            let scaled = Encoded { name, bytes }.texture(is_color, self.side_max, budget)?;
             let taken = budget.take(scaled.texture.bytes() as u64);
             taken.map_err(|over| over.to_string()).map(|()| scaled)
         });

@@ -3,75 +3,51 @@
 use tobj::Material;
 
 use crate::file_parameter::{FileParameter, Goes};
+use crate::file_parameters;
 use crate::scene::report::{Fate, ImportReport};
 
 use Goes::{Nowhere, To};
-
-const fn row(place: &'static str, default: &'static str, example: &'static str, goes: Goes) -> FileParameter {
-    FileParameter::new(place, default, example, goes)
-}
 
 /// Example of a texture file.
 const PICTURE: &str = "picture.png";
 
 /// Every keyword of a material that the format and its additions have.
-pub const MTL_PARAMETERS: &[FileParameter] = &[
-    row("Kd", "0.6 0.6 0.6", "0.5 0.25 0", To("base.color")).within(0.0, 1.0),
-    row("Ks", "0 0 0", "0.5 0.25 0", To("specular.weight")).with_note("what is not black reflects as `Ni` says"),
-    row("Ke", "0 0 0", "0.5 0.25 0", To("emission.color, emission.strength")).within(0.0, 1e6),
-    row(
-        "Ka",
-        "0 0 0",
-        "0.5 0.25 0",
-        Nowhere("ambient light (Ka), which path tracing needs none of"),
-    ),
-    row("Ns", "0", "200", To("specular.roughness")).with_note("Blinn-Phong's exponent, as the lobe that is chosen"),
-    row("Ni", "1.5", "1.25", To("specular.ior"))
-        .within(1.0, 4.0)
-        .with_note("below 1 as 1.5"),
-    row("d", "1", "0.5", To("geometry.opacity")).within(0.0, 1.0),
-    row("Tr", "0", "0.5", To("geometry.opacity"))
-        .within(0.0, 1.0)
-        .with_note("where there is no `d`"),
-    row(
-        "Tf",
-        "1 1 1",
-        "0.5 0.25 0",
-        Nowhere("the colour of what passes through (Tf)"),
-    ),
-    row("illum", "2", "1", To("specular.weight"))
-        .with_note("0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are reported"),
-    row("sharpness", "60", "100", Nowhere("the sharpness of a reflection map")),
-    row("Pr", "", "0.25", To("specular.roughness")).within(0.0, 1.0),
-    row("Pm", "0", "0.25", To("base.metalness")).within(0.0, 1.0),
-    row("Pc", "0", "0.25", To("coat.weight")).within(0.0, 1.0),
-    row("Pcr", "0", "0.25", To("coat.roughness")).within(0.0, 1.0).of("Pc"),
-    row("Ps", "0", "0.25", Nowhere("a sheen (Ps)")),
-    row("aniso", "0", "0.25", Nowhere("a stretched highlight (aniso)")),
-    row(
-        "anisor",
-        "0",
-        "0.25",
-        Nowhere("the turn of a stretched highlight (anisor)"),
-    ),
-    row("map_Kd", "", PICTURE, To("base.color_texture")),
-    row("map_Ke", "", PICTURE, To("emission.color_texture")),
-    row("map_d", "", PICTURE, To("geometry.opacity_texture"))
-        .with_note("the alpha of `map_Kd`; another texture is ignored"),
-    row("norm", "", PICTURE, To("geometry.normal_texture")),
-    row("bump", "", PICTURE, To("geometry.normal_texture")).with_note("also `map_bump`; heights are ignored"),
-    row("map_Ka", "", PICTURE, Nowhere("a texture given by map_Ka")),
-    row("map_Ks", "", PICTURE, Nowhere("a texture given by map_Ks")),
-    row("map_Ns", "", PICTURE, Nowhere("a texture given by map_Ns")),
-    row("map_Pr", "", PICTURE, Nowhere("a texture given by map_Pr")),
-    row("map_Pm", "", PICTURE, Nowhere("a texture given by map_Pm")),
-    row("map_Ps", "", PICTURE, Nowhere("a texture given by map_Ps")),
-    row("map_Pc", "", PICTURE, Nowhere("a texture given by map_Pc")),
-    row("map_Pcr", "", PICTURE, Nowhere("a texture given by map_Pcr")),
-    row("disp", "", PICTURE, Nowhere("a displacement (disp)")),
-    row("decal", "", PICTURE, Nowhere("a decal")),
-    row("refl", "", PICTURE, Nowhere("a reflection map (refl)")),
-];
+pub const MTL_PARAMETERS: &[FileParameter] = file_parameters! { "" {
+    "Kd" = "0.6 0.6 0.6" "0.5 0.25 0" => share "base.color";
+    "Ks" = "0 0 0" "0.5 0.25 0" => to "specular.weight": "what is not black reflects as `Ni` says";
+    "Ke" = "0 0 0" "0.5 0.25 0" => to "emission.color, emission.strength" in 0.0..1e6;
+    "Ka" = "0 0 0" "0.5 0.25 0" => nowhere "ambient light (Ka), which path tracing needs none of";
+    "Ns" = "0" "200" => to "specular.roughness": "Blinn-Phong's exponent, as the lobe that is chosen";
+    "Ni" = "1.5" "1.25" => to "specular.ior": "below 1 as 1.5" in 1.0..4.0;
+    "d" = "1" "0.5" => share "geometry.opacity";
+    "Tr" = "0" "0.5" => share "geometry.opacity": "where there is no `d`";
+    "Tf" = "1 1 1" "0.5 0.25 0" => nowhere "the colour of what passes through (Tf)";
+    "illum" = "2" "1" => to "specular.weight": "0 and 1 reflect nothing; 2, 3, 5 and 8 are as 2, others are reported";
+    "sharpness" = "60" "100" => nowhere "the sharpness of a reflection map";
+    "Pr" "0.25" => share "specular.roughness";
+    "Pm" = "0" "0.25" => share "base.metalness";
+    "Pc" = "0" "0.25" => share "coat.weight";
+    "Pcr" = "0" "0.25" => share "coat.roughness" of "Pc";
+    "Ps" = "0" "0.25" => nowhere "a sheen (Ps)";
+    "aniso" = "0" "0.25" => nowhere "a stretched highlight (aniso)";
+    "anisor" = "0" "0.25" => nowhere "the turn of a stretched highlight (anisor)";
+    "map_Kd" PICTURE => to "base.color_texture";
+    "map_Ke" PICTURE => to "emission.color_texture";
+    "map_d" PICTURE => to "geometry.opacity_texture": "the alpha of `map_Kd`; another texture is ignored";
+    "norm" PICTURE => to "geometry.normal_texture";
+    "bump" PICTURE => to "geometry.normal_texture": "also `map_bump`; heights are ignored";
+    "map_Ka" PICTURE => nowhere "a texture given by map_Ka";
+    "map_Ks" PICTURE => nowhere "a texture given by map_Ks";
+    "map_Ns" PICTURE => nowhere "a texture given by map_Ns";
+    "map_Pr" PICTURE => nowhere "a texture given by map_Pr";
+    "map_Pm" PICTURE => nowhere "a texture given by map_Pm";
+    "map_Ps" PICTURE => nowhere "a texture given by map_Ps";
+    "map_Pc" PICTURE => nowhere "a texture given by map_Pc";
+    "map_Pcr" PICTURE => nowhere "a texture given by map_Pcr";
+    "disp" PICTURE => nowhere "a displacement (disp)";
+    "decal" PICTURE => nowhere "a decal";
+    "refl" PICTURE => nowhere "a reflection map (refl)";
+} };
 
 /// Illumination models that are shown as they are, or nearly: 2 is a highlight; 3, 5 and 8 reflect the scene besides.
 const SHOWN: [u8; 6] = [0, 1, 2, 3, 5, 8];

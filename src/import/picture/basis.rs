@@ -1,16 +1,14 @@
 //! Basis Universal, the texels of most KTX2 files, decoded by the basisu crate.
 
-/// Width and height of an image, and RGBA of its texels, 8 bits each.
-pub(super) type Codes = ([u32; 2], Vec<u8>);
+use super::Decoded;
 
-/// The level of so many that `level_of` chooses for columns and rows, of each of the faces: its columns and rows, and red,
-/// green, blue and opacity of its texels.
+/// Each of the faces, of the level of so many that `level_of` chooses for columns and rows.
 #[cfg(feature = "basis")]
 pub(super) fn decode(
     bytes: &[u8],
     faces: usize,
     level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<Codes>, String> {
+) -> Result<Vec<Decoded>, String> {
     use basisu::{DecodeFlags, TargetFormat, Transcoder};
     /// Largest expansion in texels per byte, and additional texels.
     const GROWTH: [u64; 2] = [64, 1 << 20];
@@ -22,11 +20,17 @@ pub(super) fn decode(
         return Err(format!("{} bytes cannot hold {width} × {height}", bytes.len()));
     }
     let level = level_of([width, height], transcoder.level_count());
-    let size = [width, height].map(|side| (side >> level).max(1));
+    let [width, height] = [width, height].map(|side| (side >> level).max(1));
     let face = |face: usize| {
         let (target, flags) = (TargetFormat::Rgba32, DecodeFlags::NONE);
         let codes = transcoder.transcode_image(level, 0, face as u32, target, flags);
-        Ok((size, codes.map_err(text)?))
+        let numbers = super::Numbers::Codes8(codes.map_err(text)?);
+        Ok(Decoded {
+            width,
+            height,
+            channels: 4,
+            numbers,
+        })
     };
     (0..faces).map(face).collect()
 }
@@ -37,6 +41,6 @@ pub(super) fn decode(
     _bytes: &[u8],
     _faces: usize,
     _level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<Codes>, String> {
+) -> Result<Vec<Decoded>, String> {
     Err("this program was built without Basis Universal (the feature `basis`)".to_owned())
 }

@@ -5,47 +5,13 @@ use std::io::Cursor;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
+use super::{Decoded, Numbers};
+
 /// Memory limit of decoding in bytes.
 const DECODED_MAX: usize = 2 << 30;
 
-/// A linear image.
-pub(crate) struct FloatPicture {
-    pub width: u32,
-    pub height: u32,
-    /// Numbers a texel: grey, or red, green and blue first.
-    channels: usize,
-    numbers: DecodingResult,
-}
-
-impl FloatPicture {
-    /// Red, green and blue of a texel.
-    pub fn rgb(&self, column: u32, row: u32) -> [f32; 3] {
-        let first = (row as usize * self.width as usize + column as usize) * self.channels;
-        let places = if self.channels < 3 { [0; 3] } else { [0, 1, 2] };
-        places.map(|channel| self.number(first + channel))
-    }
-
-    /// The opacity of a texel.
-    pub fn opacity(&self, column: u32, row: u32) -> f32 {
-        let first = (row as usize * self.width as usize + column as usize) * self.channels;
-        match self.channels {
-            2 | 4 => self.number(first + self.channels - 1),
-            _ => 1.0,
-        }
-    }
-
-    fn number(&self, place: usize) -> f32 {
-        match &self.numbers {
-            DecodingResult::F16(numbers) => numbers[place].to_f32(),
-            DecodingResult::F32(numbers) => numbers[place],
-            DecodingResult::F64(numbers) => numbers[place] as f32,
-            _ => 0.0,
-        }
-    }
-}
-
 /// Width and height of a TIFF image of any type; `None` for other files.
-pub(crate) fn size(bytes: &[u8]) -> Option<[u32; 2]> {
+pub(super) fn size(bytes: &[u8]) -> Option<[u32; 2]> {
     let (width, height) = is_tiff(bytes).then(|| Decoder::new(Cursor::new(bytes)).ok()?.dimensions().ok())??;
     Some([width, height])
 }
@@ -57,7 +23,7 @@ fn is_tiff(bytes: &[u8]) -> bool {
 }
 
 /// The image in a file's bytes; `None` if not floating-point.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Option<FloatPicture>, String> {
+pub(super) fn decode(bytes: &[u8]) -> Result<Option<Decoded>, String> {
     if !is_tiff(bytes) {
         return Ok(None);
     }
@@ -80,17 +46,17 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<Option<FloatPicture>, String> {
     if format.and_then(|formats| formats.first().copied()) != Some(3) {
         return Ok(None);
     }
-    let numbers = decoder.read_image().map_err(text)?;
-    let count = match &numbers {
-        DecodingResult::F16(numbers) => numbers.len(),
-        DecodingResult::F32(numbers) => numbers.len(),
-        DecodingResult::F64(numbers) => numbers.len(),
+    let numbers: Vec<f32> = match decoder.read_image().map_err(text)? {
+        DecodingResult::F16(numbers) => numbers.into_iter().map(half::f16::to_f32).collect(),
+        DecodingResult::F32(numbers) => numbers,
+        DecodingResult::F64(numbers) => numbers.into_iter().map(|x| x as f32).collect(),
         _ => return Ok(None),
     };
-    if count != width as usize * height as usize * channels {
+    if numbers.len() != width as usize * height as usize * channels {
         return Err("its channels lie apart; save them interleaved".to_owned());
     }
-    Ok(Some(FloatPicture {
+    let numbers = Numbers::Light(numbers);
+    Ok(Some(Decoded {
         width,
         height,
         channels,

@@ -1,13 +1,14 @@
 //! A curve drawn by hand: the density of D is linear between the nodes of a table.
 
-use super::{CurveTraits, Integral};
-use crate::optics::real::Real;
+use super::*;
+use crate::optics::real::inlined;
 use crate::optics::table::{NODE_LENGTH, look_up_number};
 
 /// What is special about the curve.
 pub const TRAITS: CurveTraits = CurveTraits {
     formula: "drawn",
     integral: Integral::Table,
+    reach: None,
     plotted_max: f64::INFINITY,
 };
 
@@ -17,47 +18,45 @@ pub const CUSTOM_INTERVALS: usize = 64;
 /// the density where it ends, and D's maximum.
 pub const CUSTOM_LENGTH: usize = NODE_LENGTH * CUSTOM_INTERVALS;
 
-/// The distance at which the cumulative distribution reaches ξ: a quadratic equation in the interval that bisection finds.
-#[inline(always)]
-pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
-    let c = T::from_f64;
-    // Six halvings of 64 intervals; `low` counts those that end below ξ.
-    let mut low = T::zero();
-    let mut step = CUSTOM_INTERVALS / 2;
-    while step > 0 {
-        let middle = low + c(step as f64);
-        let begin = look_up_number::<0, T>(table, middle);
-        low = T::select(xi.less(begin), low, middle);
-        step /= 2;
+inlined! {
+    /// The distance at which the cumulative distribution reaches ξ: a quadratic equation in the interval that bisection finds.
+    pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
+        let c = T::from_f64;
+        // Six halvings of 64 intervals; `low` counts those that end below ξ.
+        let mut low = T::ZERO;
+        let mut step = CUSTOM_INTERVALS / 2;
+        while step > 0 {
+            let middle = low + c(step as f64);
+            let begin = look_up_number::<0, T>(table, middle);
+            low = T::select(xi.less(begin), low, middle);
+            step /= 2;
+        }
+        let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
+        let (left, right) = (look_up_number::<1, T>(table, low), look_up_number::<2, T>(table, low));
+        let missing = (xi - look_up_number::<0, T>(table, low)).max(T::ZERO);
+        let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
+        let step = c(2.0) * missing / (left + root).max(c(1e-12));
+        width * low + step.min(width)
     }
-    let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
-    let (left, right) = (look_up_number::<1, T>(table, low), look_up_number::<2, T>(table, low));
-    let missing = (xi - look_up_number::<0, T>(table, low)).max(T::zero());
-    let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
-    let step = c(2.0) * missing / (left + root).max(c(1e-12));
-    width * low + step.min(width)
-}
 
-#[inline(always)]
-pub fn distance_max<T: Real>(table: &[f32]) -> T {
-    T::from_f64(f64::from(table[3]))
-}
+    pub fn distance_max<T: Real>(table: &[f32]) -> T {
+        T::from_f64(f64::from(table[3]))
+    }
 
-/// h(D).
-#[inline(always)]
-pub fn h<T: Real>(table: &[f32], distance: T) -> T {
-    density(table, distance) / distance.max(T::from_f64(1e-6))
-}
+    /// h(D).
+    pub fn h<T: Real>(table: &[f32], distance: T) -> T {
+        density(table, distance) / distance.max(T::from_f64(1e-6))
+    }
 
-/// The density of D, linear between the nodes.
-#[inline(always)]
-fn density<T: Real>(table: &[f32], distance: T) -> T {
-    let c = T::from_f64;
-    let last = c(CUSTOM_INTERVALS as f64);
-    let position = (distance / distance_max(table) * last).clamp(T::zero(), last);
-    let low = position.floor().min(last - T::one());
-    let fraction = position - low;
-    look_up_number::<1, T>(table, low) * (T::one() - fraction) + look_up_number::<2, T>(table, low) * fraction
+    /// The density of D, linear between the nodes.
+    fn density<T: Real>(table: &[f32], distance: T) -> T {
+        let c = T::from_f64;
+        let last = c(CUSTOM_INTERVALS as f64);
+        let position = (distance / distance_max(table) * last).clamp(T::ZERO, last);
+        let low = position.floor().min(last - T::ONE);
+        let fraction = position - low;
+        look_up_number::<1, T>(table, low) * (T::ONE - fraction) + look_up_number::<2, T>(table, low) * fraction
+    }
 }
 
 /// A custom curve's table from the density of D at equidistant nodes over [0, `distance_max`] (65 values, not negative,

@@ -1,9 +1,8 @@
 //! Curves D(ξ): distance of the geometric lobe's samples from the mirror direction (paper, section 4.6 and eq. 13).
 //!
 //! A curve is the quantile function of the distance D. The lobe's density needs h(D) = f_D(D)/D, with the density f_D of D
-//! (docs/MATHEMATICS.md, section 1). A curve module has three functions of a table, which only the custom curve reads:
-//! `distance` is D(ξ) for ξ in [0, 1]; `distance_max` its maximum; `h` is h(D) for D in [0, the maximum], bounded at
-//! singularities.
+//! (docs/MATHEMATICS.md, section 1). A curve module has two functions of a table, which only the custom curve reads:
+//! `distance` is D(ξ) for ξ in [0, 1]; `h` is h(D) for D in [0, the maximum], bounded at singularities.
 //!
 //! To add a curve: one Rust file with its [`CurveTraits`], one WGSL file of the same name, one line in the registry below.
 
@@ -30,7 +29,6 @@ macro_rules! curves {
                 match self { $(Curve::$variant => stringify!($module),)* }
             }
 
-            #[inline(always)]
             pub const fn traits(self) -> CurveTraits {
                 match self { $(Curve::$variant => $module::TRAITS,)* }
             }
@@ -40,11 +38,6 @@ macro_rules! curves {
         #[inline(always)]
         pub fn curve_distance<T: Real>(curve: Curve, table: &[f32], xi: T) -> T {
             match curve { $(Curve::$variant => $module::distance(table, xi),)* }
-        }
-
-        #[inline(always)]
-        pub fn curve_distance_max<T: Real>(curve: Curve, table: &[f32]) -> T {
-            match curve { $(Curve::$variant => $module::distance_max(table),)* }
         }
 
         /// h(D) = f_D(D)/D, for D in [0, D's maximum]; bounded at singularities.
@@ -71,6 +64,8 @@ pub struct CurveTraits {
     pub formula: &'static str,
     /// Integration of the lobe's density over it.
     pub integral: Integral,
+    /// D's maximum; `None` where the table has it.
+    pub reach: Option<f64>,
     /// Largest D worth plotting.
     pub plotted_max: f64,
 }
@@ -132,6 +127,15 @@ impl Curve {
     pub fn with_formulas() -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(|curve| !curve.has_table())
     }
+}
+
+/// D's maximum.
+#[inline(always)]
+pub fn curve_distance_max<T: Real>(curve: Curve, table: &[f32]) -> T {
+    curve
+        .traits()
+        .reach
+        .map_or_else(|| custom::distance_max(table), T::from_f64)
 }
 
 /// f_D(D), the density of the distance (paper, eq. 14).

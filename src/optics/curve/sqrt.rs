@@ -1,28 +1,24 @@
 //! The curve D = √ξ: a disc, evenly filled.
 
-use super::{CurveTraits, Integral};
-use crate::optics::real::Real;
+use super::*;
+use crate::optics::real::inlined;
 
 /// What is special about the curve.
 pub const TRAITS: CurveTraits = CurveTraits {
     formula: "√ξ",
     integral: Integral::Polynomial([2.0, 0.0, 0.0]),
+    reach: Some(1.0),
     plotted_max: f64::INFINITY,
 };
 
-/// D(ξ).
-#[inline(always)]
-pub fn distance<T: Real>(_table: &[f32], xi: T) -> T {
-    xi.sqrt()
-}
+inlined! {
+    /// D(ξ).
+    pub fn distance<T: Real>(_table: &[f32], xi: T) -> T {
+        xi.sqrt()
+    }
 
-#[inline(always)]
-pub fn distance_max<T: Real>(_table: &[f32]) -> T {
-    T::one()
-}
-
-/// h(D).
-#[inline(always)]
-pub fn h<T: Real>(_table: &[f32], _distance: T) -> T {
-    T::from_f64(2.0)
+    /// h(D).
+    pub fn h<T: Real>(_table: &[f32], _distance: T) -> T {
+        T::TWO
+    }
 }

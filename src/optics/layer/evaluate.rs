@@ -1,11 +1,8 @@
 //! Evaluation of a material for a sampled light direction.
 
 use super::coat::{absorbs_over, coat_tint};
-use super::{Layer, LayerLobe, LayerModel, Layers};
+use super::*;
 use crate::optics::lobe::{is_mirror, lobe_evaluate};
-use crate::optics::material::{Material, Surface};
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::{Vec3, vec3};
 
 /// Value of a material (cosine included) for light from `wi`, which was sampled with density `light_density`. Each layer is
 /// multiplied by its MIS weight (Veach 1997, balance heuristic): light_density / (light_density + `competing` × density of
@@ -20,39 +17,36 @@ pub fn material_evaluate<T: Real>(
     light_density: T,
     competing: T,
 ) -> Vec3<T> {
-    T::out_of_line(
-        #[inline(always)]
-        || {
-            let [mut covers, mut below] = [Vec3::zero(); 2];
-            each_layer!({
-                let is_there = L::is_there(material, surface);
-                if is_there.any() {
-                    let lobe = L::lobe(material, tables, surface);
-                    let gives = is_there & !is_mirror(&lobe.shape);
-                    if gives.any() {
-                        let toward = L::toward(material, layers, surface, &lobe.shape, wi);
-                        let [value, density] = lobe_of::<T, L>(material, surface, &lobe, wi);
-                        let share = &layers[LAYER];
-                        let competing = competing * share.reached * toward.probability * density;
-                        let weight = light_density / (light_density + competing);
-                        let mut color = toward.color * share.transmittance;
-                        if absorbs_over(material, LAYER) {
-                            color = color * coat_tint(material, layers, surface, wi);
-                        }
-                        let part = color * (value * weight);
-                        let sum = if IS_COVER { &mut covers } else { &mut below };
-                        *sum += Vec3::select(gives, part, Vec3::zero());
+    out_of_line!(T, {
+        let [mut covers, mut below] = [Vec3::ZERO; 2];
+        each_layer!({
+            let is_there = L::is_there(material, surface);
+            if is_there.any() {
+                let lobe = L::lobe(material, tables, surface);
+                let gives = is_there & !is_mirror(&lobe.shape);
+                if gives.any() {
+                    let toward = L::toward(material, layers, surface, &lobe.shape, wi);
+                    let [value, density] = lobe_of::<T, L>(material, surface, &lobe, wi);
+                    let share = &layers[LAYER];
+                    let competing = competing * share.reached * toward.probability * density;
+                    let weight = light_density / (light_density + competing);
+                    let mut color = toward.color * share.transmittance;
+                    if absorbs_over(material, LAYER) {
+                        color = color * coat_tint(material, layers, surface, wi);
                     }
+                    let part = color * (value * weight);
+                    let sum = if IS_COVER { &mut covers } else { &mut below };
+                    *sum += part.masked(gives);
                 }
-            });
-            below + covers
-        },
-    )
+            }
+        });
+        below + covers
+    })
 }
 
 /// (evaluate, density) of a layer's lobe, for itself.
 #[inline(always)]
-pub(super) fn lobe_of<T: Real, L: LayerModel<T>>(
+pub fn lobe_of<T: Real, L: LayerModel<T>>(
     material: &Material<T>,
     surface: &Surface<T>,
     lobe: &LayerLobe<'_, T>,
@@ -71,12 +65,12 @@ pub fn layer_evaluate<T: Real, L: LayerModel<T>>(
 ) -> [T; 2] {
     let lobe = L::lobe(material, tables, surface);
     let is_mirror = is_mirror(&lobe.shape);
-    lobe_of::<T, L>(material, surface, &lobe, wi).map(|x| T::select(is_mirror, T::zero(), x))
+    lobe_of::<T, L>(material, surface, &lobe, wi).map(|x| T::select(is_mirror, T::ZERO, x))
 }
 
 /// Lanes where every sampled direction of a material counts as a mirror's, seen from outside.
 pub fn material_is_mirror<T: Real>(material: &Material<T>) -> T::Mask {
-    let surface = Surface::upwards(vec3(T::zero(), T::zero(), T::one()));
+    let surface = Surface::upwards(vec3(T::ZERO, T::ZERO, T::ONE));
     let mut are_all = T::Mask::splat(true);
     each_layer!({
         let lobe = L::lobe(material, &[], &surface);

@@ -60,9 +60,8 @@ use super::frame::Frame;
 use super::lobe::{LobeSample, LobeShape};
 use super::material::{Material, Surface};
 use super::numeric::sampled_share;
-use super::real::{Mask, Real};
-use super::vector::Vec3;
 use crate::named::named;
+use crate::optics::prelude::*;
 
 // The effect of the same name has the code in the kernels that call for it.
 named! {
@@ -127,54 +126,49 @@ pub trait LayerModel<T: Real> {
         wi: Vec3<T>,
     ) -> LayerToward<T>;
 
-    /// The luminance of the layer with everything after it, which is `below`; sets how often the layer is sampled.
-    #[inline(always)]
-    fn choose(_: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
-        let share = &mut layers[Self::LAYER];
-        let reflected = share.albedo.max_component();
-        if !T::zero().less(reflected).any() {
-            return below;
+    inlined! {
+        /// The luminance of the layer with everything after it, which is `below`; sets how often the layer is sampled.
+        fn choose(_: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
+            let share = &mut layers[Self::LAYER];
+            let reflected = share.albedo.max_component();
+            if !reflected.above_zero().any() {
+                return below;
+            }
+            let rest = (T::ONE - reflected) * below;
+            share.probability = cover_probability(reflected, rest);
+            reflected + rest
         }
-        let rest = (T::one() - reflected) * below;
-        share.probability = cover_probability(reflected, rest);
-        reflected + rest
-    }
 
-    /// Sampling probability of the layer if none before it is sampled.
-    #[inline(always)]
-    fn chance(layers: &Layers<T>) -> T {
-        layers[Self::LAYER].probability
-    }
+        /// Sampling probability of the layer if none before it is sampled.
+        fn chance(layers: &Layers<T>) -> T {
+            layers[Self::LAYER].probability
+        }
 
-    /// The albedo that leads a denoiser.
-    #[inline(always)]
-    fn seen_albedo(_: &Material<T>, _: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
-        share.albedo
-    }
+        /// The albedo that leads a denoiser.
+        fn seen_albedo(_: &Material<T>, _: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
+            share.albedo
+        }
 
-    /// Modifies a direction that the layer's lobe sampled with the numbers `xi`.
-    #[inline(always)]
-    fn refined_sample(_: &Material<T>, _: &Surface<T>, _xi: [T; 3], drawn: LobeSample<T>) -> LobeSample<T> {
-        drawn
-    }
+        /// Modifies a direction that the layer's lobe sampled with the numbers `xi`.
+        fn refined_sample(_: &Material<T>, _: &Surface<T>, _xi: [T; 3], drawn: LobeSample<T>) -> LobeSample<T> {
+            drawn
+        }
 
-    /// Modifies the lobe's (evaluate, density).
-    #[inline(always)]
-    fn refined(_: &Material<T>, _: &Surface<T>, _wi: Vec3<T>, evaluated: [T; 2]) -> [T; 2] {
-        evaluated
-    }
+        /// Modifies the lobe's (evaluate, density).
+        fn refined(_: &Material<T>, _: &Surface<T>, _wi: Vec3<T>, evaluated: [T; 2]) -> [T; 2] {
+            evaluated
+        }
 
-    /// Lanes where a direction is sampled first, and its Fresnel factor decides whether the layer is.
-    #[inline(always)]
-    fn decides_by_facet(_: &Material<T>) -> T::Mask {
-        T::Mask::splat(false)
-    }
+        /// Lanes where a direction is sampled first, and its Fresnel factor decides whether the layer is.
+        fn decides_by_facet(_: &Material<T>) -> T::Mask {
+            T::Mask::splat(false)
+        }
 
-    /// Sets the sampling probabilities of the layer and those after it from a direction sampled first, with its weight and
-    /// probability. Returns the lanes in which the later layers sample with numbers of their own.
-    #[inline(always)]
-    fn pass_on(_: &Material<T>, _: &mut Layers<T>, _weight: T, _probability: T) -> T::Mask {
-        T::Mask::splat(false)
+        /// Sets the sampling probabilities of the layer and those after it from a direction sampled first, with its weight and
+        /// probability. Returns the lanes in which the later layers sample with numbers of their own.
+        fn pass_on(_: &Material<T>, _: &mut Layers<T>, _weight: T, _probability: T) -> T::Mask {
+            T::Mask::splat(false)
+        }
     }
 }
 
@@ -182,8 +176,8 @@ pub trait LayerModel<T: Real> {
 /// [`sampled_share`]; 1 without layers below.
 #[inline(always)]
 fn cover_probability<T: Real>(reflected: T, rest: T) -> T {
-    let (zero, one) = (T::zero(), T::one());
+    let (zero, one) = (T::ZERO, T::ONE);
     let probability = sampled_share(reflected / (reflected + rest).max(T::from_f64(1e-9)));
-    let probability = T::select(zero.less(rest), probability, one);
-    T::select(zero.less(reflected), probability, zero)
+    let probability = T::select(rest.above_zero(), probability, one);
+    T::select(reflected.above_zero(), probability, zero)
 }

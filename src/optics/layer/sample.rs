@@ -2,11 +2,8 @@
 
 use super::coat::{absorbs_over, coat_tint};
 use super::evaluate::lobe_of;
-use super::{Layer, LayerModel, Layers};
+use super::*;
 use crate::optics::lobe::{is_mirror, lobe_sample};
-use crate::optics::material::{Material, Surface};
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::Vec3;
 use crate::optics::warp::split;
 
 /// A direction drawn from a material.
@@ -29,9 +26,9 @@ impl<T: Real> MaterialSample<T> {
     #[inline(always)]
     fn nothing() -> Self {
         Self {
-            wi: Vec3::zero(),
-            throughput: Vec3::zero(),
-            density: T::zero(),
+            wi: Vec3::ZERO,
+            throughput: Vec3::ZERO,
+            density: T::ZERO,
             is_mirror: T::Mask::splat(false),
             layer: Layer::ALL[0],
         }
@@ -73,67 +70,64 @@ pub fn material_sample<T: Real>(
     numbers: MaterialNumbers<T>,
     needs_density: bool,
 ) -> MaterialSample<T> {
-    T::out_of_line(
-        #[inline(always)]
-        || {
-            // Shares, updated by directions that were sampled first.
-            let mut layers = *layers;
-            // The numbers that draw a direction, and the one that chooses a layer.
-            let (mut xi, mut choice) = (numbers.lobe, numbers.lobe[0]);
-            // Lanes in which the current layer samples no direction, and lanes without a chosen layer.
-            let (mut is_apart, mut left) = (T::Mask::splat(false), T::Mask::splat(true));
-            let mut sample = MaterialSample::nothing();
-            each_layer!({
-                let (chance, is_by_facet) = (L::chance(&layers), L::decides_by_facet(material));
-                if (left & (is_by_facet | T::zero().less(chance))).any() {
-                    choice = T::select(is_by_facet, numbers.facet, choice);
-                    is_apart = is_apart | is_by_facet;
-                    let (mut takes, mut rest) = split(choice, chance);
-                    xi[0] = T::select(is_apart, xi[0], rest);
-                    if (left & (is_by_facet | takes)).any() {
-                        let lobe = L::lobe(material, tables, surface);
-                        let drawn = lobe_sample(&lobe.shape, &lobe.frame, surface.normal, surface.wo, xi);
-                        let drawn = L::refined_sample(material, surface, xi, drawn);
-                        let toward = L::toward(material, &layers, surface, &lobe.shape, drawn.wi);
-                        if is_by_facet.any() {
-                            let is_passed_on = L::pass_on(material, &mut layers, drawn.weight, toward.probability);
-                            for (number, below) in xi.iter_mut().zip(numbers.below) {
-                                *number = T::select(is_passed_on, below, *number);
-                            }
-                            (takes, rest) = split(choice, L::chance(&layers));
+    out_of_line!(T, {
+        // Shares, updated by directions that were sampled first.
+        let mut layers = *layers;
+        // The numbers that draw a direction, and the one that chooses a layer.
+        let (mut xi, mut choice) = (numbers.lobe, numbers.lobe[0]);
+        // Lanes in which the current layer samples no direction, and lanes without a chosen layer.
+        let (mut is_apart, mut left) = (T::Mask::splat(false), T::Mask::splat(true));
+        let mut sample = MaterialSample::nothing();
+        each_layer!({
+            let (chance, is_by_facet) = (L::chance(&layers), L::decides_by_facet(material));
+            if (left & (is_by_facet | chance.above_zero())).any() {
+                choice = T::select(is_by_facet, numbers.facet, choice);
+                is_apart = is_apart | is_by_facet;
+                let (mut takes, mut rest) = split(choice, chance);
+                xi[0] = T::select(is_apart, xi[0], rest);
+                if (left & (is_by_facet | takes)).any() {
+                    let lobe = L::lobe(material, tables, surface);
+                    let drawn = lobe_sample(&lobe.shape, &lobe.frame, surface.normal, surface.wo, xi);
+                    let drawn = L::refined_sample(material, surface, xi, drawn);
+                    let toward = L::toward(material, &layers, surface, &lobe.shape, drawn.wi);
+                    if is_by_facet.any() {
+                        let is_passed_on = L::pass_on(material, &mut layers, drawn.weight, toward.probability);
+                        for (number, below) in xi.iter_mut().zip(numbers.below) {
+                            *number = T::select(is_passed_on, below, *number);
                         }
-                        takes = left & takes;
-                        if takes.any() {
-                            let share = &layers[LAYER];
-                            let is_mirror = is_mirror(&lobe.shape);
-                            let mut density = T::zero();
-                            if needs_density && !is_mirror.all() {
-                                let [_, of_lobe] = lobe_of::<T, L>(material, surface, &lobe, drawn.wi);
-                                let density_there = share.reached * toward.probability * of_lobe;
-                                density = T::select(is_mirror, T::zero(), density_there);
-                            }
-                            // If the horizon policy has turned the direction, its own selection probability differs from
-                            // the one used to sample: keep the latter.
-                            let scale = drawn.weight / (share.reached * share.probability).max(T::from_f64(1e-20));
-                            let mut color = toward.color * share.transmittance;
-                            if absorbs_over(material, LAYER) {
-                                color = color * coat_tint(material, &layers, surface, drawn.wi);
-                            }
-                            let of_layer = MaterialSample {
-                                wi: drawn.wi,
-                                throughput: color * scale,
-                                density,
-                                is_mirror,
-                                layer: LAYER,
-                            };
-                            sample = sample.replaced(takes, of_layer);
-                            left = left & !takes;
-                        }
+                        (takes, rest) = split(choice, L::chance(&layers));
                     }
-                    choice = rest;
+                    takes = left & takes;
+                    if takes.any() {
+                        let share = &layers[LAYER];
+                        let is_mirror = is_mirror(&lobe.shape);
+                        let mut density = T::ZERO;
+                        if needs_density && !is_mirror.all() {
+                            let [_, of_lobe] = lobe_of::<T, L>(material, surface, &lobe, drawn.wi);
+                            let density_there = share.reached * toward.probability * of_lobe;
+                            density = T::select(is_mirror, T::ZERO, density_there);
+                        }
+                        // If the horizon policy has turned the direction, its own selection probability differs from
+                        // the one used to sample: keep the latter.
+                        let scale = drawn.weight / (share.reached * share.probability).max(T::from_f64(1e-20));
+                        let mut color = toward.color * share.transmittance;
+                        if absorbs_over(material, LAYER) {
+                            color = color * coat_tint(material, &layers, surface, drawn.wi);
+                        }
+                        let of_layer = MaterialSample {
+                            wi: drawn.wi,
+                            throughput: color * scale,
+                            density,
+                            is_mirror,
+                            layer: LAYER,
+                        };
+                        sample = sample.replaced(takes, of_layer);
+                        left = left & !takes;
+                    }
                 }
-            });
-            sample
-        },
-    )
+                choice = rest;
+            }
+        });
+        sample
+    })
 }

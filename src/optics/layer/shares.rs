@@ -1,11 +1,7 @@
 //! Shares of a material's layers in light and samples, for one view direction.
 
+use super::*;
 use std::ops::{Index, IndexMut};
-
-use super::{Layer, LayerAlbedo, LayerModel};
-use crate::optics::material::{Material, Surface};
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::Vec3;
 
 /// Share of one layer for a view direction.
 #[derive(Clone, Copy, Debug)]
@@ -26,14 +22,12 @@ pub struct Layers<T>([LayerShare<T>; Layer::ALL.len()]);
 
 impl<T> Index<Layer> for Layers<T> {
     type Output = LayerShare<T>;
-    #[inline(always)]
     fn index(&self, layer: Layer) -> &LayerShare<T> {
         &self.0[layer as usize]
     }
 }
 
 impl<T> IndexMut<Layer> for Layers<T> {
-    #[inline(always)]
     fn index_mut(&mut self, layer: Layer) -> &mut LayerShare<T> {
         &mut self.0[layer as usize]
     }
@@ -48,46 +42,43 @@ impl<T: Real> Layers<T> {
 
 /// Computes the shares of all layers for a view.
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
-    T::out_of_line(
-        #[inline(always)]
-        || {
-            let (white, one) = (Vec3::splat(T::one()), T::one());
-            let nothing = LayerShare {
-                albedo: Vec3::zero(),
-                transmittance: white,
-                reached: one,
-                probability: T::zero(),
-            };
-            let mut layers = Layers([nothing; Layer::ALL.len()]);
-            // Transmittance of the covers so far, and light left by the other layers.
-            let [mut through, mut left] = [white; 2];
-            each_layer!({
-                let share = &mut layers[LAYER];
-                share.transmittance = through;
-                let is_there = L::is_there(material, surface);
-                if is_there.any() {
-                    let LayerAlbedo {
-                        reflected,
-                        transmittance,
-                    } = L::albedo(material, tables, surface, left);
-                    share.albedo = Vec3::select(is_there, reflected, Vec3::zero());
-                    let behind = if IS_COVER { &mut through } else { &mut left };
-                    *behind = Vec3::select(is_there, *behind * transmittance, *behind);
-                }
-            });
-            let mut below = T::zero();
-            each_layer!(outwards, {
-                below = L::choose(material, &mut layers, below);
-            });
-            let mut reached = one;
-            each_layer!({
-                let share = &mut layers[LAYER];
-                share.reached = reached;
-                if IS_COVER {
-                    reached = reached * (one - share.probability);
-                }
-            });
-            layers
-        },
-    )
+    out_of_line!(T, {
+        let (white, one) = (Vec3::ONE, T::ONE);
+        let nothing = LayerShare {
+            albedo: Vec3::ZERO,
+            transmittance: white,
+            reached: one,
+            probability: T::ZERO,
+        };
+        let mut layers = Layers([nothing; Layer::ALL.len()]);
+        // Transmittance of the covers so far, and light left by the other layers.
+        let [mut through, mut left] = [white; 2];
+        each_layer!({
+            let share = &mut layers[LAYER];
+            share.transmittance = through;
+            let is_there = L::is_there(material, surface);
+            if is_there.any() {
+                let LayerAlbedo {
+                    reflected,
+                    transmittance,
+                } = L::albedo(material, tables, surface, left);
+                share.albedo = reflected.masked(is_there);
+                let behind = if IS_COVER { &mut through } else { &mut left };
+                *behind = Vec3::select(is_there, *behind * transmittance, *behind);
+            }
+        });
+        let mut below = T::ZERO;
+        each_layer!(outwards, {
+            below = L::choose(material, &mut layers, below);
+        });
+        let mut reached = one;
+        each_layer!({
+            let share = &mut layers[LAYER];
+            share.reached = reached;
+            if IS_COVER {
+                reached = reached * (one - share.probability);
+            }
+        });
+        layers
+    })
 }

@@ -1,16 +1,11 @@
 //! The specular lobe: it reflects the Fresnel share; base and transmission share the rest.
 
-use super::facet::{decides_by_facet, left_by_facet, mirrored_share, passes_on, shares_facets};
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerShare, LayerToward, Layers};
+use super::facet::{left_by_facet, mirrored_share, shares_facets};
+use super::*;
 use crate::optics::albedo::{ROUGH_ALBEDO_LENGTH, albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
 use crate::optics::fresnel::{fresnel, fresnel_f0, half_vector_cosine};
-use crate::optics::lobe::LobeShape;
-use crate::optics::material::{Material, Surface};
-use crate::optics::numeric::sampled_share;
-use crate::optics::real::{Mask, Real};
 use crate::optics::refraction::refracted_square;
 use crate::optics::scattering::scattered_again;
-use crate::optics::vector::Vec3;
 
 /// The specular lobe.
 #[derive(Debug)]
@@ -19,181 +14,172 @@ pub struct Specular;
 impl<T: Real> LayerModel<T> for Specular {
     const LAYER: Layer = Layer::Specular;
 
-    #[inline(always)]
-    fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
-        material.has_specular()
-    }
+    inlined! {
+        fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
+            material.has_specular()
+        }
 
-    #[inline(always)]
-    fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
-        LayerLobe {
-            shape: material.shape(tables),
-            frame: surface.frame,
+        fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+            LayerLobe {
+                shape: material.shape(tables),
+                frame: surface.frame,
+            }
+        }
+
+        /// No look-up without layers below.
+        fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
+            let white = Vec3::ONE;
+            let [mut taken, mut by_dielectric] = [Vec3::ZERO; 2];
+            if has_more(material).any() {
+                [taken, by_dielectric] = specular_albedos(material, tables, surface);
+            }
+            LayerAlbedo {
+                reflected: taken,
+                // A metal has no layer below; the rest lies below the dielectric alone.
+                transmittance: (white - by_dielectric).at_least_zero(),
+            }
+        }
+
+        fn toward(
+            material: &Material<T>,
+            layers: &Layers<T>,
+            surface: &Surface<T>,
+            shape: &LobeShape<'_, T>,
+            wi: Vec3<T>,
+        ) -> LayerToward<T> {
+            let terms = material.fresnel_terms(surface.is_inside);
+            let cosine = half_vector_cosine(surface.wo, wi);
+            let color = fresnel(&terms, cosine);
+            LayerToward {
+                color: scattered_again(material, surface, shape, &terms, cosine, color),
+                probability: specular_probability(material, layers, surface, wi, color),
+            }
+        }
+
+        /// Distributes all samples below the covers: in proportion to reflected and transmitted luminance, the specular lobe as
+        /// in [`sampled_share`].
+        fn choose(material: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
+            let (zero, one) = (T::ZERO, T::ONE);
+            let specular = layers[Layer::Specular].albedo.luminance();
+            let through = layers[Layer::Transmission].albedo.luminance();
+            let share = sampled_share(specular / (specular + below).max(T::from_f64(1e-9)));
+            let share = T::select(below.above_zero(), share, one);
+            // The part passed on is exactly the part not reflected, no estimate.
+            let share = T::select(passes_on(material), specular.min(one), share);
+            let through = (one - share) * (through / below.max(T::from_f64(1e-9)));
+            layers[Layer::Specular].probability = share;
+            layers[Layer::Transmission].probability = through;
+            layers[Layer::Base].probability = one - share - through;
+            let alone = T::select(material.has_specular(), one, zero);
+            T::select(has_more(material), specular + below, alone)
+        }
+
+        /// Without layers below: the Fresnel term at the view's angle.
+        fn seen_albedo(material: &Material<T>, surface: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
+            let cosine = surface.frame.normal.dot(surface.wo);
+            let alone = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
+            let seen = Vec3::select(has_more(material), share.albedo, alone);
+            seen.masked(material.has_specular())
+        }
+
+        fn decides_by_facet(material: &Material<T>) -> T::Mask {
+            decides_by_facet(material)
+        }
+
+        fn pass_on(material: &Material<T>, layers: &mut Layers<T>, weight: T, probability: T) -> T::Mask {
+            let is_passed_on = passes_on(material);
+            let of_facets = T::ONE - layers[Layer::Base].probability;
+            let through = &mut layers[Layer::Transmission].probability;
+            *through = T::select(shares_facets(material), of_facets - probability, *through);
+            let is_lost = is_passed_on & !weight.above_zero();
+            layers[Layer::Specular].probability = T::select(is_lost, T::ZERO, probability);
+            is_passed_on
         }
     }
+}
 
-    /// No look-up without layers below.
-    #[inline(always)]
-    fn albedo(material: &Material<T>, tables: &[f32], surface: &Surface<T>, _: Vec3<T>) -> LayerAlbedo<T> {
-        let white = Vec3::splat(T::one());
-        let [mut taken, mut by_dielectric] = [Vec3::zero(); 2];
-        if has_more(material).any() {
-            [taken, by_dielectric] = specular_albedos(material, tables, surface);
-        }
-        LayerAlbedo {
-            reflected: taken,
-            // A metal has no layer below; the rest lies below the dielectric alone.
-            transmittance: (white - by_dielectric).at_least_zero(),
-        }
+inlined! {
+    /// Lanes with layers below the specular lobe.
+    fn has_more<T: Real>(material: &Material<T>) -> T::Mask {
+        material.has_base() | material.transmits()
     }
 
-    #[inline(always)]
-    fn toward(
+    /// Albedo of the specular lobe for a view, and that of its dielectric alone.
+    fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
+        let cosine = surface.frame.normal.dot(surface.wo);
+        let is_within = surface.is_within(material);
+        let mut albedos = [Vec3::ZERO; 2];
+        if is_within.any() {
+            let place = albedo_place(cosine, material.ior_ahead(is_within));
+            albedos = albedos_in(material, tables, surface, material.inner_albedo_table, place);
+        }
+        if is_within.all() {
+            return albedos;
+        }
+        let outer = albedos_in(material, tables, surface, material.albedo_table, cosine);
+        [
+            Vec3::select(is_within, albedos[0], outer[0]),
+            Vec3::select(is_within, albedos[1], outer[1]),
+        ]
+    }
+
+    /// The same from a table at a position.
+    fn albedos_in<T: Real>(
+        material: &Material<T>,
+        tables: &[f32],
+        surface: &Surface<T>,
+        table: u32,
+        place: T,
+    ) -> [Vec3<T>; 2] {
+        if material.has_rough_tables == 1 {
+            let mut integrals = rough_albedo_lookup(tables, table, place, material.roughness);
+            if table == material.albedo_table && material.has_coated_table() {
+                integrals[0] = dielectric_under_coat(material, tables, place, integrals[0]);
+            }
+            let terms = material.fresnel_terms(surface.is_inside);
+            return [
+                rough_albedo(&terms, integrals),
+                rough_albedo(&terms.of_dielectric(), integrals),
+            ];
+        }
+        // A partly metallic material has the other table.
+        [albedo_lookup(tables, table, place); 2]
+    }
+
+    /// The dielectric's integral where a texture varies the coat over it: between those without and under a whole coat, as the
+    /// reflectances head-on are.
+    fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], place: T, bare: T) -> T {
+        let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;
+        let [coated, ..] = rough_albedo_lookup(tables, table, place, material.roughness);
+        let [zero, one] = [T::ZERO, T::ONE].map(|weight| fresnel_f0(material.ior_under_coat(weight)));
+        let there = fresnel_f0(material.reflecting_ior);
+        let share = (there - zero) / T::select(one.differs(zero), one - zero, T::ONE);
+        bare + (coated - bare) * share
+    }
+
+    /// Sampling probability of the specular lobe, if no cover is sampled, for a direction that it mirrors to with this Fresnel
+    /// factor.
+    fn specular_probability<T: Real>(
         material: &Material<T>,
         layers: &Layers<T>,
         surface: &Surface<T>,
-        shape: &LobeShape<'_, T>,
         wi: Vec3<T>,
-    ) -> LayerToward<T> {
-        let terms = material.fresnel_terms(surface.is_inside);
-        let cosine = half_vector_cosine(surface.wo, wi);
-        let color = fresnel(&terms, cosine);
-        LayerToward {
-            color: scattered_again(material, surface, shape, &terms, cosine, color),
-            probability: specular_probability(material, layers, surface, wi, color),
+        color: Vec3<T>,
+    ) -> T {
+        let reflected = color.luminance();
+        let mut probability = T::select(passes_on(material), reflected, layers[Layer::Specular].probability);
+        let is_shared = shares_facets(material);
+        if is_shared.any() {
+            let ior = material.ior_ahead(surface.is_inside);
+            let cosine = half_vector_cosine(surface.wo, wi);
+            let square = refracted_square(cosine, ior);
+            let left = left_by_facet(material, surface, [cosine, square.safe_sqrt() / ior]);
+            // Total reflection leaves nothing to refract, whichever Fresnel model is used.
+            let refracted = left.luminance().masked(square.above_zero());
+            let of_facets = T::ONE - layers[Layer::Base].probability;
+            let share = mirrored_share(reflected, refracted);
+            probability = T::select(is_shared, of_facets * share, probability);
         }
+        probability
     }
-
-    /// Distributes all samples below the covers: in proportion to reflected and transmitted luminance, the specular lobe as
-    /// in [`sampled_share`].
-    #[inline(always)]
-    fn choose(material: &Material<T>, layers: &mut Layers<T>, below: T) -> T {
-        let (zero, one) = (T::zero(), T::one());
-        let specular = layers[Layer::Specular].albedo.luminance();
-        let through = layers[Layer::Transmission].albedo.luminance();
-        let share = sampled_share(specular / (specular + below).max(T::from_f64(1e-9)));
-        let share = T::select(zero.less(below), share, one);
-        // The part passed on is exactly the part not reflected, no estimate.
-        let share = T::select(passes_on(material), specular.min(one), share);
-        let through = (one - share) * (through / below.max(T::from_f64(1e-9)));
-        layers[Layer::Specular].probability = share;
-        layers[Layer::Transmission].probability = through;
-        layers[Layer::Base].probability = one - share - through;
-        let alone = T::select(material.has_specular(), one, zero);
-        T::select(has_more(material), specular + below, alone)
-    }
-
-    /// Without layers below: the Fresnel term at the view's angle.
-    #[inline(always)]
-    fn seen_albedo(material: &Material<T>, surface: &Surface<T>, share: &LayerShare<T>) -> Vec3<T> {
-        let cosine = surface.frame.normal.dot(surface.wo);
-        let alone = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
-        let seen = Vec3::select(has_more(material), share.albedo, alone);
-        Vec3::select(material.has_specular(), seen, Vec3::zero())
-    }
-
-    #[inline(always)]
-    fn decides_by_facet(material: &Material<T>) -> T::Mask {
-        decides_by_facet(material)
-    }
-
-    #[inline(always)]
-    fn pass_on(material: &Material<T>, layers: &mut Layers<T>, weight: T, probability: T) -> T::Mask {
-        let is_passed_on = passes_on(material);
-        let of_facets = T::one() - layers[Layer::Base].probability;
-        let through = &mut layers[Layer::Transmission].probability;
-        *through = T::select(shares_facets(material), of_facets - probability, *through);
-        let is_lost = is_passed_on & !T::zero().less(weight);
-        layers[Layer::Specular].probability = T::select(is_lost, T::zero(), probability);
-        is_passed_on
-    }
-}
-
-/// Lanes with layers below the specular lobe.
-#[inline(always)]
-fn has_more<T: Real>(material: &Material<T>) -> T::Mask {
-    material.has_base() | material.transmits()
-}
-
-/// Albedo of the specular lobe for a view, and that of its dielectric alone.
-#[inline(always)]
-fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
-    let cosine = surface.frame.normal.dot(surface.wo);
-    let is_within = surface.is_within(material);
-    let mut albedos = [Vec3::zero(); 2];
-    if is_within.any() {
-        let place = albedo_place(cosine, material.ior_ahead(is_within));
-        albedos = albedos_in(material, tables, surface, material.inner_albedo_table, place);
-    }
-    if is_within.all() {
-        return albedos;
-    }
-    let outer = albedos_in(material, tables, surface, material.albedo_table, cosine);
-    [
-        Vec3::select(is_within, albedos[0], outer[0]),
-        Vec3::select(is_within, albedos[1], outer[1]),
-    ]
-}
-
-/// The same from a table at a position.
-#[inline(always)]
-fn albedos_in<T: Real>(
-    material: &Material<T>,
-    tables: &[f32],
-    surface: &Surface<T>,
-    table: u32,
-    place: T,
-) -> [Vec3<T>; 2] {
-    if material.has_rough_tables == 1 {
-        let mut integrals = rough_albedo_lookup(tables, table, place, material.roughness);
-        if table == material.albedo_table && material.has_coated_table() {
-            integrals[0] = dielectric_under_coat(material, tables, place, integrals[0]);
-        }
-        let terms = material.fresnel_terms(surface.is_inside);
-        return [
-            rough_albedo(&terms, integrals),
-            rough_albedo(&terms.of_dielectric(), integrals),
-        ];
-    }
-    // A partly metallic material has the other table.
-    [albedo_lookup(tables, table, place); 2]
-}
-
-/// The dielectric's integral where a texture varies the coat over it: between those without and under a whole coat, as the
-/// reflectances head-on are.
-#[inline(always)]
-fn dielectric_under_coat<T: Real>(material: &Material<T>, tables: &[f32], place: T, bare: T) -> T {
-    let table = material.albedo_table + ROUGH_ALBEDO_LENGTH as u32;
-    let [coated, ..] = rough_albedo_lookup(tables, table, place, material.roughness);
-    let [zero, one] = [T::zero(), T::one()].map(|weight| fresnel_f0(material.ior_under_coat(weight)));
-    let there = fresnel_f0(material.reflecting_ior);
-    let share = (there - zero) / T::select(one.differs(zero), one - zero, T::one());
-    bare + (coated - bare) * share
-}
-
-/// Sampling probability of the specular lobe, if no cover is sampled, for a direction that it mirrors to with this Fresnel
-/// factor.
-#[inline(always)]
-fn specular_probability<T: Real>(
-    material: &Material<T>,
-    layers: &Layers<T>,
-    surface: &Surface<T>,
-    wi: Vec3<T>,
-    color: Vec3<T>,
-) -> T {
-    let reflected = color.luminance();
-    let mut probability = T::select(passes_on(material), reflected, layers[Layer::Specular].probability);
-    let is_shared = shares_facets(material);
-    if is_shared.any() {
-        let ior = material.ior_ahead(surface.is_inside);
-        let cosine = half_vector_cosine(surface.wo, wi);
-        let square = refracted_square(cosine, ior);
-        let left = left_by_facet(material, surface, [cosine, square.safe_sqrt() / ior]);
-        // Total reflection leaves nothing to refract, whichever Fresnel model is used.
-        let refracted = T::select(T::zero().less(square), left.luminance(), T::zero());
-        let of_facets = T::one() - layers[Layer::Base].probability;
-        let share = mirrored_share(reflected, refracted);
-        probability = T::select(is_shared, of_facets * share, probability);
-    }
-    probability
 }

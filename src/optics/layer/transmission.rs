@@ -2,14 +2,11 @@
 //! specular lobe leaves.
 
 use super::facet::{left_by_facet, mirrored_share, shares_facets};
-use super::{Layer, LayerAlbedo, LayerLobe, LayerModel, LayerToward, Layers};
+use super::*;
 use crate::optics::fresnel::fresnel;
-use crate::optics::lobe::{LobeShape, refracts_at_facets};
-use crate::optics::material::{Material, Surface};
-use crate::optics::real::{Mask, Real};
+use crate::optics::lobe::refracts_at_facets;
 use crate::optics::refraction::refracting_cosines;
 use crate::optics::scattering::interface_gain;
-use crate::optics::vector::Vec3;
 
 /// The refracting lobe.
 #[derive(Debug)]
@@ -18,67 +15,63 @@ pub struct Transmission;
 impl<T: Real> LayerModel<T> for Transmission {
     const LAYER: Layer = Layer::Transmission;
 
-    #[inline(always)]
-    fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
-        material.transmits()
-    }
-
-    #[inline(always)]
-    fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
-        LayerLobe {
-            shape: material.transmission_shape(tables, surface.is_inside),
-            frame: surface.frame,
+    inlined! {
+        fn is_there(material: &Material<T>, _: &Surface<T>) -> T::Mask {
+            material.transmits()
         }
-    }
 
-    #[inline(always)]
-    fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
-        let left_by_metal = left * (T::one() - material.metalness);
-        LayerAlbedo {
-            reflected: material.transmission_tint * left_by_metal * material.transmission_weight,
-            transmittance: Vec3::splat(T::one()),
+        fn lobe<'a>(material: &Material<T>, tables: &'a [f32], surface: &Surface<T>) -> LayerLobe<'a, T> {
+            LayerLobe {
+                shape: material.transmission_shape(tables, surface.is_inside),
+                frame: surface.frame,
+            }
         }
-    }
 
-    #[inline(always)]
-    fn toward(
-        material: &Material<T>,
-        layers: &Layers<T>,
-        surface: &Surface<T>,
-        shape: &LobeShape<'_, T>,
-        wi: Vec3<T>,
-    ) -> LayerToward<T> {
-        let share = &layers[Layer::Transmission];
-        let mut toward = LayerToward {
-            color: share.albedo,
-            probability: share.probability,
-        };
-        if !refracts_at_facets(shape) {
-            return toward;
+        fn albedo(material: &Material<T>, _: &[f32], _: &Surface<T>, left: Vec3<T>) -> LayerAlbedo<T> {
+            let left_by_metal = left * (T::ONE - material.metalness);
+            LayerAlbedo {
+                reflected: material.transmission_tint * left_by_metal * material.transmission_weight,
+                transmittance: Vec3::ONE,
+            }
         }
-        let cosines = refracting_cosines(surface.wo, wi, shape.eta);
-        toward.color = left_by_facet(material, surface, cosines);
-        let is_shared = shares_facets(material);
-        if is_shared.any() {
-            let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosines[0]).luminance();
-            let refracted = toward.color.luminance();
-            let of_facets = T::one() - layers[Layer::Base].probability;
-            let share = T::one() - mirrored_share(reflected, refracted);
-            toward.probability = T::select(is_shared, of_facets * share, toward.probability);
+
+        fn toward(
+            material: &Material<T>,
+            layers: &Layers<T>,
+            surface: &Surface<T>,
+            shape: &LobeShape<'_, T>,
+            wi: Vec3<T>,
+        ) -> LayerToward<T> {
+            let share = &layers[Layer::Transmission];
+            let mut toward = LayerToward {
+                color: share.albedo,
+                probability: share.probability,
+            };
+            if !refracts_at_facets(shape) {
+                return toward;
+            }
+            let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+            toward.color = left_by_facet(material, surface, cosines);
+            let is_shared = shares_facets(material);
+            if is_shared.any() {
+                let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosines[0]).luminance();
+                let refracted = toward.color.luminance();
+                let of_facets = T::ONE - layers[Layer::Base].probability;
+                let share = T::ONE - mirrored_share(reflected, refracted);
+                toward.probability = T::select(is_shared, of_facets * share, toward.probability);
+            }
+            toward.color = toward.color * interface_gain(material, surface, shape);
+            toward
         }
-        toward.color = toward.color * interface_gain(material, surface, shape);
-        toward
-    }
 
-    /// The specular lobe sets how often its rest is sampled.
-    #[inline(always)]
-    fn choose(_: &Material<T>, layers: &mut Layers<T>, _below: T) -> T {
-        layers[Layer::Transmission].albedo.luminance()
-    }
+        /// The specular lobe sets how often its rest is sampled.
+        fn choose(_: &Material<T>, layers: &mut Layers<T>, _below: T) -> T {
+            layers[Layer::Transmission].albedo.luminance()
+        }
 
-    /// It takes the rest of the samples.
-    #[inline(always)]
-    fn chance(_: &Layers<T>) -> T {
-        T::one()
+        /// It takes the rest of the samples.
+        fn chance(_: &Layers<T>) -> T {
+            T::ONE
+        }
     }
 }

@@ -1,12 +1,10 @@
 //! Blinn-Phong as a microfacet lobe: D = (n + 2)/(2π) cosⁿθh (Blinn 1977), n = 2/α² − 2, masked as GGX of the same α
 //! (Walter et al. 2007 show the two to be close).
 
-use super::{Facets, LobeShape, LobeTraits, Width, alpha_from_roughness, isotropic_alpha};
-use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::microfacet::{distribution_weight, facet};
+use super::*;
+use crate::optics::frame::world_from_local;
+use crate::optics::microfacet::distribution_weight;
 use crate::optics::numeric::{expm1, log1p};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
@@ -21,21 +19,21 @@ pub const TRAITS: LobeTraits = LobeTraits {
     peak: 0.0,
 };
 
-#[inline(always)]
-pub fn exponent<T: Real>(roughness: T) -> T {
-    let alpha = alpha_from_roughness(roughness);
-    (T::from_f64(2.0) / (alpha * alpha) - T::from_f64(2.0)).max(T::zero())
-}
+inlined! {
+    pub fn exponent<T: Real>(roughness: T) -> T {
+        let alpha = alpha_from_roughness(roughness);
+        (T::TWO / (alpha * alpha) - T::TWO).max(T::ZERO)
+    }
 
-/// The reflection at a normal drawn from D cosθ.
-#[inline(always)]
-pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-    let power = (T::one() - xi[0]).ln() / (exponent(shape.roughness) + T::from_f64(2.0));
-    let cosine = power.exp();
-    let sine = (-expm1(T::from_f64(2.0) * power)).safe_sqrt();
-    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
-    let h = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine);
-    world_from_local(frame, local_from_world(frame, wo).mirrored_about(h))
+    /// The reflection at a normal drawn from D cosθ.
+    pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+        let power = (T::ONE - xi[0]).ln() / (exponent(shape.roughness) + T::TWO);
+        let cosine = power.exp();
+        let sine = (-expm1(T::TWO * power)).safe_sqrt();
+        let phi_rad = T::TAU * xi[1];
+        let h = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine);
+        world_from_local(frame, local_from_world(frame, wo).mirrored_about(h))
+    }
 }
 
 /// D h.z/(4 |wo·h|).
@@ -45,14 +43,14 @@ pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>,
     let n = exponent(shape.roughness);
     // ln cosθh: for narrow lobes from sin²θh by the tangential components, else from the cosine; each loses precision where
     // the other is used.
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let sine2 = facet.h.x * facet.h.x + facet.h.y * facet.h.y;
     let near = half * log1p(-sine2.min(half));
     let log_cosine = T::select(sine2.less(half), near, facet.h.z.max(T::from_f64(1e-30)).ln());
-    let power = ((n + T::one()) * log_cosine).exp();
-    let scale = (n + T::from_f64(2.0)) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
+    let power = ((n + T::ONE) * log_cosine).exp();
+    let scale = (n + T::TWO) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
     let value = scale * power / facet.cosine.max(T::from_f64(1e-12));
-    T::select(T::zero().less(facet.h.z), value, T::zero())
+    value.masked(facet.h.z.above_zero())
 }
 
 /// G2 (wo·h)/(cosθo h.z).

@@ -1,12 +1,10 @@
 //! GGX with height-correlated Smith masking, single scattering; visible normals sampled by spherical caps.
 //! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
 
-use super::{Facets, LobeShape, LobeTraits, Width, microfacet_alpha};
-use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::microfacet::{Alpha, visible_density, visible_weight};
+use super::*;
+use crate::optics::frame::world_from_local;
+use crate::optics::microfacet::{visible_density, visible_weight};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
@@ -21,36 +19,34 @@ pub const TRAITS: LobeTraits = LobeTraits {
     peak: 0.0,
 };
 
-/// The reflection at a visible normal: a uniform point on the spherical cap of the stretched view direction.
-#[inline(always)]
-pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-    let wo = local_from_world(frame, wo);
-    world_from_local(
-        frame,
-        wo.mirrored_about(visible_normal(microfacet_alpha(shape), wo, xi)),
-    )
-}
+inlined! {
+    /// The reflection at a visible normal: a uniform point on the spherical cap of the stretched view direction.
+    pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+        let wo = local_from_world(frame, wo);
+        world_from_local(
+            frame,
+            wo.mirrored_about(visible_normal(microfacet_alpha(shape), wo, xi)),
+        )
+    }
 
-/// A facet's normal that the view sees, both in the local frame.
-#[inline(always)]
-pub fn visible_normal<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-    let up = vec3(T::zero(), T::zero(), T::one());
-    let stretched = normalize_or(vec3(wo.x * alpha.x, wo.y * alpha.y, wo.z), up);
-    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[0];
-    let z = (T::one() - xi[1]) * (T::one() + stretched.z) - stretched.z;
-    let sine = (T::one() - z * z).safe_sqrt();
-    let cap = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), z) + stretched;
-    normalize_or(vec3(cap.x * alpha.x, cap.y * alpha.y, cap.z.max(T::zero())), up)
-}
+    /// A facet's normal that the view sees, both in the local frame.
+    pub fn visible_normal<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+        let up = vec3(T::ZERO, T::ZERO, T::ONE);
+        let stretched = normalize_or(vec3(wo.x * alpha.x, wo.y * alpha.y, wo.z), up);
+        let phi_rad = T::TAU * xi[0];
+        let z = (T::ONE - xi[1]) * (T::ONE + stretched.z) - stretched.z;
+        let sine = (T::ONE - z * z).safe_sqrt();
+        let cap = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), z) + stretched;
+        normalize_or(vec3(cap.x * alpha.x, cap.y * alpha.y, cap.z.max(T::ZERO)), up)
+    }
 
-/// D G1/(4 cosθo).
-#[inline(always)]
-pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    visible_density(microfacet_alpha(shape), frame, wo, wi)
-}
+    /// D G1/(4 cosθo).
+    pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        visible_density(microfacet_alpha(shape), frame, wo, wi)
+    }
 
-/// G2/G1.
-#[inline(always)]
-pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    visible_weight(microfacet_alpha(shape), frame, wo, wi)
+    /// G2/G1.
+    pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        visible_weight(microfacet_alpha(shape), frame, wo, wi)
+    }
 }

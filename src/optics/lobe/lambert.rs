@@ -1,10 +1,7 @@
 //! Lambert's lobe: density cosθ/π, drawn without a basis as the normal plus a uniform direction.
 
-use super::{Facets, LobeShape, LobeTraits, Width};
-use crate::optics::frame::Frame;
+use super::*;
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::Real;
-use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_sphere;
 
 /// Properties of the lobe.
@@ -19,20 +16,19 @@ pub const TRAITS: LobeTraits = LobeTraits {
     peak: 0.0,
 };
 
-/// A direction with density cosθ/π.
-#[inline(always)]
-pub fn sample<T: Real>(_shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-    normalize_or(frame.normal + uniform_sphere([xi[0], xi[1]]), frame.normal)
-}
+inlined! {
+    /// A direction with density cosθ/π.
+    pub fn sample<T: Real>(_shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+        normalize_or(frame.normal + uniform_sphere([xi[0], xi[1]]), frame.normal)
+    }
 
-/// cosθ/π.
-#[inline(always)]
-pub fn density<T: Real>(_shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, wi: Vec3<T>) -> T {
-    frame.normal.dot(wi).max(T::zero()) * T::from_f64(std::f64::consts::FRAC_1_PI)
-}
+    /// cosθ/π.
+    pub fn density<T: Real>(_shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, wi: Vec3<T>) -> T {
+        frame.normal.dot(wi).max(T::ZERO) * T::FRAC_1_PI
+    }
 
-/// Always 1: the lobe is its density.
-#[inline(always)]
-pub fn weight<T: Real>(_shape: &LobeShape<'_, T>, _frame: &Frame<T>, _wo: Vec3<T>, _wi: Vec3<T>) -> T {
-    T::one()
+    /// Always 1: the lobe is its density.
+    pub fn weight<T: Real>(_shape: &LobeShape<'_, T>, _frame: &Frame<T>, _wo: Vec3<T>, _wi: Vec3<T>) -> T {
+        T::ONE
+    }
 }

@@ -11,10 +11,9 @@ pub mod model;
 use super::curve::Curve;
 use super::frame::{Frame, local_from_world};
 use super::microfacet::{Alpha, facet, smith_g1_over_cosine};
-use super::real::{Mask, Real};
 use super::refraction::{facet_density_factor, facet_mirror, facet_refracted, refracted, refracting_normal};
-use super::vector::Vec3;
 use crate::named::named;
+use crate::optics::prelude::*;
 
 /// Hands the list of the lobes to a macro: module, type, number in the shaders, name, label, help.
 #[doc(hidden)]
@@ -56,7 +55,6 @@ macro_rules! lobes {
             pub fn module(self) -> &'static str {
                 match self { $(Lobe::$variant => stringify!($module),)* }
             }
-            #[inline(always)]
             pub const fn traits(self) -> LobeTraits {
                 match self { $(Lobe::$variant => $module::TRAITS,)* }
             }
@@ -64,18 +62,12 @@ macro_rules! lobes {
 
         /// The direction that the lobe itself draws, on either side of the horizon.
         pub fn raw_sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-            T::vectorize(
-                #[inline(always)]
-                || match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* },
-            )
+            vectorized!(T, match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* })
         }
 
         /// The density of [`raw_sample`], per steradian, not negative.
         pub fn raw_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-            T::vectorize(
-                #[inline(always)]
-                || match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* },
-            )
+            vectorized!(T, match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* })
         }
 
         /// Evaluate over density for a direction of [`raw_sample`].
@@ -90,25 +82,21 @@ list!(lobes);
 
 impl Lobe {
     /// See [`LobeTraits::is_hemispherical`].
-    #[inline(always)]
     pub const fn is_hemispherical(self) -> bool {
         self.traits().is_hemispherical
     }
 
     /// See [`LobeTraits::is_anisotropic`].
-    #[inline(always)]
     pub const fn is_anisotropic(self) -> bool {
         self.traits().is_anisotropic
     }
 
     /// See [`LobeTraits::facets`].
-    #[inline(always)]
     pub const fn facets(self) -> Facets {
         self.traits().facets
     }
 
     /// See [`LobeTraits::has_curves`].
-    #[inline(always)]
     pub const fn has_curves(self) -> bool {
         self.traits().has_curves
     }
@@ -159,39 +147,38 @@ pub enum Width {
     Alpha,
 }
 
-/// The angular width of a lobe, near enough.
-#[inline(always)]
-pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
-    match lobe.traits().width {
-        Width::Fixed => T::one(),
-        Width::Roughness => roughness,
-        Width::Alpha => roughness * roughness,
+inlined! {
+    /// The angular width of a lobe, near enough.
+    pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
+        match lobe.traits().width {
+            Width::Fixed => T::ONE,
+            Width::Roughness => roughness,
+            Width::Alpha => roughness * roughness,
+        }
     }
-}
 
-/// Roughness of a lobe that is as wide as a microfacet refraction of this roughness. Facets turn refracted light by |1 −
-/// 1/η| of their tilt, mirrored light by twice the tilt (mathematics, section 7).
-#[inline(always)]
-pub fn refracting_roughness<T: Real>(lobe: Lobe, roughness: T, eta: T) -> T {
-    let share = (T::one() - T::one() / eta).abs() * T::from_f64(0.5);
-    match lobe.traits().width {
-        Width::Fixed => roughness,
-        Width::Roughness => refracting_roughness_of(roughness, share),
-        Width::Alpha => roughness * share.sqrt(),
+    /// Roughness of a lobe that is as wide as a microfacet refraction of this roughness. Facets turn refracted light by |1 −
+    /// 1/η| of their tilt, mirrored light by twice the tilt (mathematics, section 7).
+    pub fn refracting_roughness<T: Real>(lobe: Lobe, roughness: T, eta: T) -> T {
+        let share = (T::ONE - T::ONE / eta).abs() * T::HALF;
+        match lobe.traits().width {
+            Width::Fixed => roughness,
+            Width::Roughness => refracting_roughness_of(roughness, share),
+            Width::Alpha => roughness * share.sqrt(),
+        }
+        .min(T::ONE)
     }
-    .min(T::one())
-}
 
-/// The roughness at which a lobe whose width goes with it is as wide as facets make it that turn the light by this share.
-#[inline(always)]
-fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
-    let number = T::from_f64;
-    let square = roughness * roughness;
-    let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
-    let turn = share * tilt;
-    // The positive root of 4 x² + 3 x = turn, written without cancellation.
-    let root = (number(9.0) + number(16.0) * turn).sqrt();
-    (turn + turn) / (number(3.0) + root)
+    /// The roughness at which a lobe whose width goes with it is as wide as facets make it that turn the light by this share.
+    fn refracting_roughness_of<T: Real>(roughness: T, share: T) -> T {
+        let number = T::from_f64;
+        let square = roughness * roughness;
+        let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
+        let turn = share * tilt;
+        // The positive root of 4 x² + 3 x = turn, written without cancellation.
+        let root = (number(9.0) + number(16.0) * turn).sqrt();
+        (turn + turn) / (number(3.0) + root)
+    }
 }
 
 named! {
@@ -237,7 +224,7 @@ impl<T: Real> LobeShape<'_, T> {
     /// True if the lobe refracts, in all lanes or none.
     #[inline(always)]
     pub fn refracts(&self) -> bool {
-        self.eta.differs(T::zero()).any()
+        self.eta.differs(T::ZERO).any()
     }
 }
 
@@ -257,36 +244,34 @@ pub const ALPHA_MIN: f64 = 1e-4;
 /// but is weighed as a mirror.
 pub const MIRROR_WIDTH: f64 = 1e-3;
 
-/// α of the microfacet lobes.
-#[inline(always)]
-pub fn alpha_from_roughness<T: Real>(roughness: T) -> T {
-    (roughness * roughness).max(T::from_f64(ALPHA_MIN))
-}
-
-/// Scale of the widths along tangent and bitangent: √((1 + s)/(1 − s)), s = 0.9 × anisotropy, so that the product of both is
-/// unchanged.
-#[inline(always)]
-pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
-    let s = T::from_f64(0.9) * anisotropy.clamp(-T::one(), T::one());
-    ((T::one() + s) / (T::one() - s)).sqrt()
-}
-
-/// The widths of a shape, anisotropy applied.
-#[inline(always)]
-pub fn microfacet_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
-    let alpha = alpha_from_roughness(shape.roughness);
-    let stretch = stretch_from_anisotropy(shape.anisotropy);
-    Alpha {
-        x: alpha * stretch,
-        y: alpha / stretch,
+inlined! {
+    /// α of the microfacet lobes.
+    pub fn alpha_from_roughness<T: Real>(roughness: T) -> T {
+        (roughness * roughness).max(T::from_f64(ALPHA_MIN))
     }
-}
 
-/// Equal widths.
-#[inline(always)]
-pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
-    let alpha = alpha_from_roughness(shape.roughness);
-    Alpha { x: alpha, y: alpha }
+    /// Scale of the widths along tangent and bitangent: √((1 + s)/(1 − s)), s = 0.9 × anisotropy, so that the product of both is
+    /// unchanged.
+    pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
+        let s = T::from_f64(0.9) * anisotropy.clamp(-T::ONE, T::ONE);
+        ((T::ONE + s) / (T::ONE - s)).sqrt()
+    }
+
+    /// The widths of a shape, anisotropy applied.
+    pub fn microfacet_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+        let alpha = alpha_from_roughness(shape.roughness);
+        let stretch = stretch_from_anisotropy(shape.anisotropy);
+        Alpha {
+            x: alpha * stretch,
+            y: alpha / stretch,
+        }
+    }
+
+    /// Equal widths.
+    pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+        let alpha = alpha_from_roughness(shape.roughness);
+        Alpha { x: alpha, y: alpha }
+    }
 }
 
 /// Anisotropy in [0, 1] with this ratio of the narrower width to the wider one; 1 for smaller ratios.
@@ -294,23 +279,23 @@ pub fn anisotropy_from_ratio(ratio: f64) -> f64 {
     ((1.0 - ratio) / (0.9 * (1.0 + ratio))).clamp(0.0, 1.0)
 }
 
-/// Lanes where the lobe is so narrow that it counts as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted direction by
-/// |1 − 1/η| of their tilt: for similar indices, light passes straight through.
-#[inline(always)]
-pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
-    let mut width = lobe_width(shape.lobe, shape.roughness);
-    if refracts_at_facets(shape) {
-        width = width * (T::one() - T::one() / shape.eta).abs();
-    } else if shape.refracts() {
-        width = lobe_width(shape.lobe, refracting_roughness(shape.lobe, shape.roughness, shape.eta));
+inlined! {
+    /// Lanes where the lobe is so narrow that it counts as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted direction by
+    /// |1 − 1/η| of their tilt: for similar indices, light passes straight through.
+    pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
+        let mut width = lobe_width(shape.lobe, shape.roughness);
+        if refracts_at_facets(shape) {
+            width = width * (T::ONE - T::ONE / shape.eta).abs();
+        } else if shape.refracts() {
+            width = lobe_width(shape.lobe, refracting_roughness(shape.lobe, shape.roughness, shape.eta));
+        }
+        width.less(T::from_f64(MIRROR_WIDTH))
     }
-    width.less(T::from_f64(MIRROR_WIDTH))
-}
 
-/// Lanes where the lobe refracts facet by facet.
-#[inline(always)]
-pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
-    shape.refracts() && shape.lobe.facets() != Facets::None
+    /// Lanes where the lobe refracts facet by facet.
+    pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
+        shape.refracts() && shape.lobe.facets() != Facets::None
+    }
 }
 
 /// Evaluate over density of a direction refracted at a facet, without the Fresnel factor: Smith's masking of both
@@ -336,11 +321,11 @@ pub fn facet_weight<T: Real>(
         let facet = facet(frame, wo, mirrored);
         let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
         // Normals on the far side of the facets are drawn too; the viewer sees none of them.
-        let ratio = T::select(T::zero().less(facet.h.z), ratio, T::zero());
+        let ratio = ratio.masked(facet.h.z.above_zero());
         weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
     }
-    let is_behind = wi_local.z.less(T::zero()) & T::zero().less(wo_local.z);
-    T::select(is_behind, weight, T::zero())
+    let is_behind = wi_local.z.below_zero() & wo_local.z.above_zero();
+    weight.masked(is_behind)
 }
 
 /// View of a lobe; if it refracts as a whole, that of a viewer behind the surface.
@@ -436,43 +421,40 @@ pub fn lobe_sample<T: Real>(
     wo: Vec3<T>,
     xi: [T; 3],
 ) -> LobeSample<T> {
-    T::out_of_line(
-        #[inline(always)]
-        || {
-            let view = lobe_view(shape, frame, surface_normal, wo);
-            let seen = view.seen_lobe(shape);
-            let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
-            let weight = if refracts_at_facets(shape) {
-                let facet = facet_refracted(wo, raw, shape.eta);
-                raw = facet.wi;
-                // Not the sampled one, so that the weight is exactly evaluate over density.
-                let mirrored = facet_mirror(frame, wo, raw, shape.eta);
-                let weight = facet_weight(shape, frame, wo, raw, mirrored);
-                T::select(facet.is_total, T::zero(), weight)
+    out_of_line!(T, {
+        let view = lobe_view(shape, frame, surface_normal, wo);
+        let seen = view.seen_lobe(shape);
+        let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
+        let weight = if refracts_at_facets(shape) {
+            let facet = facet_refracted(wo, raw, shape.eta);
+            raw = facet.wi;
+            // Not the sampled one, so that the weight is exactly evaluate over density.
+            let mirrored = facet_mirror(frame, wo, raw, shape.eta);
+            let weight = facet_weight(shape, frame, wo, raw, mirrored);
+            T::select(facet.is_total, T::ZERO, weight)
+        } else {
+            let weight = raw_weight(&seen, &view.frame, view.wo, raw);
+            let is_lost = !view.frame.normal.dot(raw).above_zero();
+            if shape.lobe.is_hemispherical() {
+                T::select(is_lost, T::ZERO, weight)
             } else {
-                let weight = raw_weight(&seen, &view.frame, view.wo, raw);
-                let is_lost = !T::zero().less(view.frame.normal.dot(raw));
-                if shape.lobe.is_hemispherical() {
-                    T::select(is_lost, T::zero(), weight)
-                } else {
-                    weight
-                }
-            };
-            let below = view.normal.dot(raw).less(T::zero());
-            match shape.horizon {
-                // A lost sample keeps its direction, which identifies its facet.
-                Horizon::Mirror => LobeSample {
-                    wi: Vec3::select(below & T::zero().less(weight), raw.reflected_at_plane(view.normal), raw),
-                    weight,
-                },
-                Horizon::Absorb => LobeSample {
-                    wi: raw,
-                    weight: T::select(below, T::zero(), weight),
-                },
-                Horizon::None => LobeSample { wi: raw, weight },
+                weight
             }
-        },
-    )
+        };
+        let below = view.normal.dot(raw).below_zero();
+        match shape.horizon {
+            // A lost sample keeps its direction, which identifies its facet.
+            Horizon::Mirror => LobeSample {
+                wi: Vec3::select(below & weight.above_zero(), raw.reflected_at_plane(view.normal), raw),
+                weight,
+            },
+            Horizon::Absorb => LobeSample {
+                wi: raw,
+                weight: T::select(below, T::ZERO, weight),
+            },
+            Horizon::None => LobeSample { wi: raw, weight },
+        }
+    })
 }
 
 /// (evaluate, density) of [`lobe_sample`] for a direction: evaluate includes the cosine, density is per steradian, of kept
@@ -484,26 +466,20 @@ pub fn lobe_evaluate<T: Real>(
     wo: Vec3<T>,
     wi: Vec3<T>,
 ) -> [T; 2] {
-    T::out_of_line(
-        #[inline(always)]
-        || {
-            let view = lobe_view(shape, frame, surface_normal, wo);
-            if shape.horizon == Horizon::None {
-                return raw_evaluate(shape, &view, wi);
-            }
-            let visible = T::zero().less(view.normal.dot(wi));
-            let [mut value, mut density] = raw_evaluate(shape, &view, wi);
-            if shape.horizon == Horizon::Mirror {
-                let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
-                value += folded;
-                density += folded_density;
-            }
-            [
-                T::select(visible, value, T::zero()),
-                T::select(visible, density, T::zero()),
-            ]
-        },
-    )
+    out_of_line!(T, {
+        let view = lobe_view(shape, frame, surface_normal, wo);
+        if shape.horizon == Horizon::None {
+            return raw_evaluate(shape, &view, wi);
+        }
+        let visible = view.normal.dot(wi).above_zero();
+        let [mut value, mut density] = raw_evaluate(shape, &view, wi);
+        if shape.horizon == Horizon::Mirror {
+            let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
+            value += folded;
+            density += folded_density;
+        }
+        [value.masked(visible), density.masked(visible)]
+    })
 }
 
 /// (evaluate, density) before the horizon policy.
@@ -514,22 +490,15 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
         let along = refracting_normal(*wo, wi, shape.eta);
         let mirrored = facet_mirror(frame, *wo, wi, shape.eta);
         let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
-        let density = T::select(
-            T::zero().less(factor),
-            factor * raw_density(shape, frame, *wo, mirrored),
-            T::zero(),
-        );
+        let density = (factor * raw_density(shape, frame, *wo, mirrored)).masked(factor.above_zero());
         return [density * facet_weight(shape, frame, *wo, wi, mirrored), density];
     }
-    let is_above = T::zero().less(frame.normal.dot(wi)) | T::Mask::splat(!shape.lobe.is_hemispherical());
+    let is_above = frame.normal.dot(wi).above_zero() | T::Mask::splat(!shape.lobe.is_hemispherical());
     if !is_above.any() {
-        return [T::zero(), T::zero()];
+        return [T::ZERO, T::ZERO];
     }
     let seen = view.seen_lobe(shape);
     let density = raw_density(&seen, frame, *wo, wi);
     let value = density * raw_weight(&seen, frame, *wo, wi);
-    [
-        T::select(is_above, value, T::zero()),
-        T::select(is_above, density, T::zero()),
-    ]
+    [value.masked(is_above), density.masked(is_above)]
 }

@@ -1,10 +1,8 @@
 //! A lobe with all its settings, for sampling, fitting, plotting and comparison.
 
-use super::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, Width, lobe_evaluate, raw_density};
-use crate::optics::curve::Curve;
-use crate::optics::frame::{Frame, frame_from_tangent};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
+use super::*;
+use super::{Lobe, raw_density};
+use crate::optics::frame::frame_from_tangent;
 
 /// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0.
 #[derive(Clone, Debug, PartialEq)]

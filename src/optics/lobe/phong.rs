@@ -3,11 +3,9 @@
 //! f = (n + 2)/(2π) cosⁿα, sampled with density (n + 1)/(2π) cosⁿα (paper, eqs. 2 and 5), n = (2/α² − 2)/4 with
 //! α = roughness². What falls below the surface is lost: the model's own loss.
 
-use super::{Facets, LobeShape, LobeTraits, Width, alpha_from_roughness};
-use crate::optics::frame::{Frame, frame_from_normal, world_from_local};
+use super::*;
+use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::numeric::{expm1, log1p};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 
 /// Properties of the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
@@ -21,40 +19,38 @@ pub const TRAITS: LobeTraits = LobeTraits {
     peak: 0.0,
 };
 
-/// The exponent n, never below 0.
-#[inline(always)]
-pub fn exponent<T: Real>(roughness: T) -> T {
-    let alpha = alpha_from_roughness(roughness);
-    (T::from_f64(0.5) / (alpha * alpha) - T::from_f64(0.5)).max(T::zero())
-}
+inlined! {
+    /// The exponent n, never below 0.
+    pub fn exponent<T: Real>(roughness: T) -> T {
+        let alpha = alpha_from_roughness(roughness);
+        (T::HALF / (alpha * alpha) - T::HALF).max(T::ZERO)
+    }
 
-/// A direction around r with density (n + 1)/(2π) cosⁿα.
-#[inline(always)]
-pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-    let power = (T::one() - xi[0]).ln() / (exponent(shape.roughness) + T::one());
-    let cosine = power.exp();
-    let sine = (-expm1(T::from_f64(2.0) * power)).safe_sqrt();
-    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
-    let around_mirror = frame_from_normal(wo.mirrored_about(frame.normal));
-    world_from_local(&around_mirror, vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine))
-}
+    /// A direction around r with density (n + 1)/(2π) cosⁿα.
+    pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+        let power = (T::ONE - xi[0]).ln() / (exponent(shape.roughness) + T::ONE);
+        let cosine = power.exp();
+        let sine = (-expm1(T::TWO * power)).safe_sqrt();
+        let phi_rad = T::TAU * xi[1];
+        let around_mirror = frame_from_normal(wo.mirrored_about(frame.normal));
+        world_from_local(&around_mirror, vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine))
+    }
 
-/// (n + 1)/(2π) cosⁿα.
-#[inline(always)]
-pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let apart = wi - wo.mirrored_about(frame.normal);
-    // 1 − cosα from the difference of the two directions: exact for narrow lobes.
-    let versine = T::from_f64(0.5) * apart.dot(apart);
-    let in_lobe = versine.less(T::one());
-    let n = exponent(shape.roughness);
-    let power = (n * log1p(-T::select(in_lobe, versine, T::zero()))).exp();
-    let scale = (n + T::one()) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
-    T::select(in_lobe, scale * power, T::zero())
-}
+    /// (n + 1)/(2π) cosⁿα.
+    pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let apart = wi - wo.mirrored_about(frame.normal);
+        // 1 − cosα from the difference of the two directions: exact for narrow lobes.
+        let versine = T::HALF * apart.dot(apart);
+        let in_lobe = versine.less(T::ONE);
+        let n = exponent(shape.roughness);
+        let power = (n * log1p(-versine.masked(in_lobe))).exp();
+        let scale = (n + T::ONE) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
+        (scale * power).masked(in_lobe)
+    }
 
-/// (n + 2)/(n + 1) cosθ.
-#[inline(always)]
-pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, wi: Vec3<T>) -> T {
-    let n = exponent(shape.roughness);
-    (n + T::from_f64(2.0)) / (n + T::one()) * frame.normal.dot(wi).max(T::zero())
+    /// (n + 2)/(n + 1) cosθ.
+    pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, _wo: Vec3<T>, wi: Vec3<T>) -> T {
+        let n = exponent(shape.roughness);
+        (n + T::TWO) / (n + T::ONE) * frame.normal.dot(wi).max(T::ZERO)
+    }
 }

@@ -3,8 +3,7 @@
 use std::sync::LazyLock;
 
 use super::linear_from_srgb;
-use crate::optics::real::Scalar;
-use crate::optics::vector::Vec3;
+use crate::optics::prelude::*;
 
 /// Nodes along each side of the table.
 const SIDE: usize = 48;
@@ -25,14 +24,13 @@ static TABLE: LazyLock<Vec<[f32; 3]>> = LazyLock::new(|| {
 
 /// ACES 2.0 (A.M.P.A.S., 2024; 100 nit, Rec. 709), linear in the cells' six tetrahedra, so
 /// that greys stay grey. Within 0.006 of the transform, sRGB-encoded, for 99 of 100 colours, 0.0005 in the mean.
-#[inline(always)]
 pub fn tone_aces2<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let last = (SIDE - 1) as f64;
     let scale = last / ((CEILING + FLOOR) / FLOOR).ln();
     let place = scene.map(|x| {
-        let along = (x.min(c(CEILING)) / c(FLOOR) + T::one()).ln() * c(scale);
-        along.clamp(T::zero(), c(last))
+        let along = (x.min(c(CEILING)) / c(FLOOR) + T::ONE).ln() * c(scale);
+        along.clamp(T::ZERO, c(last))
     });
     let low = place.map(|x| x.floor().min(c(last - 1.0)));
     let share = [place.x - low.x, place.y - low.y, place.z - low.z];
@@ -41,10 +39,10 @@ pub fn tone_aces2<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     axes.sort_by(|&a, &b| share[b].to_f64().total_cmp(&share[a].to_f64()));
     let [mut x, mut y, mut z] = low.to_f64().map(|x| x as usize);
     let node = |x: usize, y: usize, z: usize| Vec3::<T>::from_f32(TABLE[(z * SIDE + y) * SIDE + x]);
-    let mut shown = node(x, y, z) * (T::one() - share[axes[0]]);
+    let mut shown = node(x, y, z) * (T::ONE - share[axes[0]]);
     for (step, axis) in axes.into_iter().enumerate() {
         *[&mut x, &mut y, &mut z][axis] += 1;
-        let next = axes.get(step + 1).map_or(T::zero(), |&next| share[next]);
+        let next = axes.get(step + 1).map_or(T::ZERO, |&next| share[next]);
         shown += node(x, y, z) * (share[axis] - next);
     }
     linear_from_srgb(shown)

@@ -6,9 +6,8 @@ mod aces2;
 mod grade;
 mod lut;
 
-use super::real::Scalar;
-use super::vector::{Vec3, vec3};
 use crate::named::named;
+use crate::optics::prelude::*;
 
 pub use aces2::tone_aces2;
 pub use grade::Grade;
@@ -29,9 +28,8 @@ named! {
 
 /// Tone maps exposed scene-referred linear Rec. 709 to display-referred linear Rec. 709 in [0, 1]. Negative values and NaN
 /// count as 0; values are clamped to [`SCENE_MAX`].
-#[inline(always)]
 pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
-    let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
+    let scene = rgb_linear.map(|x| x.clamp(T::ZERO, T::from_f64(SCENE_MAX)));
     let display = match curve {
         ToneCurve::Agx => tone_agx(scene),
         ToneCurve::AgxPunchy => tone_agx_punchy(scene),
@@ -40,17 +38,16 @@ pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
         ToneCurve::None => tone_none(scene),
         ToneCurve::Aces2 => tone_aces2(scene),
     };
-    display.map(|x| x.clamp(T::zero(), T::one()))
+    display.map(|x| x.clamp(T::ZERO, T::ONE))
 }
 
 /// Largest scene-referred value: the largest half float.
 pub const SCENE_MAX: f64 = 65504.0;
 
 /// [`tone_agx`] with the look that its author calls punchy.
-#[inline(always)]
 pub fn tone_agx_punchy<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     agx(scene, |encoded| {
-        let powered = encoded.map(|x| x.max(T::zero()).powf(T::from_f64(PUNCHY_POWER)));
+        let powered = encoded.map(|x| x.max(T::ZERO).powf(T::from_f64(PUNCHY_POWER)));
         let luminance = powered.dot(Vec3::from_f64(LUMINANCE));
         Vec3::splat(luminance).mix(powered, T::from_f64(PUNCHY_SATURATION))
     })
@@ -61,24 +58,22 @@ const PUNCHY_POWER: f64 = 1.35;
 /// Saturation of the punchy look.
 const PUNCHY_SATURATION: f64 = 1.4;
 /// Luminance of Rec. 709's primaries.
-pub(super) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+pub const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// AgX (Sobotka 2022) in the form of Filament and three.js: its inset in Rec. 2020, here one matrix with the change of
 /// primaries; Wrensch's polynomial fit of the sigmoid over 16.5 stops around middle grey ("Minimal AgX implementation",
 /// 2023); the outset; display gamma 2.2.
-#[inline(always)]
 pub fn tone_agx<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     agx(scene, |encoded| encoded)
 }
 
 /// [`tone_agx`] with a look: applied after the sigmoid, before the outset.
-#[inline(always)]
 fn agx<T: Scalar>(scene: Vec3<T>, look: impl Fn(Vec3<T>) -> Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let inset = transform(AGX_INSET_FROM_REC709, scene);
     let log = inset.map(|x| {
         let stops = x.max(c(1e-10)).ln() * c(std::f64::consts::LOG2_E);
-        ((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::zero(), T::one())
+        ((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::ZERO, T::ONE)
     });
     let encoded = transform(AGX_OUTSET, look(log.map(agx_contrast)));
     let linear = encoded.map(|x| x.max(c(1e-10)).powf(c(2.2)));
@@ -91,7 +86,6 @@ pub const AGX_STOPS_MIN: f64 = -12.47393;
 pub const AGX_STOPS_MAX: f64 = 4.026069;
 
 /// AgX's sigmoid on [0, 1].
-#[inline(always)]
 fn agx_contrast<T: Scalar>(x: T) -> T {
     let c = T::from_f64;
     let high = c(31.96) + x * (c(-40.14) + x * c(15.5));
@@ -100,7 +94,6 @@ fn agx_contrast<T: Scalar>(x: T) -> T {
 
 /// Hill's fit of the ACES 1.0 reference rendering and output transforms for sRGB displays (BakingLab, 2016), without
 /// the exposure of 1/0.6 that some programs put before it.
-#[inline(always)]
 pub fn tone_aces<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let fitted = transform(ACES_INPUT, scene).map(|x| {
@@ -112,7 +105,6 @@ pub fn tone_aces<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 }
 
 /// The Khronos PBR Neutral tone mapper (Khronos 3D Commerce, 2024), as specified.
-#[inline(always)]
 pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let darkest = scene.x.min(scene.y).min(scene.z);
@@ -121,8 +113,8 @@ pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let color = scene - Vec3::splat(offset);
     let peak = color.max_component();
     let room = c(1.0 - NEUTRAL_START);
-    let compressed_peak = T::one() - room * room / (peak + room - c(NEUTRAL_START)).max(room);
-    let whiteness = T::one() - T::one() / (c(0.15) * (peak - compressed_peak) + T::one());
+    let compressed_peak = T::ONE - room * room / (peak + room - c(NEUTRAL_START)).max(room);
+    let whiteness = T::ONE - T::ONE / (c(0.15) * (peak - compressed_peak) + T::ONE);
     let compressed = color * (compressed_peak / peak.max(c(NEUTRAL_START)));
     let faded = compressed.mix(Vec3::splat(compressed_peak), whiteness);
     Vec3::select(peak.less(c(NEUTRAL_START)), color, faded)
@@ -132,13 +124,11 @@ pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
 pub const NEUTRAL_START: f64 = 0.8 - 0.04;
 
 /// Linear, clamped by [`tone_map`].
-#[inline(always)]
 pub fn tone_none<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     scene
 }
 
 /// sRGB-encoded from linear, both in [0, 1] (IEC 61966-2-1).
-#[inline(always)]
 pub fn srgb_from_linear<T: Scalar>(linear: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     linear.map(|x| {
@@ -148,7 +138,6 @@ pub fn srgb_from_linear<T: Scalar>(linear: Vec3<T>) -> Vec3<T> {
 }
 
 /// Linear from sRGB-encoded, both in [0, 1] (IEC 61966-2-1).
-#[inline(always)]
 pub fn linear_from_srgb<T: Scalar>(srgb: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     srgb.map(|x| {
@@ -158,7 +147,6 @@ pub fn linear_from_srgb<T: Scalar>(srgb: Vec3<T>) -> Vec3<T> {
 }
 
 /// Rows of a matrix applied to a colour.
-#[inline(always)]
 fn transform<T: Scalar>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
     let [x, y, z] = rows.map(|row| Vec3::from_f64(row).dot(color));
     vec3(x, y, z)

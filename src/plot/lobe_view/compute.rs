@@ -1,7 +1,7 @@
 //! The numbers of the views.
 
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
-use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
+use crate::analysis::sphere_grid::{Profile, Side, SphereGrid, rings};
 use crate::optics::curve::{curve_density, curve_distance_max};
 use crate::optics::lobe::microfacet_alpha;
 use crate::optics::lobe::model::{LobeModel, view_direction};
@@ -43,109 +43,74 @@ pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -
             title,
             solids: each().map(|(lobe, angle)| solid(lobe, angle)).collect(),
         }),
-        ViewKind::Albedo => {
-            let (label, loses) = ("Albedo", lobes.iter().any(|lobe| lobe.lobe.traits().loses_light));
-            LobeView::Lines(match loses {
-                true => against_angle(
-                    title,
-                    label,
-                    ["albedo", "compensated"],
-                    lobes,
-                    view_angles_deg,
-                    albedo_with_scattering,
-                ),
-                false => against_angle(title, label, ["albedo"], lobes, view_angles_deg, albedo),
-            })
+        ViewKind::Albedo if lobes.iter().any(|lobe| lobe.lobe.traits().loses_light) => {
+            let columns = &["albedo", "compensated"];
+            against_angle(title, "Albedo", columns, lobes, view_angles_deg, albedo_with_scattering)
         }
+        ViewKind::Albedo => against_angle(title, "Albedo", &["albedo"], lobes, view_angles_deg, albedo),
         ViewKind::Horizon => {
             let label = "Share below the horizon";
-            LobeView::Lines(against_angle(
+            against_angle(
                 title,
                 label,
-                ["fraction_below"],
+                &["fraction_below"],
                 lobes,
                 view_angles_deg,
                 fraction_below,
-            ))
+            )
         }
         ViewKind::Distance => {
             let shown = lobes.iter().filter(|lobe| kind.shows(lobe.lobe));
             LobeView::Lines(distances(title, shown))
         }
         ViewKind::Reciprocity => {
-            let (label, columns) = ("Relative difference of f(a, b) and f(b, a)", ["rms", "max"]);
-            LobeView::Lines(against_angle(
-                title,
-                label,
-                columns,
-                lobes,
-                view_angles_deg,
-                reciprocity_error,
-            ))
+            let label = "Relative difference of f(a, b) and f(b, a)";
+            against_angle(title, label, &["rms", "max"], lobes, view_angles_deg, reciprocity_error)
         }
     }
 }
 
-/// Lines over the angle of the view, one for each quantity.
 fn against_angle<const N: usize>(
     title: String,
     label: &str,
-    columns: [&'static str; N],
+    columns: &[&'static str; N],
     lobes: &[LobeModel],
     view_angles_deg: &[f64],
     quantities: fn(&LobeModel, f64) -> [f64; N],
-) -> LinePlot {
+) -> LobeView {
     let mut series = Vec::new();
     for (group, lobe) in lobes.iter().enumerate() {
         let rows = parallel::map_each(view_angles_deg, |angle| quantities(lobe, angle.to_radians()));
         series.extend(columns.iter().enumerate().map(|(column, quantity)| {
+            let points = view_angles_deg
+                .iter()
+                .zip(&rows)
+                .map(|(angle, row)| [*angle, row[column]])
+                .collect();
             Series {
                 lobe: lobe.name.clone(),
                 view_angle_deg: None,
                 quantity,
                 group,
-                points: view_angles_deg
-                    .iter()
-                    .zip(&rows)
-                    .map(|(angle, row)| [*angle, row[column]])
-                    .collect(),
+                points,
             }
         }));
     }
-    let top = largest(&series);
-    LinePlot {
-        title,
-        x: axis("Angle of the view to the normal in degrees", [0.0, 90.0]),
-        // Rounding noise must not fill the image.
-        y: axis(label, [0.0, if top > 1e-6 { 1.05 * top } else { 1.0 }]),
-        is_polar: false,
-        x_column: "view_angle_deg",
-        series,
-    }
-}
-
-fn axis(label: &str, range: [f64; 2]) -> Axis {
-    Axis {
-        label: label.to_owned(),
-        range,
-        is_logarithmic: false,
-    }
-}
-
-fn largest(series: &[Series]) -> f64 {
-    series
-        .iter()
-        .flat_map(|series| &series.points)
-        .map(|[_, y]| *y)
-        .fold(0.0, f64::max)
+    let x = Axis::linear("Angle of the view to the normal in degrees", [0.0, 90.0]);
+    LobeView::Lines(LinePlot::of_lobes(title, x, label, "view_angle_deg", series))
 }
 
 /// ∫ evaluate over the hemisphere.
 fn albedo(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 1] {
     let wo = view_direction(view_angle_rad);
-    let profile = |wi| lobe.evaluate(wo, wi)[0];
-    let grid = SphereGrid::adapted(view_angle_rad, Side::Above, lobe.is_symmetric(), &[&profile]);
-    [grid.integral(&grid.values(&profile))]
+    [integral(lobe, view_angle_rad, Side::Above, &|wi| {
+        lobe.evaluate(wo, wi)[0]
+    })]
+}
+
+fn integral(lobe: &LobeModel, view_angle_rad: f64, side: Side, profile: Profile) -> f64 {
+    let grid = SphereGrid::adapted(view_angle_rad, side, lobe.is_symmetric(), &[profile]);
+    grid.integral(&grid.values(profile))
 }
 
 /// The same, and with the light that a white metal's facets scatter more than once, as renders have it.
@@ -161,9 +126,9 @@ fn albedo_with_scattering(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
 /// ∫ density over the lower hemisphere, before the policy.
 fn fraction_below(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 1] {
     let wo = view_direction(view_angle_rad);
-    let profile = |wi| lobe.raw_density(wo, wi);
-    let grid = SphereGrid::adapted(view_angle_rad, Side::Below, lobe.is_symmetric(), &[&profile]);
-    [grid.integral(&grid.values(&profile))]
+    [integral(lobe, view_angle_rad, Side::Below, &|wi| {
+        lobe.raw_density(wo, wi)
+    })]
 }
 
 /// Of |f(a, b) − f(b, a)| over the mean of the two, a the view, b over the hemisphere, f the reflectance without the
@@ -218,18 +183,11 @@ fn distances<'a>(title: String, lobes: impl Iterator<Item = &'a LobeModel>) -> L
     let series: Vec<Series> = lobes.enumerate().map(line).collect();
     let reach = series.iter().flat_map(|series| &series.points);
     let reach = reach.map(|[x, _]| *x).fold(0.0, f64::max);
-    let top = largest(&series);
-    LinePlot {
-        title,
-        x: axis(
-            "Distance D from the mirror direction, in units of R",
-            [0.0, reach.max(1.0)],
-        ),
-        y: axis("Density", [0.0, if top > 0.0 { 1.05 * top } else { 1.0 }]),
-        is_polar: false,
-        x_column: "distance",
-        series,
-    }
+    let x = Axis::linear(
+        "Distance D from the mirror direction, in units of R",
+        [0.0, reach.max(1.0)],
+    );
+    LinePlot::of_lobes(title, x, "Density", "distance", series)
 }
 
 /// Evaluate in the plane of incidence.
@@ -255,14 +213,10 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
         }
     };
     let series: Vec<Series> = each.enumerate().map(line).collect();
-    let top = largest(&series);
+    let x = Axis::linear("Angle to the normal in degrees", [-90.0, 90.0]);
     LinePlot {
-        title,
-        x: axis("Angle to the normal in degrees", [-90.0, 90.0]),
-        y: axis("BRDF × cos θ (1/sr)", [0.0, 1.05 * top]),
         is_polar: true,
-        x_column: "angle_deg",
-        series,
+        ..LinePlot::of_lobes(title, x, "BRDF × cos θ (1/sr)", "angle_deg", series)
     }
 }
 

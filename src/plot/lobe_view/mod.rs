@@ -69,6 +69,25 @@ pub struct Axis {
 }
 
 impl Axis {
+    pub fn linear(label: &str, range: [f64; 2]) -> Self {
+        Self {
+            label: label.to_owned(),
+            range,
+            is_logarithmic: false,
+        }
+    }
+
+    /// A logarithmic axis around the positive ones of these values.
+    pub fn logarithmic(label: &str, values: impl Iterator<Item = f64>) -> Self {
+        let ends = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
+        let [low, high] = values.filter(|x| *x > 0.0).fold([f64::INFINITY, 1e-9], ends);
+        Self {
+            label: label.to_owned(),
+            range: [0.75 * low.min(high), 1.35 * high],
+            is_logarithmic: true,
+        }
+    }
+
     /// The radius of a value around a point: counted from the first value, in powers of ten where it is logarithmic. What
     /// is beyond the ends is at them.
     pub fn radius(&self, value: f64) -> f64 {
@@ -98,6 +117,21 @@ pub struct LinePlot {
 }
 
 impl LinePlot {
+    /// A plot of lobes' values from 0 up.
+    pub(crate) fn of_lobes(title: String, x: Axis, label: &str, x_column: &'static str, series: Vec<Series>) -> Self {
+        let mut plot = Self {
+            title,
+            x,
+            y: Axis::linear(label, [0.0; 2]),
+            is_polar: false,
+            x_column,
+            series,
+        };
+        let top = plot.highest();
+        plot.y.range[1] = if top > 1e-6 { 1.05 * top } else { 1.0 };
+        plot
+    }
+
     /// A series' name in the legend: no more than distinguishes it from the others.
     pub fn label(&self, series: &Series) -> String {
         let mut label = series.lobe.clone();
@@ -220,8 +254,23 @@ impl LobeView {
         // Writing to a String never fails.
         let _ = match self {
             LobeView::Lines(plot) => lines_csv(plot, &mut text),
-            LobeView::Maps(plot) => maps_csv(plot, &mut text),
-            LobeView::Solids(plot) => solids_csv(plot, &mut text),
+            LobeView::Maps(plot) => {
+                let rows = plot.maps.iter().flat_map(|map| {
+                    let values = map.values.iter().enumerate();
+                    values.filter_map(|(pixel, value)| {
+                        let direction = DiscMap::direction(map.size, pixel % map.size, pixel / map.size)?;
+                        Some((map.lobe.as_str(), map.view_angle_deg, direction, *value))
+                    })
+                });
+                directions_csv("density", rows, &mut text)
+            }
+            LobeView::Solids(plot) => {
+                let rows = plot.solids.iter().flat_map(|solid| {
+                    let values = solid.rings.iter().flatten();
+                    values.map(|(direction, value)| (solid.lobe.as_str(), solid.view_angle_deg, *direction, *value))
+                });
+                directions_csv("value", rows, &mut text)
+            }
         };
         text
     }
@@ -255,28 +304,16 @@ fn lines_csv(plot: &LinePlot, text: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-fn maps_csv(plot: &MapPlot, text: &mut String) -> std::fmt::Result {
-    writeln!(text, "lobe,view_angle_deg,x,y,z,density")?;
-    for map in &plot.maps {
-        let name = quoted(&map.lobe);
-        for (pixel, value) in map.values.iter().enumerate() {
-            if let Some(direction) = DiscMap::direction(map.size, pixel % map.size, pixel / map.size) {
-                let [x, y, z] = direction.to_f32();
-                writeln!(text, "{name},{},{x},{y},{z},{}", map.view_angle_deg, *value as f32)?;
-            }
-        }
-    }
-    Ok(())
-}
-
-fn solids_csv(plot: &SolidPlot, text: &mut String) -> std::fmt::Result {
-    writeln!(text, "lobe,view_angle_deg,x,y,z,value")?;
-    for solid in &plot.solids {
-        let name = quoted(&solid.lobe);
-        for (direction, value) in solid.rings.iter().flatten() {
-            let [x, y, z] = direction.to_f32();
-            writeln!(text, "{name},{},{x},{y},{z},{}", solid.view_angle_deg, *value as f32)?;
-        }
+/// Values by direction.
+fn directions_csv<'a>(
+    quantity: &str,
+    rows: impl Iterator<Item = (&'a str, f64, Vec3<f64>, f64)>,
+    text: &mut String,
+) -> std::fmt::Result {
+    writeln!(text, "lobe,view_angle_deg,x,y,z,{quantity}")?;
+    for (lobe, angle_deg, direction, value) in rows {
+        let [x, y, z] = direction.to_f32();
+        writeln!(text, "{},{angle_deg},{x},{y},{z},{}", quoted(lobe), value as f32)?;
     }
     Ok(())
 }

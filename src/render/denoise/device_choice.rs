@@ -1,9 +1,9 @@
 //! Choice of the device that denoises.
 
-use std::str::FromStr;
+use std::sync::Mutex;
 
-use crate::named::{Named, named};
-use crate::render::chosen::Chosen;
+use crate::named::named;
+use crate::panics::lock;
 
 named! {
     /// Device that the user asks for.
@@ -16,68 +16,34 @@ named! {
     }
 }
 
-impl FromStr for DenoiseDevice {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::by_name(text).ok_or_else(|| format!("images are denoised on auto, gpu or cpu, not {text}"))
-    }
-}
-
-static CHOSEN: Chosen<DenoiseDevice> = Chosen::first();
+static CHOSEN: Mutex<DenoiseDevice> = Mutex::new(DenoiseDevice::Auto);
 
 impl DenoiseDevice {
     /// Holds for all denoisers that are opened from now on.
     pub fn choose(self) {
-        CHOSEN.set(self);
+        *lock(&CHOSEN) = self;
     }
 
     pub fn chosen() -> Self {
-        CHOSEN.get()
+        *lock(&CHOSEN)
     }
 
-    /// Devices to try in order, by their places in the library's list, which begins with the fastest.
-    pub(super) fn candidates(self, kinds: &[DeviceKind]) -> Vec<usize> {
-        let places = |is_wanted: fn(DeviceKind) -> bool| (0..kinds.len()).filter(move |place| is_wanted(kinds[*place]));
-        let is_cpu = |kind| kind == DeviceKind::Cpu;
+    /// Devices to try in order, by their places in the library's list, which begins with the fastest; given their kinds.
+    pub fn candidates(self, kinds: &[i32]) -> Vec<usize> {
+        let (cpus, gpus): (Vec<_>, Vec<_>) = (0..kinds.len()).partition(|place| kinds[*place] == CPU);
         match self {
             Self::Auto => (0..kinds.len()).collect(),
-            Self::Gpu => places(|kind| kind != DeviceKind::Cpu).chain(places(is_cpu)).collect(),
-            Self::Cpu => places(is_cpu).collect(),
+            Self::Gpu => [gpus, cpus].concat(),
+            Self::Cpu => cpus,
         }
     }
 }
 
-/// Kind of a device, as the library numbers it (`OIDNDeviceType`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum DeviceKind {
-    Cpu,
-    Sycl,
-    Cuda,
-    Hip,
-    Metal,
-    Unknown,
-}
+/// The library's number of this kind of device (`OIDNDeviceType`).
+pub const CPU: i32 = 1;
 
-impl DeviceKind {
-    pub(super) fn of(number: i32) -> Self {
-        match number {
-            1 => Self::Cpu,
-            2 => Self::Sycl,
-            3 => Self::Cuda,
-            4 => Self::Hip,
-            5 => Self::Metal,
-            _ => Self::Unknown,
-        }
-    }
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "CPU",
-            Self::Sycl => "SYCL",
-            Self::Cuda => "CUDA",
-            Self::Hip => "HIP",
-            Self::Metal => "Metal",
-            Self::Unknown => "unknown device",
-        }
-    }
+/// Name of a kind of device, by the library's number.
+pub fn kind_name(kind: i32) -> &'static str {
+    let names = ["unknown device", "CPU", "SYCL", "CUDA", "HIP", "Metal"];
+    names.get(kind as usize).unwrap_or(&names[0])
 }

@@ -23,63 +23,42 @@ const NEEDED: [&str; 4] = [
 /// Programs that install Python packages, the likeliest first.
 const INSTALLERS: [&[&str]; 3] = [&["python3", "-m", "pip"], &["pip3"], &["uv", "pip"]];
 
-/// Why the denoiser could not be fetched.
-#[derive(Debug, thiserror::Error)]
-pub enum FetchError {
-    /// No program is there that installs Python packages.
-    #[error("nothing here can download it: install python3-pip, then press the button again")]
-    NoInstaller,
-    #[error("the download of {PACKAGE} failed: {0}")]
-    Download(String),
-    /// The package lacks a library.
-    #[error("the package {PACKAGE} has no {0} for this machine")]
-    Missing(&'static str),
-    /// There is no place to put it.
-    #[error("there is no folder for it: set HOME")]
-    NoFolder,
-    /// A file can't be written.
-    #[error("{}: {error}", path.display())]
-    File { path: PathBuf, error: io::Error },
-}
-
 /// Whether the denoiser can be fetched on this system.
 pub fn can_fetch() -> bool {
     cfg!(target_os = "linux") && data_folder().is_some()
 }
 
 /// Downloads the denoiser into the folder where the program looks for it, and has it looked for again.
-pub fn fetch() -> Result<(), FetchError> {
-    let folder = data_folder().ok_or(FetchError::NoFolder)?;
-    fetch_by(&INSTALLERS, &folder)?;
-    Library::look_again();
-    Ok(())
-}
-
-/// Downloads the denoiser by the first installer that is there.
-fn fetch_by(installers: &[&[&str]], folder: &Path) -> Result<(), FetchError> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |error| FetchError::File { path, error }
-    };
-    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+pub fn fetch() -> Result<(), String> {
+    let folder = data_folder().ok_or("there is no folder for it: set HOME")?;
+    std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
     // Beside where it goes to: files are moved within one file system.
-    let taken = tempfile::tempdir_in(folder).map_err(failed(folder))?;
-    install(installers, taken.path())?;
+    let taken = tempfile::tempdir_in(&folder).map_err(failed(&folder))?;
+    install(taken.path())?;
     let there = taken.path().join(IN_PACKAGE);
     // All or none.
     let found: Vec<PathBuf> = NEEDED
         .iter()
-        .map(|name| super::library::file_beginning_with(&there, name).ok_or(FetchError::Missing(name)))
+        .map(|name| {
+            let missing = || format!("the package {PACKAGE} has no {name} for this machine");
+            super::library::file_beginning_with(&there, name).ok_or_else(missing)
+        })
         .collect::<Result<_, _>>()?;
     for file in found {
         let to = folder.join(file.file_name().unwrap_or_default());
         std::fs::rename(&file, &to).map_err(failed(&to))?;
     }
+    Library::look_again();
     Ok(())
 }
 
-fn install(installers: &[&[&str]], target: &Path) -> Result<(), FetchError> {
-    for installer in installers {
+fn failed(path: &Path) -> impl FnOnce(io::Error) -> String {
+    move |error| format!("{}: {error}", path.display())
+}
+
+fn install(target: &Path) -> Result<(), String> {
+    let failed = |why: &str| Err(format!("the download of {PACKAGE} failed: {why}"));
+    for installer in INSTALLERS {
         let Some((program, arguments)) = installer.split_first() else {
             continue;
         };
@@ -91,17 +70,17 @@ fn install(installers: &[&[&str]], target: &Path) -> Result<(), FetchError> {
             .arg(PACKAGE);
         match command.output() {
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(FetchError::Download(error.to_string())),
+            Err(error) => return failed(&error.to_string()),
             Ok(output) if output.status.success() => return Ok(()),
             Ok(output) => {
                 let said = String::from_utf8_lossy(&output.stderr).into_owned();
                 // A Python without pip: another installer may be there.
                 if !said.contains("No module named pip") {
                     let last = said.lines().rfind(|line| !line.trim().is_empty());
-                    return Err(FetchError::Download(last.unwrap_or("no reason given").to_owned()));
+                    return failed(last.unwrap_or("no reason given"));
                 }
             }
         }
     }
-    Err(FetchError::NoInstaller)
+    Err("nothing here can download it: install python3-pip, then press the button again".to_owned())
 }

@@ -5,7 +5,7 @@
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, OnceLock};
+use std::sync::Mutex;
 
 use super::device_choice::DenoiseDevice;
 use super::filter::Device;
@@ -17,16 +17,13 @@ use crate::panics::lock;
 /// loader does not search there.
 const DEPENDENCIES: [&str; 2] = ["libtbb.so.12", "libOpenImageDenoise_core.so"];
 
-/// The library, once it was found.
-static FOUND: OnceLock<Library> = OnceLock::new();
-/// Why it was not found when it was looked for last.
-static FAILED: Mutex<Option<LibraryError>> = Mutex::new(None);
+/// The library, once it was looked for, or why it was not found.
+static FOUND: Mutex<Option<Result<&'static Library, LibraryError>>> = Mutex::new(None);
 
 /// The loaded library. It is never unloaded, because its threads do not survive that.
 #[derive(Debug)]
 pub struct Library {
-    pub(super) functions: Functions,
-    path: PathBuf,
+    pub functions: &'static Functions,
     version: [i32; 3],
     device: &'static str,
 }
@@ -37,38 +34,28 @@ impl Library {
     /// # Errors
     /// [`LibraryError`] in one line with the remedy; the same on each call, until it is looked for again.
     pub fn get() -> Result<&'static Self, LibraryError> {
-        if let Some(found) = FOUND.get() {
-            return Ok(found);
-        }
-        let mut failed = lock(&FAILED);
-        if let Some(error) = failed.as_ref() {
-            return Err(error.clone());
-        }
-        match Self::find() {
-            Ok(library) => Ok(FOUND.get_or_init(|| library)),
-            Err(error) => {
-                *failed = Some(error.clone());
-                Err(error)
-            }
-        }
+        lock(&FOUND).get_or_insert_with(Self::find).clone()
     }
 
     /// Whether it was looked for and is not there. Does not look for it.
     pub fn is_missing() -> bool {
-        matches!(*lock(&FAILED), Some(LibraryError::Missing))
+        matches!(*lock(&FOUND), Some(Err(LibraryError::Missing)))
     }
 
     /// Has it looked for again at the next call, after it was installed.
     pub fn look_again() {
-        *lock(&FAILED) = None;
+        lock(&FOUND).take_if(|found| found.is_err());
     }
 
-    fn find() -> Result<Self, LibraryError> {
+    fn find() -> Result<&'static Self, LibraryError> {
         if let Some(folder) = std::env::var_os(FOLDER_VARIABLE).filter(|folder| !folder.is_empty()) {
             let folder = PathBuf::from(folder);
             return match folder.join(NAME) {
                 path if path.exists() => Self::load(&path),
-                _ => Err(LibraryError::NotInFolder(folder)),
+                _ => {
+                    let reason = format!("there is no {NAME} in this folder, which {FOLDER_VARIABLE} names");
+                    Err(LibraryError::Unusable { path: folder, reason })
+                }
             };
         }
         let executable = std::env::current_exe().ok();
@@ -100,15 +87,12 @@ impl Library {
     }
 
     /// Loads the file.
-    pub fn load(path: &Path) -> Result<Self, LibraryError> {
+    fn load(path: &Path) -> Result<&'static Self, LibraryError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let open = |path: &Path| {
             // SAFETY: a library's initialisers run. That of the file that the user installed as Open Image Denoise is
             // trusted as the program itself is.
-            unsafe { libloading::Library::new(path) }.map_err(|error| LibraryError::Broken {
-                path: path.to_owned(),
-                reason: one_line(&error.to_string()),
-            })
+            unsafe { libloading::Library::new(path) }.map_err(|error| broken(path, &error))
         };
         for needed in DEPENDENCIES.iter().filter_map(|name| file_beginning_with(folder, name)) {
             std::mem::forget(open(&needed)?);
@@ -116,31 +100,26 @@ impl Library {
         Self::bind(open(path)?, path)
     }
 
-    fn bind(loaded: libloading::Library, path: &Path) -> Result<Self, LibraryError> {
-        let functions = Functions::bind(&loaded).map_err(|error| LibraryError::Broken {
-            path: path.to_owned(),
-            reason: one_line(&error.to_string()),
-        })?;
+    fn bind(loaded: libloading::Library, path: &Path) -> Result<&'static Self, LibraryError> {
+        let functions = Functions::bind(&loaded).map_err(|error| broken(path, &error))?;
         std::mem::forget(loaded);
-        let mut library = Self {
+        let functions: &'static Functions = Box::leak(Box::new(functions));
+        let device = Device::of(functions, DenoiseDevice::chosen())?;
+        let version = device.int(c"version");
+        let library = Self {
             functions,
-            path: path.to_owned(),
-            version: [0; 3],
-            device: "",
+            version: [version / 10_000, version / 100 % 100, version % 100],
+            device: device.kind_name(),
         };
-        let (version, device) = {
-            let device = Device::of(&library.functions, DenoiseDevice::chosen())?;
-            (device.int(c"version"), device.kind_name())
-        };
-        library.version = [version / 10_000, version / 100 % 100, version % 100];
-        library.device = device;
         if library.version[..2] < MIN_VERSION[..] {
-            return Err(LibraryError::TooOld {
-                path: library.path.clone(),
-                found: library.version_text(),
+            let [major, minor] = MIN_VERSION;
+            let found = library.version_text();
+            return Err(LibraryError::Unusable {
+                path: path.to_owned(),
+                reason: format!("Open Image Denoise {found} is too old, {major}.{minor} or newer is needed"),
             });
         }
-        Ok(library)
+        Ok(Box::leak(Box::new(library)))
     }
 
     /// The version as text, such as 2.5.1.
@@ -155,6 +134,14 @@ impl std::fmt::Display for Library {
     }
 }
 
+fn broken(path: &Path, error: &libloading::Error) -> LibraryError {
+    let why = one_line(&error.to_string());
+    LibraryError::Unusable {
+        path: path.to_owned(),
+        reason: format!("can't be loaded as the denoiser ({why}); install it again by `scripts/setup denoiser`"),
+    }
+}
+
 /// The folder in which `scripts/setup` puts the library.
 pub fn data_folder() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "glossmith")?;
@@ -162,7 +149,7 @@ pub fn data_folder() -> Option<PathBuf> {
 }
 
 /// The first file of a folder with a name prefix.
-pub(super) fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
+pub fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
     let entries = std::fs::read_dir(folder).ok()?;
     let names = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let fits = |path: &PathBuf| {

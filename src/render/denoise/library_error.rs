@@ -6,14 +6,14 @@ use std::path::PathBuf;
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_OIDN";
 
 /// The oldest supported version (major, minor): earlier ones lack a quality.
-pub(super) const MIN_VERSION: [i32; 2] = [2, 3];
+pub const MIN_VERSION: [i32; 2] = [2, 3];
 
 #[cfg(target_os = "windows")]
-pub(super) const NAME: &str = "OpenImageDenoise.dll";
+pub const NAME: &str = "OpenImageDenoise.dll";
 #[cfg(target_os = "macos")]
-pub(super) const NAME: &str = "libOpenImageDenoise.2.dylib";
+pub const NAME: &str = "libOpenImageDenoise.2.dylib";
 #[cfg(not(any(target_os = "windows", target_os = "macos")))]
-pub(super) const NAME: &str = "libOpenImageDenoise.so.2";
+pub const NAME: &str = "libOpenImageDenoise.so.2";
 
 /// Why there is no denoiser.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -24,15 +24,9 @@ pub enum LibraryError {
          {FOLDER_VARIABLE}"
     )]
     Missing,
-    /// The user's folder does not have the library.
-    #[error("{}: there is no {NAME} in this folder, which {FOLDER_VARIABLE} names", .0.display())]
-    NotInFolder(PathBuf),
-    /// The file cannot be loaded.
-    #[error("{}: can't be loaded as the denoiser ({reason}); install it again by `scripts/setup denoiser`", path.display())]
-    Broken { path: PathBuf, reason: String },
-    /// The version is too old.
-    #[error("{}: Open Image Denoise {found} is too old, {}.{} or newer is needed", path.display(), MIN_VERSION[0], MIN_VERSION[1])]
-    TooOld { path: PathBuf, found: String },
+    /// What is there cannot be used as the library.
+    #[error("{}: {reason}", path.display())]
+    Unusable { path: PathBuf, reason: String },
     /// The library refuses to work here.
     #[error("the denoiser can't be used here: {0}")]
     Device(String),

@@ -11,13 +11,13 @@ mod library;
 mod library_error;
 mod picture;
 
+use std::ffi::c_int;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 pub use device_choice::DenoiseDevice;
-use filter::{Device, Filter};
-pub use filter::{Guides, Quality};
+use filter::{Device, Filter, QUALITY_FAST, QUALITY_HIGH};
 pub use library::{Library, data_folder};
 pub use library_error::{FOLDER_VARIABLE, LibraryError};
 use picture::NoisyHalf;
@@ -35,9 +35,9 @@ const PIXELS_KEPT: usize = 1 << 19;
 
 /// A denoiser; it denoises one image at a time.
 pub struct Denoiser {
-    device: Arc<Device<'static>>,
+    device: Arc<Device>,
     /// Most recently used first.
-    filters: Vec<Filter<'static>>,
+    filters: Vec<Filter>,
     pixels_max: usize,
 }
 
@@ -45,7 +45,7 @@ impl Denoiser {
     /// A denoiser on the chosen device.
     pub fn open() -> Result<Self, LibraryError> {
         Ok(Self {
-            device: Arc::new(Device::of(&Library::get()?.functions, DenoiseDevice::chosen())?),
+            device: Arc::new(Device::of(Library::get()?.functions, DenoiseDevice::chosen())?),
             filters: Vec::new(),
             pixels_max: PIXELS_MAX,
         })
@@ -59,7 +59,7 @@ impl Denoiser {
         );
         DenoiseDevice::Cpu.choose();
         self.filters.clear();
-        self.device = Arc::new(Device::of(&Library::get()?.functions, DenoiseDevice::Cpu)?);
+        self.device = Arc::new(Device::of(Library::get()?.functions, DenoiseDevice::Cpu)?);
         Ok(())
     }
 
@@ -98,29 +98,22 @@ impl Denoiser {
         let start = Instant::now();
         let quality = match mode {
             Denoise::Off => return Ok(Denoised::untouched(noisy)),
-            Denoise::Fast => Quality::Fast,
-            Denoise::High | Denoise::Auto => Quality::High,
+            Denoise::Fast => QUALITY_FAST,
+            Denoise::High | Denoise::Auto => QUALITY_HIGH,
         };
         let present: Vec<&NoisyHalf> = noisy.halves.iter().flatten().collect();
-        if present.is_empty() || noisy.size().contains(&0) {
+        if present.is_empty() || noisy.size.contains(&0) {
             return Ok(Denoised::untouched(noisy));
         }
-        let size = noisy.size();
-        let mut denoise = |color: &[[f32; 3]], guides: Guides<'_>, scale: f32| {
-            let mut pass = Pass {
-                denoiser: &mut *self,
-                size,
-                guides,
-                quality,
-                scale,
-                cancel,
-            };
-            pass.denoise(color)
+        let size = noisy.size;
+        let mut denoise = |images: Images<'_>, scale: f32| {
+            let how = How { quality, scale, cancel };
+            self.denoise_image(images, size, how)
         };
         // Each half has its own scale, so that the halves stay independent.
         let mut denoise_half = |half: &NoisyHalf| {
             let NoisyHalf { color, albedo, normal } = half;
-            denoise(color, Guides { albedo, normal }, picture::input_scale(color, size))
+            denoise([color, albedo, normal], picture::input_scale(color, size))
         };
         let mut done = Denoised::untouched(noisy);
         let colors = match present[..] {
@@ -143,7 +136,7 @@ impl Denoiser {
         let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
             let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
             let [albedo, normal] = &noisy.guides();
-            let alphas = denoise(&grey, Guides { albedo, normal }, 1.0)?;
+            let alphas = denoise([&grey, albedo, normal], 1.0)?;
             alphas.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
         } else {
             alpha
@@ -153,7 +146,7 @@ impl Denoiser {
         Ok(done)
     }
 
-    fn filter(&mut self, size: [usize; 2], quality: Quality) -> Result<&mut Filter<'static>, LibraryError> {
+    fn filter(&mut self, size: [usize; 2], quality: c_int) -> Result<&mut Filter, LibraryError> {
         let known = self.filters.iter().position(|filter| filter.fits(size, quality));
         let filter = match known {
             Some(place) => self.filters.remove(place),
@@ -166,54 +159,47 @@ impl Denoiser {
         self.filters.insert(0, filter);
         Ok(&mut self.filters[0])
     }
-}
 
-/// Parameters of filtering one image.
-struct Pass<'a> {
-    denoiser: &'a mut Denoiser,
-    size: [usize; 2],
-    guides: Guides<'a>,
-    quality: Quality,
-    scale: f32,
-    cancel: &'a AtomicBool,
-}
-
-impl Pass<'_> {
-    /// Denoises the image, in bands if it is large.
-    fn denoise(&mut self, color: &[[f32; 3]]) -> Result<Colors, LibraryError> {
-        let [width, height] = self.size;
-        let pixels_max = self.denoiser.pixels_max;
-        if width * height <= pixels_max {
-            return self.denoise_rows(color, 0..height);
+    /// Denoises an image, in bands if it is large.
+    fn denoise_image(&mut self, images: Images<'_>, size: [usize; 2], how: How<'_>) -> Result<Colors, LibraryError> {
+        let [width, height] = size;
+        if width * height <= self.pixels_max {
+            return self.denoise_band(images, size, how);
         }
-        let filter = self.denoiser.filter([width, 1], self.quality)?;
+        let filter = self.filter([width, 1], how.quality)?;
         let [overlap, alignment] = filter.overlap_and_alignment();
-        let rows = ((pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
-        let mut denoised = Colors::with_capacity(color.len());
+        let rows = ((self.pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
+        let mut denoised = Colors::with_capacity(width * height);
         for first in (0..height).step_by(rows) {
             let last = (first + rows).min(height);
             // Bands start at an aligned row.
             let from = first.saturating_sub(overlap) / alignment * alignment;
             let to = (last + overlap).min(height);
-            let band = self.denoise_rows(color, from..to)?;
+            let of_band = images.map(|image| &image[from * width..to * width]);
+            let band = self.denoise_band(of_band, [width, to - from], how)?;
             denoised.extend_from_slice(&band[(first - from) * width..(last - from) * width]);
         }
         Ok(denoised)
     }
 
-    fn denoise_rows(&mut self, color: &[[f32; 3]], rows: std::ops::Range<usize>) -> Result<Colors, LibraryError> {
-        let [width, _] = self.size;
-        let pixels = rows.start * width..rows.end * width;
-        let filter = self.denoiser.filter([width, rows.len()], self.quality)?;
-        filter.set_guides(Guides {
-            albedo: &self.guides.albedo[pixels.clone()],
-            normal: &self.guides.normal[pixels.clone()],
-        });
-        let mut denoised = filter.run(&color[pixels], self.scale, self.cancel)?;
+    fn denoise_band(&mut self, images: Images<'_>, size: [usize; 2], how: How<'_>) -> Result<Colors, LibraryError> {
+        let filter = self.filter(size, how.quality)?;
+        let mut denoised = filter.run(images, how.scale, how.cancel)?;
         // Radiance is finite and not negative; the filter does not guarantee it.
         for value in denoised.iter_mut().flatten() {
             *value = if value.is_finite() { value.max(0.0) } else { 0.0 };
         }
         Ok(denoised)
     }
+}
+
+/// Colours, albedo and normals.
+type Images<'a> = [&'a [[f32; 3]]; 3];
+
+/// Parameters of filtering one image.
+#[derive(Clone, Copy)]
+struct How<'a> {
+    quality: c_int,
+    scale: f32,
+    cancel: &'a AtomicBool,
 }

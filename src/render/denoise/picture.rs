@@ -21,18 +21,19 @@ const MISSING_SHARE: f64 = 0.01;
 pub struct Noisy {
     /// The mean of all samples.
     pub image: Arc<Image>,
-    /// The rendered part: left, top, width, height in pixels.
-    rect: [usize; 4],
-    /// Both halves of the samples within `rect`; the second is missing after one sample.
-    pub(super) halves: [Option<NoisyHalf>; 2],
+    /// Width and height of the rendered part, and the numbers of its pixels.
+    pub size: [usize; 2],
+    pixels: Vec<usize>,
+    /// Both halves of the samples in it; the second is missing after one sample.
+    pub halves: [Option<NoisyHalf>; 2],
 }
 
 /// Means over one half of the samples. Invariant: independent of the other half, because the error estimate rests on that.
 #[derive(Clone, Debug)]
-pub(super) struct NoisyHalf {
-    pub(super) color: Colors,
-    pub(super) albedo: Colors,
-    pub(super) normal: Colors,
+pub struct NoisyHalf {
+    pub color: Colors,
+    pub albedo: Colors,
+    pub normal: Colors,
 }
 
 impl Noisy {
@@ -43,71 +44,64 @@ impl Noisy {
 
     /// The same with the number of guide samples of each half, by pixel.
     pub fn of_samples(film: &Film, guide_samples: impl Fn(usize) -> [f64; 2] + Sync, region: Option<[f64; 4]>) -> Self {
-        let rect = rendered_rect(film, region);
-        let pixels = pixels_of(rect, film.width as usize);
+        let [left, top, columns, rows] = rendered_rect(film, region);
+        let row = |y: usize| (left..left + columns).map(move |x| y * film.width as usize + x);
+        let pixels: Vec<usize> = (top..top + rows).flat_map(row).collect();
         let half = |number: usize| NoisyHalf::of(film, number, &|pixel| guide_samples(pixel)[number], &pixels);
         Self {
             image: Arc::new(film.image()),
-            rect,
+            size: [columns, rows],
             halves: [half(0), half(1)],
+            pixels,
         }
     }
 
-    /// Width and height of the rendered part, in pixels.
-    pub(super) fn size(&self) -> [usize; 2] {
-        [self.rect[2], self.rect[3]]
-    }
-
     /// Albedo and normal guides, averaged over the halves present.
-    pub(super) fn guides(&self) -> [Colors; 2] {
+    pub fn guides(&self) -> [Colors; 2] {
         let halves: Vec<&NoisyHalf> = self.halves.iter().flatten().collect();
-        let mean = |of: &dyn Fn(&NoisyHalf) -> &Colors| -> Colors {
+        let mean = |of: fn(&NoisyHalf) -> &Colors| -> Colors {
             let at = |pixel: usize| {
                 let sum = |c: usize| halves.iter().map(|half| of(half)[pixel][c]).sum::<f32>();
                 std::array::from_fn(|c| sum(c) / halves.len().max(1) as f32)
             };
-            (0..self.rect[2] * self.rect[3]).map(at).collect()
+            (0..self.pixels.len()).map(at).collect()
         };
-        [mean(&|half| &half.albedo), mean(&|half| &half.normal)]
-    }
-
-    fn pixels(&self) -> Vec<usize> {
-        pixels_of(self.rect, self.image.width as usize)
+        [mean(|half| &half.albedo), mean(|half| &half.normal)]
     }
 
     /// Alpha values of the rendered part.
-    pub(super) fn alphas(&self) -> Vec<f32> {
-        self.pixels().iter().map(|pixel| self.image.pixels[*pixel][3]).collect()
+    pub fn alphas(&self) -> Vec<f32> {
+        self.pixels.iter().map(|pixel| self.image.pixels[*pixel][3]).collect()
     }
 
     /// The mean of the denoised halves, blended with the samples' mean by `shares` in [0, 1]; `None` for no blend.
-    pub(super) fn mixed(&self, denoised: &[Colors; 2], shares: Option<&[f32]>) -> Colors {
+    pub fn mixed(&self, denoised: &[Colors; 2], shares: Option<&[f32]>) -> Colors {
         let [first, second] = denoised;
-        let mix = |(i, pixel): (usize, usize)| {
+        let mix = |(i, pixel): (usize, &usize)| {
             let share = shares.map_or(0.0, |shares| shares[i]);
-            let samples = self.image.pixels[pixel];
+            let samples = self.image.pixels[*pixel];
             std::array::from_fn(|c| {
                 let clean = 0.5 * (first[i][c] + second[i][c]);
                 clean + share * (samples[c] - clean)
             })
         };
-        self.pixels().into_iter().enumerate().map(mix).collect()
+        self.pixels.iter().enumerate().map(mix).collect()
     }
 
     /// The mean image with the rendered part's colours and alpha replaced.
-    pub(super) fn with(&self, colors: &[[f32; 3]], alphas: &[f32]) -> Image {
+    pub fn with(&self, colors: &[[f32; 3]], alphas: &[f32]) -> Image {
         let mut image = Image::clone(&self.image);
-        for ((pixel, [red, green, blue]), alpha) in self.pixels().into_iter().zip(colors).zip(alphas) {
-            image.pixels[pixel] = [*red, *green, *blue, *alpha];
+        for ((pixel, [red, green, blue]), alpha) in self.pixels.iter().zip(colors).zip(alphas) {
+            image.pixels[*pixel] = [*red, *green, *blue, *alpha];
         }
         image
     }
 
     /// Values of the rendered part as a full-size image, 0 elsewhere.
-    pub(super) fn spread(&self, values: &[f32]) -> Vec<f32> {
+    pub fn spread(&self, values: &[f32]) -> Vec<f32> {
         let mut all = vec![0.0; self.image.pixels.len()];
-        for (pixel, value) in self.pixels().into_iter().zip(values) {
-            all[pixel] = *value;
+        for (pixel, value) in self.pixels.iter().zip(values) {
+            all[*pixel] = *value;
         }
         all
     }
@@ -162,7 +156,7 @@ pub struct Denoised {
 
 impl Denoised {
     /// The samples' mean, not denoised.
-    pub(super) fn untouched(noisy: &Noisy) -> Self {
+    pub fn untouched(noisy: &Noisy) -> Self {
         Self {
             image: noisy.image.clone(),
             error: None,
@@ -188,15 +182,9 @@ fn rendered_rect(film: &Film, region: Option<[f64; 4]>) -> [usize; 4] {
     [low[0] as usize, low[1] as usize, side(0), side(1)]
 }
 
-/// Pixel indices of a rectangle (left, top, width, height) in an image of a given width.
-fn pixels_of([left, top, columns, rows]: [usize; 4], width: usize) -> Vec<usize> {
-    let row = |y: usize| (0..columns).map(move |x| (top + y) * width + left + x);
-    (0..rows).flat_map(row).collect()
-}
-
 /// The factor that maps the geometric mean of the luminance to middle grey. One factor for the whole image, so that its
 /// bands match.
-pub(super) fn input_scale(colors: &[[f32; 3]], [width, height]: [usize; 2]) -> f32 {
+pub fn input_scale(colors: &[[f32; 3]], [width, height]: [usize; 2]) -> f32 {
     let of_square = |x: usize, y: usize| {
         let (right, bottom) = ((x + KEY_SIDE).min(width), (y + KEY_SIDE).min(height));
         let rows = (y..bottom).flat_map(|row| &colors[row * width + x..row * width + right]);

@@ -1,26 +1,48 @@
 //! Choice and opening of the engine.
 
-use super::ray_queries::RayQueries;
+use std::sync::Mutex;
+
 use super::{Engine, EngineChoice, EngineInfo, cpu, gpu};
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
+use crate::named::named;
+use crate::panics::lock;
 
-/// The reason given for an engine that the user chose.
-const CHOSEN: &str = "chosen by you";
-
-/// Opens the requested engine.
-pub(in crate::render) fn open(choice: EngineChoice) -> Result<(Engine, EngineInfo), GpuError> {
-    match choice {
-        EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
-        EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN),
-        EngineChoice::Auto => Ok(auto()),
+named! {
+    /// Whether kernels use ray queries instead of our own traversal.
+    #[derive(Default)]
+    RayQueries {
+        #[default]
+        Auto, "auto", "Automatic", "On a hardware GPU that has them.";
+        On, "on", "On", "Wherever the adapter has them.";
+        Off, "off", "Off", "Never.";
     }
 }
 
-/// The engine of an open device.
-pub(in crate::render) fn on_device(device: GpuDevice) -> Result<(Engine, EngineInfo), GpuError> {
-    gpu(device, CHOSEN.to_owned())
+static CHOSEN: Mutex<RayQueries> = Mutex::new(RayQueries::Auto);
+
+impl RayQueries {
+    /// Holds for all engines that are opened from now on.
+    pub fn choose(self) {
+        *lock(&CHOSEN) = self;
+    }
+
+    pub fn chosen() -> Self {
+        *lock(&CHOSEN)
+    }
+}
+
+/// The reason given for an engine that the user chose.
+pub const CHOSEN_BY_YOU: &str = "chosen by you";
+
+/// Opens the requested engine.
+pub fn open(choice: EngineChoice) -> Result<(Engine, EngineInfo), GpuError> {
+    match choice {
+        EngineChoice::Cpu => Ok(cpu(CHOSEN_BY_YOU.to_owned())),
+        EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN_BY_YOU),
+        EngineChoice::Auto => Ok(auto()),
+    }
 }
 
 /// An adapter's engine, chosen for the reason `why`, with its preferred traversal; with our own if ray queries fail.

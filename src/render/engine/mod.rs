@@ -1,10 +1,8 @@
 //! The two engines behind one interface.
 
-pub(super) mod choice;
-mod ray_queries;
+pub mod choice;
 
 use std::fmt;
-use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,11 +11,10 @@ use crate::gpu::{GpuDevice, GpuEngine, GpuError, Traversal};
 use crate::job::Job;
 use crate::job::film::Film;
 use crate::job::tiles::Schedule;
-use crate::named::{Named, named};
+use crate::named::named;
 
-pub use choice::Sampler;
 pub(crate) use choice::device_for_functions;
-pub use ray_queries::RayQueries;
+pub use choice::{RayQueries, Sampler};
 
 named! {
     /// The engine that a user asks for.
@@ -27,13 +24,6 @@ named! {
         Auto, "auto", "Automatic", "A hardware GPU if there is one, else the CPU.";
         Gpu, "gpu", "GPU", "The GPU, software Vulkan included.";
         Cpu, "cpu", "CPU", "The CPU.";
-    }
-}
-
-impl FromStr for EngineChoice {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::by_name(text).ok_or_else(|| format!("no engine is called {text}: auto, gpu or cpu"))
     }
 }
 
@@ -90,13 +80,19 @@ pub enum Precision {
 }
 
 /// One of the two engines.
-pub(super) enum Engine {
+pub enum Engine {
     Cpu(Box<CpuEngine>),
     Gpu(Box<GpuEngine>),
 }
 
+impl Default for Engine {
+    fn default() -> Self {
+        Self::Cpu(Box::default())
+    }
+}
+
 impl Engine {
-    pub(super) fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+    pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
                 engine.submit(job);
@@ -107,7 +103,7 @@ impl Engine {
     }
 
     /// Renders for about `budget` towards a number of samples per pixel for each tile.
-    pub(super) fn step(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
+    pub fn step(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
                 engine.step_towards(budget, goals);
@@ -118,14 +114,14 @@ impl Engine {
     }
 
     /// The GPU's device, if it renders.
-    pub(super) fn device(&self) -> Option<&GpuDevice> {
+    pub fn device(&self) -> Option<&GpuDevice> {
         match self {
             Engine::Cpu(_) => None,
             Engine::Gpu(engine) => Some(engine.device()),
         }
     }
 
-    pub(super) fn schedule(&self) -> &Schedule {
+    pub fn schedule(&self) -> &Schedule {
         match self {
             Engine::Cpu(engine) => engine.schedule(),
             Engine::Gpu(engine) => engine.schedule(),
@@ -133,14 +129,14 @@ impl Engine {
     }
 
     /// GPU time of the job by its own clock, in seconds; `None` without one.
-    pub(super) fn gpu_seconds(&self) -> Option<f64> {
+    pub fn gpu_seconds(&self) -> Option<f64> {
         match self {
             Engine::Cpu(_) => None,
             Engine::Gpu(engine) => engine.gpu_seconds(),
         }
     }
 
-    pub(super) fn film(&mut self) -> Result<&Film, GpuError> {
+    pub fn film(&mut self) -> Result<&Film, GpuError> {
         match self {
             Engine::Cpu(engine) => Ok(engine.film()),
             Engine::Gpu(engine) => engine.film(),
@@ -148,7 +144,7 @@ impl Engine {
     }
 }
 
-pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
+pub fn cpu(reason: String) -> (Engine, EngineInfo) {
     let threads = rayon::current_num_threads();
     let info = EngineInfo {
         kind: EngineKind::Cpu,
@@ -158,10 +154,10 @@ pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
         traversal: Traversal::Own,
         is_software: true,
     };
-    (Engine::Cpu(Box::default()), info)
+    (Engine::default(), info)
 }
 
-pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), GpuError> {
+pub fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), GpuError> {
     let info = EngineInfo {
         kind: EngineKind::Gpu,
         adapter: device.info.name.clone(),

@@ -1,15 +1,17 @@
 //! Access to the rendered film.
 
 use std::borrow::Cow;
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{Session, SessionError};
+use crate::document::Document;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::render::denoise::Noisy;
 use crate::render::frame::Frame;
 use crate::render::light_layers::{LightLayer, light_layers, mixed};
-use crate::render::output::Layers;
+use crate::render::output::{self, Layers, Rendered};
 use crate::render::shown::Source;
 use crate::render::sums::KeptFilm;
 
@@ -53,6 +55,17 @@ impl Session {
         })
     }
 
+    /// Writes the image and its light groups to a file, or the denoised image instead of the samples.
+    pub fn write_image(&mut self, path: &Path, denoised: Option<&Image>, document: &Document) -> anyhow::Result<()> {
+        let (image, lights) = (self.image()?, self.light_layers()?);
+        let rendered = Rendered {
+            lights: &lights,
+            denoised,
+            ..Rendered::from(&image)
+        };
+        Ok(output::write(path, rendered, document)?)
+    }
+
     /// The film with the data to join it with others.
     pub fn kept_film(&mut self) -> Result<KeptFilm, SessionError> {
         let samples = self.engine.schedule().samples_per_pixel();
@@ -61,35 +74,27 @@ impl Session {
         Ok(KeptFilm::of(self.engine.film()?.clone(), document, samples, units))
     }
 
-    /// The mean image as a frame, of a document whose size was divided by `reduction`.
-    pub fn frame(&mut self, reduction: u32) -> Result<Frame, SessionError> {
-        let image = Arc::new(self.image()?);
-        Ok(self.frame_of(image, reduction))
-    }
-
-    /// The same with the input of its denoiser.
-    pub fn noisy_frame(&mut self, reduction: u32) -> Result<(Noisy, Frame), SessionError> {
-        let noisy = self.noisy()?;
-        let frame = self.frame_of(noisy.image.clone(), reduction);
-        Ok((noisy, frame))
-    }
-
-    fn frame_of(&self, image: Arc<Image>, reduction: u32) -> Frame {
+    /// An image of the film as a frame, of a document whose size was divided by `reduction`.
+    pub fn frame_of(&self, image: Arc<Image>, reduction: u32) -> Frame {
         Frame::new(self.film, image, self.engine.schedule().samples_per_pixel(), reduction)
     }
 
     /// Whether a frame is one of the film that is being rendered.
     pub fn has_film_of(&self, frame: &Frame) -> bool {
-        frame.is_of(self.film)
+        frame.film == self.film
     }
 
     /// Inputs of a frame's maps; `None` if another film is being rendered.
     pub fn source<'a>(&'a mut self, frame: &'a Frame) -> Result<Option<Source<'a>>, SessionError> {
-        let (id, units) = (self.film, self.world_units_per_unit());
-        if !frame.is_of(id) {
+        if !self.has_film_of(frame) {
             return Ok(None);
         }
-        Ok(frame.source(id, self.engine.film()?, units))
+        let world_units_per_unit = self.world_units_per_unit();
+        Ok(Some(Source {
+            film: self.engine.film()?,
+            denoised_errors: frame.errors.as_ref().map(|errors| &errors[..]),
+            world_units_per_unit,
+        }))
     }
 
     /// Input of the denoiser.

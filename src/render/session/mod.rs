@@ -6,8 +6,8 @@ mod recovery;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, choice};
+use super::convergence::{Convergence, Measurement, Pacing, Work, fewest_samples, mean_samples};
+use super::engine::{Engine, EngineChoice, EngineInfo, choice, gpu};
 use super::error::SessionError;
 use super::frame::FilmId;
 use super::memory;
@@ -16,7 +16,7 @@ use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
 use crate::compile::{self, Assets, Compiler, Reloaded};
 use crate::document::change::Change;
-use crate::document::{Denoise, Document};
+use crate::document::{Denoise, Document, RenderSettings};
 use crate::gpu::{GpuAdapter, GpuDevice, GpuError, Moment, Traversal};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
@@ -43,11 +43,12 @@ pub struct Session {
     keeps_fallback: bool,
     /// True if the engine failed at this render, which stays as it is.
     is_stuck: bool,
-    denoised: Option<Distance>,
+    /// The denoised image's error: a noise target applies to the displayed image.
+    pub denoised: Option<Distance>,
     /// Reason to keep guides for any document.
     guides_wanted: Option<&'static str>,
     /// Memory limit of a render in bytes; `None` is the free memory.
-    memory_limit: Option<u64>,
+    pub memory_limit: Option<u64>,
     /// Number of GPU failures.
     losses: u32,
     /// When devices that replace a lost one are lost as well, and how many: for tests.
@@ -71,8 +72,7 @@ impl Session {
 
     /// Opens an adapter for a kind of traversal.
     pub fn on_adapter(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, SessionError> {
-        let device = adapter.open(traversal)?;
-        let opened = choice::on_device(device)?;
+        let opened = gpu(adapter.open(traversal)?, choice::CHOSEN_BY_YOU.to_owned())?;
         Ok(Self::around(opened, Assets::default()))
     }
 
@@ -104,8 +104,7 @@ impl Session {
     /// and its samples count.
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(choice::open(choice)?, assets);
-        let fallback = Engine::Cpu(Box::default());
-        match std::mem::replace(&mut session.engine, fallback) {
+        match std::mem::take(&mut session.engine) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
             cpu => session.engine = cpu,
         }
@@ -122,17 +121,11 @@ impl Session {
         let (true, Some(job), Some(workshop)) = (self.is_fallback(), &self.job, &mut self.workshop) else {
             return Ok(());
         };
-        let engine = match workshop.finished(job) {
-            Ok(engine) => engine,
-            Err(error) => {
-                self.keeps_fallback = true;
-                return Err(error.into());
-            }
-        };
-        let Some(mut engine) = engine else { return Ok(()) };
+        let finished = workshop.finished(job).inspect_err(|_| self.keeps_fallback = true)?;
+        let Some(mut engine) = finished else { return Ok(()) };
         self.fallback_seconds += self.engine_seconds();
         self.step_time = Duration::ZERO;
-        if let Engine::Cpu(fallback) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+        if let Engine::Cpu(fallback) = std::mem::take(&mut self.engine) {
             let (film, schedule) = fallback.hand_over();
             engine.take_over(film, schedule);
         }
@@ -154,11 +147,6 @@ impl Session {
     /// plan's reason.
     pub fn keep_guides(&mut self, why: &'static str) {
         self.guides_wanted = Some(why);
-    }
-
-    /// Sets the memory limit of renders in bytes, instead of the free memory.
-    pub fn limit_memory(&mut self, bytes: u64) {
-        self.memory_limit = Some(bytes);
     }
 
     /// Models and environments, loaded and kept.
@@ -234,17 +222,12 @@ impl Session {
 
     /// Refuses a job that does not fit into memory, so that the old one continues.
     fn check_memory(&self, job: &Job) -> Result<(), SessionError> {
-        let is_software_gpu = self.info.kind == EngineKind::Gpu && self.info.is_software;
         // A film uses memory from its first sample on, and is freed when another starts.
         let is_in_use = self.engine.schedule().pixel_samples() > 0;
         let old = self.job.as_deref().filter(|_| is_in_use);
-        let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
+        let held = old.map_or(0, |old| memory::Needs::of(old, &self.info).bytes());
         let allowed = self.memory_limit.unwrap_or_else(|| memory::free(held));
-        memory::check(job, is_software_gpu, allowed)?;
-        if self.info.kind == EngineKind::Gpu {
-            memory::check_instances(job, is_software_gpu, allowed)?;
-        }
-        Ok(())
+        memory::check(job, &self.info, allowed).map_err(SessionError::TooLarge)
     }
 
     /// Restarts the engine with a job; after an error it continues with the old one.
@@ -320,7 +303,7 @@ impl Session {
         let schedule = self.engine.schedule().clone();
         let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
         self.convergence.next_round(film, &schedule, &document.render, pacing);
-        self.convergence.planned(begun.elapsed().as_secs_f64());
+        self.convergence.took(Work::Planning, begun.elapsed().as_secs_f64());
         Ok(())
     }
 
@@ -332,14 +315,10 @@ impl Session {
         let begun = Instant::now();
         let seconds = self.engine_seconds();
         let schedule = self.engine.schedule().clone();
-        let settings = self
-            .document
-            .as_ref()
-            .map(|document| document.render)
-            .unwrap_or_default();
+        let settings = self.settings();
         self.convergence
             .measure(self.engine.film()?, &schedule, &settings, seconds);
-        self.convergence.looked(begun.elapsed().as_secs_f64());
+        self.convergence.took(Work::Measuring, begun.elapsed().as_secs_f64());
         Ok(())
     }
 
@@ -351,28 +330,28 @@ impl Session {
     /// Progress of the render.
     pub fn progress(&self) -> Progress {
         let schedule = self.engine.schedule();
-        let settings = self.document.as_ref().map(|document| document.render);
+        let settings = self.settings();
         let engine_seconds = self.engine_seconds();
         let mut progress = Progress {
             samples_per_pixel: schedule.samples_per_pixel(),
-            samples_wanted: settings.map_or(0, |render| render.samples),
-            mean_samples: mean_samples(schedule),
+            samples_wanted: settings.samples,
+            mean_samples: mean_samples(schedule, None),
             samples_per_second: schedule.pixel_samples() as f64 / engine_seconds.max(1e-9),
             render_seconds: self.render_time.as_secs_f64(),
             engine_seconds,
             measure_seconds: self.convergence.total_seconds,
             is_fallback: self.is_fallback(),
-            kernel_seconds: self.workshop.as_ref().and_then(Workshop::compile_seconds),
+            kernel_seconds: self.workshop.as_ref().and_then(|workshop| workshop.compile_seconds),
             noise: self.convergence.noise(),
-            noise_wanted: settings.and_then(|render| render.noise),
+            noise_wanted: settings.noise,
             denoised: self.denoised,
             targets_denoised: self.shows_nearer(),
             ..Progress::default()
         };
         // With pausing tiles, one may be complete while others lack samples of the round.
-        let is_even = settings.is_none_or(|render| !render.is_adaptive());
-        let has_all = progress.samples_per_pixel >= progress.samples_wanted && (is_even || self.is_between_rounds());
-        let has_least = || settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.least_samples());
+        let is_even = !settings.is_adaptive() || self.is_between_rounds();
+        let has_all = progress.samples_per_pixel >= progress.samples_wanted && is_even;
+        let has_least = || fewest_samples(schedule, &settings) >= settings.least_samples();
         progress.stopped_by = if progress.is_converged() && has_least() {
             Some(StopReason::Noise)
         } else if has_all && has_least() {
@@ -391,14 +370,16 @@ impl Session {
         &self.convergence.history
     }
 
-    fn time_limit(&self) -> Option<Duration> {
-        let seconds = self.document.as_ref()?.render.time_s?;
-        Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
+    fn settings(&self) -> RenderSettings {
+        self.document
+            .as_ref()
+            .map(|document| document.render)
+            .unwrap_or_default()
     }
 
-    /// Sets the denoised image's error: a noise target applies to the displayed image.
-    pub fn set_denoised_error(&mut self, error: Distance) {
-        self.denoised = Some(error);
+    fn time_limit(&self) -> Option<Duration> {
+        let seconds = self.settings().time_s?;
+        Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
     }
 
     /// True if every tile has the samples of its round; on the CPU their number does not depend on time.
@@ -408,11 +389,7 @@ impl Session {
 
     /// True if rendering waits for the denoised image's error.
     fn awaits_denoised(&self) -> bool {
-        let has_target = self
-            .document
-            .as_ref()
-            .is_some_and(|document| document.render.noise.is_some());
-        has_target && self.shows_nearer() && self.is_between_rounds()
+        self.settings().noise.is_some() && self.shows_nearer() && self.is_between_rounds()
     }
 
     /// Whether the display blends samples and denoised image by error (`auto`).

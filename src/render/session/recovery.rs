@@ -14,7 +14,7 @@ impl Session {
     /// Continues after a GPU failure and returns a message: on a reopened device after a loss, up to three times; else on
     /// the CPU. Samples already read from the GPU count.
     pub fn recover(&mut self, error: &GpuError) -> String {
-        let kept = match std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+        let kept = match std::mem::take(&mut self.engine) {
             Engine::Gpu(engine) => engine.hand_over(),
             Engine::Cpu(engine) => Some(engine.hand_over()),
         };
@@ -44,11 +44,7 @@ impl Session {
     /// Opens another engine. Returns a message.
     fn continue_after(&mut self, cause: &GpuError) -> String {
         let may_reopen = cause.is_lost() && self.losses <= REPLACEMENTS;
-        let kind = if self.info.is_software {
-            AdapterKind::Software
-        } else {
-            AdapterKind::Hardware
-        };
+        let kind = AdapterKind::of(self.info.is_software);
         let is_fluid = self.workshop.take().is_some();
         let traversal = self.info.traversal;
         let opened = may_reopen.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
@@ -85,7 +81,9 @@ impl Session {
     /// Injects losses of the GPU's device at a moment, and `times` in all. For tests.
     pub fn lose_when(&mut self, moment: Moment, times: u32) {
         self.losing = Some((moment, times - 1));
-        let device = self.device().or_else(|| self.workshop.as_ref()?.blank_device());
+        let device = self
+            .device()
+            .or_else(|| self.workshop.as_ref()?.blank.as_ref().map(GpuEngine::device));
         if let Some(device) = device {
             device.lose_when(moment);
         }

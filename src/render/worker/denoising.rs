@@ -22,7 +22,6 @@ struct Request {
     /// The frame that `noisy` was copied with.
     frame: Frame,
     mode: Denoise,
-    stage: u64,
     /// Its time does not count against [`TIME_SHARE`].
     is_early: bool,
     /// Set once the result is no longer needed.
@@ -30,23 +29,21 @@ struct Request {
 }
 
 /// The result of a request.
-pub(super) struct Outcome {
+pub struct Outcome {
     /// The denoised image, or the error message.
-    pub(super) denoised: Result<Denoised, String>,
+    pub denoised: Result<Denoised, String>,
     /// The frame that was denoised, as it was.
-    pub(super) frame: Frame,
-    stage: u64,
+    pub frame: Frame,
     is_early: bool,
+    cancel: Arc<AtomicBool>,
 }
 
 /// The worker's handle of the denoiser's thread: sends requests and collects results.
-pub(super) struct Denoising {
+pub struct Denoising {
     /// `None` if no thread could be started.
     thread: Option<Background<Request, Outcome>>,
-    /// Number of the current render. Results of earlier ones are discarded.
-    stage: u64,
-    /// Samples per pixel of the latest request without a result.
-    pending_samples: Option<u32>,
+    /// Whether the latest request has no result yet.
+    is_pending: bool,
     /// Samples per pixel of the latest request of this render; 0 before the first.
     requested_samples: u32,
     /// Cancels the requests of this render.
@@ -61,7 +58,7 @@ pub(super) struct Denoising {
 
 impl Denoising {
     /// Starts the thread, which calls `wake` after each result.
-    pub(super) fn spawn(wake: impl Fn() + Send + 'static) -> Self {
+    pub fn spawn(wake: impl Fn() + Send + 'static) -> Self {
         let mut denoiser = None;
         let spawned = Background::spawn("denoise", wake, move |request, responder| {
             answer(&mut denoiser, request, responder);
@@ -72,8 +69,7 @@ impl Denoising {
         };
         Self {
             thread,
-            stage: 0,
-            pending_samples: None,
+            is_pending: false,
             requested_samples: 0,
             cancel: Arc::default(),
             late_seconds: 0.0,
@@ -83,19 +79,15 @@ impl Denoising {
     }
 
     /// Starts another render: cancels the requests of the one before.
-    pub(super) fn reset(&mut self) {
-        self.stage += 1;
+    pub fn reset(&mut self) {
         std::mem::take(&mut self.cancel).store(true, Relaxed);
-        self.pending_samples = None;
+        self.is_pending = false;
         self.requested_samples = 0;
         self.late_seconds = 0.0;
-        if let Some(thread) = &self.thread {
-            thread.withdraw();
-        }
     }
 
     /// Whether the document's render is shown denoised at this progress.
-    pub(super) fn shows(&self, document: &Document, progress: &Progress) -> bool {
+    pub fn shows(&self, document: &Document, progress: &Progress) -> bool {
         let is_time = document.view.denoise_when == DenoiseWhen::Rendering || progress.is_done;
         document.view.denoise != Denoise::Off && self.failure.is_none() && is_time
     }
@@ -108,39 +100,37 @@ impl Denoising {
 
     /// Whether a request is due: the first one, then at twice the samples of the one before within the time share, and the
     /// last one.
-    pub(super) fn is_due(&self, progress: &Progress) -> bool {
+    pub fn is_due(&self, progress: &Progress) -> bool {
         let samples = progress.samples_per_pixel;
         if samples <= self.requested_samples {
             return false;
         }
         let spent_and_next = self.late_seconds + self.latest_seconds;
         let is_cheap = self.is_early(progress) || spent_and_next <= TIME_SHARE * (progress.render_seconds - EARLY_S);
-        let is_idle = self.pending_samples.is_none();
         progress.is_done
             || self.requested_samples == 0
-            || (is_idle && is_cheap && samples >= GROWTH * self.requested_samples)
+            || (!self.is_pending && is_cheap && samples >= GROWTH * self.requested_samples)
     }
 
     /// Whether a request has no result yet.
-    pub(super) fn is_pending(&self) -> bool {
-        self.pending_samples.is_some()
+    pub fn is_pending(&self) -> bool {
+        self.is_pending
     }
 
     /// Whether there is a result to collect.
-    pub(super) fn has_outcome(&self) -> bool {
+    pub fn has_outcome(&self) -> bool {
         self.thread.as_ref().is_some_and(Background::has_answer)
     }
 
     /// Requests a denoised image. Replaces a request that has not been started.
-    pub(super) fn request(&mut self, noisy: Noisy, frame: Frame, mode: Denoise, progress: &Progress) {
+    pub fn request(&mut self, noisy: Noisy, frame: Frame, mode: Denoise, progress: &Progress) {
         let is_early = self.is_early(progress);
-        self.pending_samples = Some(frame.samples_per_pixel);
+        self.is_pending = true;
         self.requested_samples = frame.samples_per_pixel;
         let request = Request {
             noisy,
             frame,
             mode,
-            stage: self.stage,
             is_early,
             cancel: self.cancel.clone(),
         };
@@ -150,17 +140,16 @@ impl Denoising {
     }
 
     /// Takes the latest result, if it is of the current render. After a failure nothing is denoised any more.
-    pub(super) fn collect(&mut self) -> Option<Outcome> {
+    pub fn collect(&mut self) -> Option<Outcome> {
         let outcome = self.thread.as_ref()?.take()?;
         if let Err(why) = &outcome.denoised {
             self.failure = Some(why.clone());
         }
-        if outcome.stage != self.stage {
+        // Of an earlier render.
+        if outcome.cancel.load(Relaxed) {
             return None;
         }
-        if self.pending_samples == Some(outcome.frame.samples_per_pixel) {
-            self.pending_samples = None;
-        }
+        self.is_pending &= outcome.frame.samples_per_pixel != self.requested_samples;
         if let Ok(denoised) = &outcome.denoised {
             self.latest_seconds = denoised.seconds;
             if !outcome.is_early {
@@ -178,7 +167,7 @@ impl Drop for Denoising {
     }
 }
 
-fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Responder<'_, Request, Outcome>) {
+fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Responder<'_, Outcome>) {
     let denoised = match caught(|| denoise(denoiser, &request)) {
         Ok(Err(LibraryError::Cancelled)) => return,
         Ok(done) => done.map_err(crate::in_words),
@@ -187,8 +176,8 @@ fn answer(denoiser: &mut Option<Denoiser>, request: Request, responder: &Respond
     responder.publish(Outcome {
         denoised,
         frame: request.frame,
-        stage: request.stage,
         is_early: request.is_early,
+        cancel: request.cancel,
     });
 }
 

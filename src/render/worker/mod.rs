@@ -1,7 +1,7 @@
 //! A session on a thread of its own, so that the window never waits.
 //!
-//! The window submits documents and the worker publishes snapshots; the latest of each wins. They communicate through two
-//! short locks. Work is cut into steps of [`STEP`], and commands are read after each.
+//! The window sends orders and the worker publishes snapshots; the latest submission and snapshot win. Work is cut into steps
+//! of 20 ms, and orders are executed after each.
 
 mod denoising;
 mod picture;
@@ -10,16 +10,17 @@ mod thread;
 
 use std::io;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 pub use picture::Picture;
+use thread::State;
 
 use super::convergence::Measurement;
 use super::engine::{EngineChoice, EngineInfo};
-use super::mailbox::Mailbox;
 use super::output::Layers;
 use super::priority::lower_thread_priority;
 use super::progress::Progress;
@@ -34,21 +35,22 @@ use crate::panics::lock;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Loading, Model, ModelOptions, ModelSource};
 
-/// Longest rendering step between two reads of the commands; and the step before the first image, which must not wait for
-/// later samples.
-const STEP: Duration = Duration::from_millis(20);
-const FIRST_STEP: Duration = Duration::from_millis(6);
 /// Time for which dropping a worker waits for its thread.
 const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Renders on a thread of its own.
 pub struct Worker {
+    orders: Sender<Order>,
     shared: Arc<Shared>,
     assets: Assets,
     /// Requested models and environments whose events have not been taken.
     opening: AtomicUsize,
-    thread: Option<JoinHandle<()>>,
+    last_revision: AtomicU64,
+    thread: JoinHandle<()>,
 }
+
+/// What the thread is to do before its next step.
+type Order = Box<dyn FnOnce(&mut State<'_>) + Send>;
 
 /// Whether more edits are expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,58 +164,6 @@ pub enum Event {
     LayersMade(PathBuf, Box<Layers>, Progress),
 }
 
-/// A fault of the GPU's device, injected by tests.
-#[derive(Clone, Copy, Debug)]
-enum InjectedFault {
-    /// The device is lost at a moment, a number of times in all.
-    Lost(Moment, u32),
-    /// Buffers larger than this many bytes are refused.
-    Limited(u64),
-}
-
-impl InjectedFault {
-    fn inject(self, session: &mut Session) {
-        match self {
-            Self::Lost(moment, times) => session.lose_when(moment, times),
-            Self::Limited(bytes) => session
-                .device()
-                .into_iter()
-                .for_each(|device| device.limit_buffers(bytes)),
-        }
-    }
-}
-
-/// Pending commands of the window.
-#[derive(Debug, Default)]
-struct Commands {
-    submission: Option<Submission>,
-    models: Vec<(ModelSource, ModelOptions)>,
-    environments: Vec<EnvironmentSource>,
-    layers: Vec<PathBuf>,
-    engine: Option<EngineChoice>,
-    shown: Option<Shown>,
-    is_inspected: Option<bool>,
-    reloads: u32,
-    restart: bool,
-    faults: Vec<InjectedFault>,
-    quit: bool,
-}
-
-impl Commands {
-    fn is_empty_beside_submission(&self) -> bool {
-        self.models.is_empty()
-            && self.environments.is_empty()
-            && self.layers.is_empty()
-            && self.engine.is_none()
-            && self.shown.is_none()
-            && self.is_inspected.is_none()
-            && self.reloads == 0
-            && !self.restart
-            && self.faults.is_empty()
-            && !self.quit
-    }
-}
-
 #[derive(Clone, Debug)]
 struct Submission {
     document: Arc<Document>,
@@ -224,16 +174,10 @@ struct Submission {
 
 #[derive(Default)]
 struct Shared {
-    commands: Mailbox<CommandQueue>,
     snapshot: Mutex<Arc<Snapshot>>,
     events: Mutex<Vec<Event>>,
-}
-
-#[derive(Default)]
-struct CommandQueue {
-    commands: Commands,
-    is_paused: bool,
-    last_revision: u64,
+    /// The thread is to end.
+    is_over: AtomicBool,
 }
 
 impl Worker {
@@ -260,90 +204,111 @@ impl Worker {
 
     fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
-        let (of_thread, its_assets) = (shared.clone(), assets.clone());
+        let (orders, received) = channel();
+        let (of_thread, its_assets, to_itself) = (shared.clone(), assets.clone(), orders.clone());
         let thread = std::thread::Builder::new().name("render".to_owned()).spawn(move || {
             lower_thread_priority();
-            thread::run(&of_thread, choice, its_assets, &repaint);
+            let mut state = State::new(&of_thread, &repaint, its_assets, to_itself);
+            state.open(choice);
+            while state.run_once(&received) {}
         })?;
         Ok(Self {
+            orders,
             shared,
             assets,
             opening: AtomicUsize::new(0),
-            thread: Some(thread),
+            last_revision: AtomicU64::new(0),
+            thread,
         })
     }
 
     /// Submits a document to render instead of the last one. Returns its revision, which its images carry.
     pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
-        self.shared.commands.change(|queue| {
-            queue.last_revision += 1;
-            queue.commands.submission = Some(Submission {
-                document: Arc::new(document.clone()),
-                pace,
-                revision: queue.last_revision,
-                at: Instant::now(),
-            });
-            queue.last_revision
-        })
+        let revision = self.last_revision.fetch_add(1, Relaxed) + 1;
+        let submission = Submission {
+            document: Arc::new(document.clone()),
+            pace,
+            revision,
+            at: Instant::now(),
+        };
+        self.order(|state| state.submitted = Some(submission));
+        revision
     }
 
     /// Pauses or resumes rendering. Submissions are still shown with their first sample while paused.
     pub fn pause(&self, is_paused: bool) {
-        self.shared.commands.change(|queue| queue.is_paused = is_paused);
+        self.order(move |state| state.is_paused = is_paused);
     }
 
     /// Loads a model in the background; an [`Event`] reports the result.
     pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
         self.opening.fetch_add(1, Relaxed);
-        self.send(|commands| commands.models.push((source, options)));
+        self.order(|state| state.load_model(source, options));
     }
 
     /// Loads an environment in the background; an [`Event`] reports the result.
     pub fn open_environment(&self, source: EnvironmentSource) {
         self.opening.fetch_add(1, Relaxed);
-        self.send(|commands| commands.environments.push(source));
+        self.order(|state| state.load_environment(source));
     }
 
     /// Makes the image's layers as soon as it has samples at full resolution; an [`Event`] returns them with the file name.
     pub fn make_layers(&self, path: PathBuf) {
-        self.send(|commands| commands.layers.push(path));
+        self.order(|state| state.requested_layers.push(path));
     }
 
     /// Reads the scene's files again; an [`Event`] reports the result. If they cannot be read, the current render continues.
     pub fn reload(&self) {
         self.opening.fetch_add(1, Relaxed);
-        self.send(|commands| commands.reloads += 1);
+        self.order(|state| state.reload());
     }
 
     /// Restarts the render.
     pub fn restart(&self) {
-        self.send(|commands| commands.restart = true);
+        self.order(|state| state.start_over());
     }
 
     /// Injects losses of the GPU's device, as by a driver's reset: at `moment`, and `times` in all. No effect on the CPU
     /// engine. For tests.
     pub fn lose_device(&self, moment: Moment, times: u32) {
-        self.send(|commands| commands.faults.push(InjectedFault::Lost(moment, times)));
+        self.order(move |state| {
+            state
+                .session
+                .iter_mut()
+                .for_each(|session| session.lose_when(moment, times))
+        });
     }
 
     /// Makes the GPU refuse buffers above a size in bytes, as a small adapter does. For tests.
     pub fn limit_buffers(&self, bytes: u64) {
-        self.send(|commands| commands.faults.push(InjectedFault::Limited(bytes)));
+        self.order(move |state| {
+            let device = state.session.as_ref().and_then(Session::device);
+            device.into_iter().for_each(|device| device.limit_buffers(bytes));
+        });
     }
 
     /// Switches to another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
-        self.send(|commands| commands.engine = Some(choice));
+        self.order(move |state| {
+            state.open(choice);
+            state.restart();
+        });
     }
 
     /// Shows the image, or a map of its error or samples; the render continues.
     pub fn show(&self, shown: Shown) {
-        self.send(|commands| commands.shown = Some(shown));
+        self.order(move |state| {
+            state.shown = shown;
+            state.republish();
+        });
     }
 
     /// Turns per-pixel quantities ([`Picture::facts`]) on or off.
     pub fn set_inspected(&self, is_inspected: bool) {
-        self.send(|commands| commands.is_inspected = Some(is_inspected));
+        self.order(move |state| {
+            state.is_inspected = is_inspected;
+            state.republish();
+        });
     }
 
     /// Cancels loading; the current render continues.
@@ -356,8 +321,9 @@ impl Worker {
         self.assets.loading()
     }
 
-    fn send(&self, change: impl FnOnce(&mut Commands)) {
-        self.shared.commands.change(|queue| change(&mut queue.commands));
+    fn order(&self, order: impl FnOnce(&mut State<'_>) + Send + 'static) {
+        // The thread lasts as long as this.
+        let _ = self.orders.send(Box::new(order));
     }
 
     /// The latest snapshot.
@@ -389,12 +355,10 @@ impl Drop for Worker {
     /// Asks the thread to end. Leaves it behind if that takes longer than [`SHUTDOWN_TIMEOUT`], as while it reads a large
     /// file.
     fn drop(&mut self) {
-        self.send(|commands| commands.quit = true);
+        self.shared.is_over.store(true, Relaxed);
+        self.order(|_| ());
         let begun = Instant::now();
-        while let Some(thread) = &self.thread
-            && !thread.is_finished()
-            && begun.elapsed() < SHUTDOWN_TIMEOUT
-        {
+        while !self.thread.is_finished() && begun.elapsed() < SHUTDOWN_TIMEOUT {
             std::thread::sleep(Duration::from_millis(1));
         }
     }

@@ -7,7 +7,7 @@ use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;
 use crate::render::display::display;
 use crate::render::frame::Frame;
-use crate::render::shown::{Map, Scale, Shown};
+use crate::render::shown::{Scale, Shown};
 
 /// A frame as it is shown: the image itself or a map of it.
 #[derive(Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct Picture {
     pub map: Option<(Shown, Option<Scale>)>,
     /// The document, with the size at full resolution.
     pub document: Arc<Document>,
-    frame: Frame,
+    pub frame: Frame,
 }
 
 impl Deref for Picture {
@@ -37,33 +37,8 @@ impl Deref for Picture {
     }
 }
 
-impl Picture {
-    /// Shows a frame for a document, as a map of it if there is one.
-    pub(super) fn of(
-        frame: Frame,
-        map: Option<(Shown, Map)>,
-        document: Arc<Document>,
-        [serial, revision]: [u64; 2],
-    ) -> Self {
-        let (rgba, map) = match map {
-            Some((shown, map)) => (map.rgba, Some((shown, map.scale))),
-            None => (displayed(&frame.image, &document.view), None),
-        };
-        Self {
-            width: frame.image.width,
-            height: frame.image.height,
-            rgba,
-            serial,
-            revision,
-            map,
-            document,
-            frame,
-        }
-    }
-}
-
 /// Display-referred RGBA, premultiplied in gamma space as windows blend it.
-fn displayed(image: &Image, view: &ViewSettings) -> Vec<u8> {
+pub fn displayed(image: &Image, view: &ViewSettings) -> Vec<u8> {
     let mut rgba = display(image, view);
     for pixel in rgba.chunks_exact_mut(4).filter(|pixel| pixel[3] < 255) {
         let alpha = u16::from(pixel[3]);

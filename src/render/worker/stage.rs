@@ -28,21 +28,23 @@ const SIDE_MIN_PX: u32 = 96;
 
 /// A submission being shown: first at a reduced resolution, in the end in full.
 #[derive(Clone, Debug)]
-pub(super) struct Stage {
-    pub(super) submission: Submission,
+pub struct Stage {
+    pub submission: Submission,
+    /// When it was taken.
+    taken_at: Instant,
     /// Divisor of width and height.
-    pub(super) reduction: u32,
+    pub reduction: u32,
     /// True once an image has been published.
-    pub(super) is_shown: bool,
+    pub is_shown: bool,
     /// True once one of this resolution has.
-    pub(super) is_seen: bool,
+    pub is_seen: bool,
     /// True if the full resolution failed: the reduced one stays.
-    pub(super) is_final: bool,
+    pub is_final: bool,
 }
 
 impl Stage {
     /// The first stage of a submission for an engine of a given speed in pixel samples per second; 0 is unknown.
-    pub(super) fn first(submission: Submission, samples_per_second: f64) -> Self {
+    pub fn first(submission: Submission, samples_per_second: f64) -> Self {
         let render = &submission.document.render;
         let most = REDUCTIONS
             .into_iter()
@@ -57,6 +59,7 @@ impl Stage {
         }
         Self {
             submission,
+            taken_at: Instant::now(),
             reduction,
             is_shown: false,
             is_seen: false,
@@ -65,7 +68,7 @@ impl Stage {
     }
 
     /// The next stage of the same submission: as large as is there without a wait that is felt.
-    pub(super) fn next(&self, samples_per_second: f64) -> Self {
+    pub fn next(&self, samples_per_second: f64) -> Self {
         let is_slow = |n: u32| first_sample(&self.submission, n, samples_per_second) > STEP_FELT;
         let steps = STEPS.into_iter().filter(|n| *n < self.reduction);
         Self {
@@ -76,12 +79,12 @@ impl Stage {
     }
 
     /// The same for a kernel without a measured speed.
-    pub(super) fn cautious(submission: Submission, samples_per_second: f64) -> Self {
+    pub fn cautious(submission: Submission, samples_per_second: f64) -> Self {
         Self::first(submission, UNKNOWN_KERNEL * samples_per_second)
     }
 
     /// The document at the stage's resolution.
-    pub(super) fn document(&self) -> Arc<Document> {
+    pub fn document(&self) -> Arc<Document> {
         if self.reduction == 1 {
             return self.submission.document.clone();
         }
@@ -92,29 +95,28 @@ impl Stage {
     }
 
     /// Whether the next resolution is due: at once after the image, or after a pause if more changes are expected.
-    pub(super) fn is_settled(&self) -> bool {
-        let has_rested = match self.submission.pace {
-            Pace::Moving => self.submission.at.elapsed() >= SETTLE,
-            Pace::Still => true,
-        };
-        self.reduction > 1 && self.is_seen && !self.is_final && has_rested
+    pub fn is_settled(&self) -> bool {
+        let is_still = self.submission.pace == Pace::Still;
+        self.may_settle() && (is_still || self.submission.at.elapsed() >= SETTLE)
     }
 
-    /// Time until [`Stage::is_settled`] may become true, if it can.
-    pub(super) fn rest_left(&self) -> Option<Duration> {
-        (self.reduction > 1 && self.is_seen && !self.is_final)
-            .then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
+    fn may_settle(&self) -> bool {
+        self.reduction > 1 && self.is_seen && !self.is_final
     }
 
     /// Whether another submission may replace this one. A moving one is shown first: otherwise a steady stream of changes
     /// would never show anything.
-    pub(super) fn may_be_replaced(&self, taken_at: Instant) -> bool {
-        self.is_shown || self.submission.pace == Pace::Still || self.wait_left(taken_at).is_zero()
+    pub fn may_be_replaced(&self) -> bool {
+        self.is_shown || self.submission.pace == Pace::Still || self.taken_at.elapsed() >= STALE
     }
 
-    /// Time for which a moving submission still blocks its replacement.
-    pub(super) fn wait_left(&self, taken_at: Instant) -> Duration {
-        STALE.saturating_sub(taken_at.elapsed())
+    /// Time until it may settle or be replaced.
+    pub fn wait_left(&self) -> Duration {
+        let rest = self
+            .may_settle()
+            .then(|| SETTLE.saturating_sub(self.submission.at.elapsed()));
+        let until_stale = (!self.may_be_replaced()).then(|| STALE.saturating_sub(self.taken_at.elapsed()));
+        rest.into_iter().chain(until_stale).min().unwrap_or(Duration::MAX)
     }
 }
 

@@ -21,7 +21,7 @@ pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
     let mut is_taken = vec![false; cells.len()];
     let mut open = vec![first];
     is_taken[first] = true;
-    let mut sum = Vec3::zero();
+    let mut sum = Vec3::ZERO;
     while let Some(index) = open.pop() {
         let (column, row) = (index % columns, index / columns);
         let uv = [(column as f32 + 0.5) / columns as f32, (row as f32 + 0.5) / rows as f32];

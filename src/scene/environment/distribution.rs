@@ -28,12 +28,6 @@ pub(super) struct Map<'a> {
     pub texels: &'a [[f32; 4]],
 }
 
-/// Statistics of a map.
-pub(super) struct Summary {
-    pub mean_radiance: [f32; 3],
-    pub max_luminance: f32,
-}
-
 /// Luminance of a linear Rec. 709 texel (CIE Y).
 fn luminance(texel: &[f32; 4]) -> f64 {
     0.2126 * f64::from(texel[0]) + 0.7152 * f64::from(texel[1]) + 0.0722 * f64::from(texel[2])
@@ -88,7 +82,7 @@ pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
 }
 
 /// Mean radiance of the bilinear map over the sphere, and its largest luminance.
-pub(super) fn summarise(map: &Map) -> Summary {
+pub(super) fn summarise(map: &Map) -> ([f32; 3], f32) {
     let width = map.width as usize;
     let of_rows = parallel::map(map.texels.len() / width, |row| {
         let texels = &map.texels[row * width..][..width];
@@ -100,10 +94,7 @@ pub(super) fn summarise(map: &Map) -> Summary {
     let (sum, max) = of_rows.into_iter().fold(([0.0; 3], 0.0), |(a, a_max), (b, b_max)| {
         ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max))
     });
-    Summary {
-        mean_radiance: sum.map(|sum| (sum / (2.0 * TAU)) as f32),
-        max_luminance: max as f32,
-    }
+    (sum.map(|sum| (sum / (2.0 * TAU)) as f32), max as f32)
 }
 
 /// The size of the grid of cells: the map's own, halved while it has more than [`MAX_CELLS`].
@@ -175,19 +166,16 @@ impl Distribution {
     }
 
     /// The row that a number draws.
-    #[inline(always)]
     pub(super) fn row(&self, number: u32) -> u32 {
         find(self.height, number, |row| self.rows[row as usize])
     }
 
     /// A row, as it is drawn.
-    #[inline(always)]
     pub(super) fn row_at(&self, row: u32) -> Drawn {
         drawn(row, |row| self.rows[row as usize])
     }
 
     /// The column that a number draws in a row.
-    #[inline(always)]
     pub(super) fn column(&self, row: u32, number: u32) -> Drawn {
         let first = row * self.width;
         let share = |column| self.cells[(first + column) as usize].share;

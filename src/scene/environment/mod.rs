@@ -20,8 +20,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use crate::optics::real::{Real, Scalar};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::prelude::*;
 use crate::scene::alias::grid_places;
 use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::memory::{in_large_pages, prefetch};
@@ -84,69 +83,38 @@ pub enum EnvironmentEncoding {
 
 /// An environment that needs no file.
 pub struct BuiltIn {
-    /// Source that [`load`] takes.
     pub source: EnvironmentSource,
     /// Name on the command line and in files.
     pub name: &'static str,
     /// Name in the window.
     pub label: &'static str,
     pub help: &'static str,
+    make: fn() -> Result<Environment, MapError>,
 }
 
-/// The built-in environments, in the order of the window.
-pub static BUILT_IN: [BuiltIn; 8] = [
-    built_in(
-        EnvironmentSource::Product,
-        "product",
-        "Product",
-        "Large warm and cool soft boxes in a bright room.",
-    ),
-    built_in(
-        EnvironmentSource::Studio,
-        "studio",
-        "Studio",
-        "Soft boxes in a dark room.",
-    ),
-    built_in(
-        EnvironmentSource::Portrait,
-        "portrait",
-        "Portrait",
-        "One large warm lamp near the camera, and reflectors.",
-    ),
-    built_in(
-        EnvironmentSource::Rim,
-        "rim",
-        "Rim",
-        "Two narrow lamps behind the object, warm and cool, in the dark.",
-    ),
-    built_in(
-        EnvironmentSource::Warehouse,
-        "warehouse",
-        "Warehouse",
-        "A hall with skylights, windows and a gate.",
-    ),
-    built_in(
-        EnvironmentSource::Overcast,
-        "overcast",
-        "Overcast",
-        "A sky full of clouds: soft light from above.",
-    ),
-    built_in(EnvironmentSource::Sky, "sky", "Sky", "A clear sky with its sun."),
-    built_in(
-        EnvironmentSource::Furnace,
-        "furnace",
-        "Furnace",
-        "White light from everywhere: a material that keeps all light vanishes.",
-    ),
-];
+macro_rules! built_in {
+    ($($source:ident $name:literal $label:literal $help:literal $make:expr;)*) => {
+        /// The built-in environments, in the order of the window.
+        pub static BUILT_IN: [BuiltIn; 8] = [$(BuiltIn {
+            source: EnvironmentSource::$source,
+            name: $name,
+            label: $label,
+            help: $help,
+            make: $make,
+        }),*];
+    };
+}
 
-const fn built_in(source: EnvironmentSource, name: &'static str, label: &'static str, help: &'static str) -> BuiltIn {
-    BuiltIn {
-        source,
-        name,
-        label,
-        help,
-    }
+#[rustfmt::skip]
+built_in! {
+    Product "product" "Product" "Large warm and cool soft boxes in a bright room." product;
+    Studio "studio" "Studio" "Soft boxes in a dark room." studio;
+    Portrait "portrait" "Portrait" "One large warm lamp near the camera, and reflectors." portrait;
+    Rim "rim" "Rim" "Two narrow lamps behind the object, warm and cool, in the dark." rim;
+    Warehouse "warehouse" "Warehouse" "A hall with skylights, windows and a gate." warehouse;
+    Overcast "overcast" "Overcast" "A sky full of clouds: soft light from above." overcast;
+    Sky "sky" "Sky" "A clear sky with its sun." || sky(&SkyParams::default());
+    Furnace "furnace" "Furnace" "White light from everywhere: a material that keeps all light vanishes." furnace;
 }
 
 impl EnvironmentSource {
@@ -155,22 +123,11 @@ impl EnvironmentSource {
         BUILT_IN.iter().find(|built_in| built_in.source == *self)
     }
 
-    /// The map of a built-in environment.
-    ///
-    /// # Errors
-    ///
-    /// One line, if it cannot be computed; [`MapError::IsFile`] for a file.
+    /// The map of a built-in environment; [`MapError::IsFile`] for a file.
     pub fn computed(&self) -> Result<Environment, MapError> {
-        match self {
-            Self::Product => product(),
-            Self::Studio => studio(),
-            Self::Portrait => portrait(),
-            Self::Rim => rim(),
-            Self::Warehouse => warehouse(),
-            Self::Overcast => overcast(),
-            Self::Sky => sky(&SkyParams::default()),
-            Self::Furnace => furnace(),
-            Self::File(path) => Err(MapError::IsFile(path.display().to_string())),
+        match self.built_in() {
+            Some(built_in) => (built_in.make)(),
+            None => Err(MapError::IsFile(self.to_string())),
         }
     }
 }
@@ -248,7 +205,7 @@ impl Environment {
             height,
             texels: &texels,
         };
-        let summary = distribution::summarise(&map);
+        let (mean_radiance, max_luminance) = distribution::summarise(&map);
         let luminances = Luminances::of(&map);
         let excess = Distribution::of_excess(&luminances);
         let is_constant = texels.iter().all(|texel| *texel == texels[0]);
@@ -256,9 +213,9 @@ impl Environment {
         Ok(Self {
             is_constant,
             brightest,
-            is_black: summary.max_luminance <= 0.0,
-            mean_radiance: summary.mean_radiance,
-            max_luminance: summary.max_luminance,
+            is_black: max_luminance <= 0.0,
+            mean_radiance,
+            max_luminance,
             width,
             height,
             texels: in_large_pages(texels),
@@ -311,14 +268,14 @@ pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation:
 pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
     // atan2 instead of acos: near the poles y rounds to 1, and only x and z determine the angle.
     let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
-    let v = horizontal.atan2(direction.y) * T::from_f64(std::f64::consts::FRAC_1_PI);
+    let v = horizontal.atan2(direction.y) * T::FRAC_1_PI;
     // atan2(0, 0) is undefined in WGSL.
-    let pole = !T::zero().less(horizontal);
-    let z = T::select(pole, -T::one(), direction.z);
+    let pole = !horizontal.above_zero();
+    let z = T::select(pole, -T::ONE, direction.z);
     let turns = direction.x.atan2(-z) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
-    let u = T::select(turns.less(T::zero()), turns + T::one(), turns);
+    let u = T::select(turns.below_zero(), turns + T::ONE, turns);
     // A tiny negative angle plus one turn rounds to a whole turn.
-    [T::select(u.less(T::one()), u, T::zero()), v.clamp(T::zero(), T::one())]
+    [u.masked(u.less(T::ONE)), v.clamp(T::ZERO, T::ONE)]
 }
 
 /// The unit direction of a place in the map, the inverse of [`environment_uv`].
@@ -328,11 +285,17 @@ pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
     environment_direction_from_angles(uv[0], polar_rad.cos(), polar_rad.sin())
 }
 
+/// The unit direction to the centre of a texel.
+pub fn texel_direction([column, row]: [u32; 2], [width, height]: [u32; 2]) -> Vec3<f64> {
+    let center = |place: u32, count: u32| (f64::from(place) + 0.5) / f64::from(count);
+    environment_direction([center(column, width), center(row, height)])
+}
+
 /// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
 #[inline(always)]
 fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
     // Shifted by half a turn, so that the argument is in [−π, π], where GPUs guarantee accuracy.
-    let azimuth_rad = (u - T::from_f64(0.5)) * T::from_f64(std::f64::consts::TAU);
+    let azimuth_rad = (u - T::HALF) * T::TAU;
     vec3(
         -(azimuth_rad.sin() * sin_polar),
         cos_polar,
@@ -359,7 +322,7 @@ pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -
 /// The radiances of texels.
 #[inline(always)]
 fn radiances<T: Real>(environment: &Environment, texels: &T::Each<u32>) -> Vec3<T> {
-    let texel = |lane: usize| &environment.texels[texels.as_ref()[lane] as usize];
+    let texel = |lane: usize| &environment.texels[texels[lane] as usize];
     let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
     vec3(
         T::from_lanes(|lane| number(texel(lane)[0])),
@@ -378,7 +341,7 @@ struct Bilinear<T: Real> {
 
 #[inline(always)]
 fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
     let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
     let (left, top) = (x.floor(), y.floor());
@@ -448,7 +411,7 @@ pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> 
 #[inline(always)]
 pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
     let numbers = xi_y.to_each();
-    T::each(|lane| distribution.row(draw_number(numbers.as_ref()[lane])))
+    T::each(|lane| distribution.row(draw_number(numbers[lane])))
 }
 
 /// [`environment_sample`] for known rows.
@@ -457,9 +420,9 @@ pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>,
     let (width, height) = (distribution.width, distribution.height);
     let numbers = xi.to_each();
     let drawn = T::each(|lane| {
-        let xi = numbers.as_ref()[lane];
+        let xi = numbers[lane];
         let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
-        let row = distribution.row_at(rows.as_ref()[lane]);
+        let row = distribution.row_at(rows[lane]);
         let column = distribution.column(row.index, number);
         let [x, y] = jitter(xi.z);
         let density = distribution.cells[(row.index * width + column.index) as usize].density;
@@ -486,7 +449,6 @@ pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>,
 }
 
 /// Two numbers in [0, 1) of twelve bits out of one of 24.
-#[inline(always)]
 fn jitter<T: Scalar>(xi: T) -> [T; 2] {
     let steps = T::from_f64(4096.0);
     let scaled = xi * steps;
@@ -494,22 +456,13 @@ fn jitter<T: Scalar>(xi: T) -> [T; 2] {
     [whole / steps, scaled - whole]
 }
 
-/// The densities of cells.
-#[inline(always)]
-fn densities<T: Real>(distribution: &Distribution, cells: &T::Each<u32>) -> T {
-    T::from_lanes(|lane| {
-        let cell = distribution.cells[cells.as_ref()[lane] as usize];
-        T::Scalar::from_f64(f64::from(cell.density))
-    })
-}
-
 /// Per lane the first cell of its row, and the cell with the guide of `xi_x`.
 #[inline(always)]
 fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
     let (width, numbers) = (distribution.width, xi_x.to_each());
     T::each(|lane| {
-        let first = rows.as_ref()[lane] * width;
-        [first, first + slot(width, draw_number(numbers.as_ref()[lane]))]
+        let first = rows[lane] * width;
+        [first, first + slot(width, draw_number(numbers[lane]))]
     })
 }
 
@@ -546,15 +499,15 @@ fn environment_direction_in_cell<T: Real>(
     // sin² of half the angle is uniform in solid angle, and exact near the pole that the angle is counted from: the
     // nearer one.
     let is_north = (row + row).less(height);
-    let row_from_pole = T::select(is_north, row, height - T::one() - row);
-    let across = T::select(is_north, place[1], T::one() - place[1]);
+    let row_from_pole = T::select(is_north, row, height - T::ONE - row);
+    let across = T::select(is_north, place[1], T::ONE - place[1]);
     let quarter_turn = T::from_f64(std::f64::consts::FRAC_PI_2);
     let near = (quarter_turn * (row_from_pole / height)).sin();
-    let far = (quarter_turn * ((row_from_pole + T::one()) / height)).sin();
+    let far = (quarter_turn * ((row_from_pole + T::ONE) / height)).sin();
     let near_squared = near * near;
     let s = near_squared + across * (far * far - near_squared);
-    let cos_from_pole = T::one() - (s + s);
-    let sin_polar = T::from_f64(2.0) * (s * (T::one() - s)).safe_sqrt();
+    let cos_from_pole = T::ONE - (s + s);
+    let sin_polar = T::TWO * (s * (T::ONE - s)).safe_sqrt();
     let cos_polar = T::select(is_north, cos_from_pole, -cos_from_pole);
     environment_direction_from_angles(u, cos_polar, sin_polar)
 }
@@ -570,5 +523,8 @@ pub fn environment_density<T: Real>(distribution: &Distribution, direction_local
 pub fn environment_density_at<T: Real>(distribution: &Distribution, uv: [T; 2]) -> T {
     let size = [distribution.width, distribution.height];
     let (cells, _) = grid_places(uv, size);
-    densities(distribution, &cells)
+    T::from_lanes(|lane| {
+        let cell = distribution.cells[cells.as_ref()[lane] as usize];
+        T::Scalar::from_f64(f64::from(cell.density))
+    })
 }

@@ -20,11 +20,7 @@ pub fn thumbnail(environment: &Environment, width: u32, height: u32) -> Vec<[u8;
     pixels
         .iter()
         .map(|pixel| {
-            let [red, green, blue] = pixel.map(|value| {
-                let exposed = value * exposure;
-                // Reinhard's curve with white at 4.
-                srgb_u8(exposed * (1.0 + exposed / 16.0) / (1.0 + exposed))
-            });
+            let [red, green, blue] = pixel.map(|value| shown(value * exposure));
             [red, green, blue, 255]
         })
         .collect()
@@ -35,20 +31,14 @@ pub fn brightened(pixels: &[u8], factor: f32) -> Vec<u8> {
     let codes: Vec<u8> = (0..=255_u8)
         .map(|code| {
             // The inverse of the curve, which white at 4 ends.
-            let shown: f32 = linear_from_srgb(Vec3::splat(f32::from(code) / 255.0)).x;
-            let radiance = 8.0 * (shown - 1.0 + ((1.0 - shown).powi(2) + 0.25 * shown).sqrt());
-            let bright = factor * radiance;
-            srgb_u8(bright * (1.0 + bright / 16.0) / (1.0 + bright))
+            let code: f32 = linear_from_srgb(Vec3::splat(f32::from(code) / 255.0)).x;
+            let radiance = 8.0 * (code - 1.0 + ((1.0 - code).powi(2) + 0.25 * code).sqrt());
+            shown(factor * radiance)
         })
         .collect();
-    let pixel = |pixel: &[u8; 4]| {
-        let [red, green, blue, alpha] = *pixel;
-        [
-            codes[usize::from(red)],
-            codes[usize::from(green)],
-            codes[usize::from(blue)],
-            alpha,
-        ]
+    let pixel = |[red, green, blue, alpha]: &[u8; 4]| {
+        let [red, green, blue] = [red, green, blue].map(|code| codes[usize::from(*code)]);
+        [red, green, blue, *alpha]
     };
     pixels.as_chunks().0.iter().flat_map(pixel).collect()
 }
@@ -80,8 +70,9 @@ fn geometric_mean_luminance(pixels: &[[f32; 3]]) -> f32 {
     (sum / pixels.len() as f32).exp()
 }
 
-/// The sRGB code of a linear value.
-fn srgb_u8(linear: f32) -> u8 {
+/// The sRGB code of an exposed value, by Reinhard's curve with white at 4.
+fn shown(exposed: f32) -> u8 {
+    let linear: f32 = exposed * (1.0 + exposed / 16.0) / (1.0 + exposed);
     let encoded = srgb_from_linear(Vec3::splat(linear.clamp(0.0, 1.0))).x;
     (encoded * 255.0 + 0.5) as u8
 }

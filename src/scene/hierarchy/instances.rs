@@ -56,7 +56,6 @@ impl Placement {
     }
 
     /// The place of a point of the mesh, by the same roundings as those of a block's corners.
-    #[inline(always)]
     pub fn point(&self, point: [f32; 3]) -> [f32; 3] {
         [0, 1, 2].map(|i| {
             let [x, y, z] = [0, 1, 2].map(|axis| self.axes[axis][i] * point[axis]);
@@ -71,7 +70,6 @@ impl Placement {
     }
 
     /// Values of a triangle's corners in its order here.
-    #[inline(always)]
     pub fn in_order<V>(&self, [a, b, c]: [V; 3]) -> [V; 3] {
         if self.mirrors { [a, c, b] } else { [a, b, c] }
     }
@@ -84,9 +82,8 @@ impl Placement {
     }
 
     /// A tangent here, with the sign of its bitangent.
-    pub fn tangent(&self, tangent: [f32; 3], side: f32) -> [f32; 4] {
+    pub fn tangent(&self, [along_x, along_y, along_z, side]: [f32; 4]) -> [f32; 4] {
         let [x, y, z] = self.axes.map(Vec3A::from_array);
-        let [along_x, along_y, along_z] = tangent;
         let [x, y, z] = (x * along_x + y * along_y + z * along_z).normalize_or_zero().to_array();
         [x, y, z, if self.mirrors { -side } else { side }]
     }
@@ -231,7 +228,6 @@ impl<S: Simd> Leaves for PlacedRay<'_, S> {
 }
 
 /// The normals of a block's triangles.
-#[inline(always)]
 fn normals(block: &Block) -> Normals {
     let mut axes = [[f32::NAN; WIDTH]; 3];
     for lane in 0..WIDTH {

@@ -25,7 +25,6 @@ impl EntryPoints {
     }
 
     /// Pushes the entry points onto a traversal stack.
-    #[inline(always)]
     pub(super) fn push_to(&self, stack: &mut Stack) {
         for entry in &self.entries[..self.count] {
             stack.push(*entry);
@@ -33,7 +32,6 @@ impl EntryPoints {
     }
 
     /// Moves all entries of a stack here. Invariant: they fit.
-    #[inline(always)]
     fn append(&mut self, found: &mut Stack) {
         while let Some(entry) = found.pop() {
             self.entries[self.count] = entry;
@@ -105,13 +103,11 @@ fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACK
 pub(super) struct ChildId(pub u32);
 
 impl ChildId {
-    #[inline(always)]
     fn new(node: u32, child: usize) -> Self {
         Self(node * WIDTH as u32 + child as u32)
     }
 
     /// The node and the child's slot in it.
-    #[inline(always)]
     pub fn parts(self) -> (usize, usize) {
         (self.0 as usize / WIDTH, self.0 as usize % WIDTH)
     }

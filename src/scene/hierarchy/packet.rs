@@ -36,7 +36,6 @@ impl Default for Packet {
 
 impl Packet {
     /// A packet of at most sixteen rays (origin, direction, t_max).
-    #[inline(always)]
     pub fn of(rays: impl IntoIterator<Item = ([f32; 3], [f32; 3], f32)>) -> Self {
         let mut packet = Self::default();
         let mut count = 0;
@@ -49,7 +48,6 @@ impl Packet {
     }
 
     /// Sets the ray of a lane.
-    #[inline(always)]
     pub fn set(&mut self, lane: usize, origin: [f32; 3], direction: [f32; 3], t_max: f32) {
         for axis in 0..3 {
             self.origins[axis][lane] = origin[axis];
@@ -59,19 +57,16 @@ impl Packet {
     }
 
     /// Origin of a lane's ray.
-    #[inline(always)]
     pub fn origin(&self, lane: usize) -> [f32; 3] {
         self.origins.map(|axis| axis[lane])
     }
 
     /// Direction of a lane's ray.
-    #[inline(always)]
     pub fn direction(&self, lane: usize) -> [f32; 3] {
         self.directions.map(|axis| axis[lane])
     }
 
     /// Fills the lanes from `count` on with the first ray, inactive, so that all rays of the packet stay in one octant.
-    #[inline(always)]
     pub fn fill(&mut self, count: usize) {
         let (origin, direction) = (self.origin(0), self.direction(0));
         (count..PACKET).for_each(|lane| self.set(lane, origin, direction, -1.0));
@@ -95,7 +90,6 @@ pub(in crate::scene) struct PacketHits {
 
 impl PacketHits {
     /// No hits: distances are the rays' t_max.
-    #[inline(always)]
     pub fn none(packet: &Packet) -> Self {
         Self {
             t: packet.t_max,
@@ -106,7 +100,6 @@ impl PacketHits {
     }
 
     /// Records a hit that is no farther than the lane's current one. Returns true if it replaces that.
-    #[inline(always)]
     fn add<const ANY: bool>(&mut self, lane: usize, t: f32, areas: [f32; 3], triangle: u32) -> bool {
         let mark = self.first + triangle + 1;
         // At equal distance the lowest index wins, so that the order of traversal does not matter.
@@ -124,13 +117,11 @@ impl PacketHits {
     }
 
     /// True if the lane has a hit.
-    #[inline(always)]
     pub fn is_hit(&self, lane: usize) -> bool {
         self.marks[lane] != 0
     }
 
     /// Hit of a lane.
-    #[inline(always)]
     pub fn hit(&self, lane: usize) -> Option<Hit> {
         let areas = [self.areas[0][lane], self.areas[1][lane], self.areas[2][lane]];
         Some(Hit::of(self.t[lane], self.marks[lane].checked_sub(1)?, areas))
@@ -146,19 +137,16 @@ struct LaneSink<'f, const ANY: bool> {
 }
 
 impl<const ANY: bool> HitSink for LaneSink<'_, ANY> {
-    #[inline(always)]
     fn t_max(&self) -> f32 {
         self.hits.t[self.lane]
     }
 
-    #[inline(always)]
     fn record(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
         self.is_closer |= self.hits.add::<ANY>(self.lane, t, areas, triangle);
     }
 }
 
 /// Octant of a direction: its signs (bits 0 to 2) and its longest axis (bits 3 and 4). Rays of a packet share it.
-#[inline(always)]
 pub fn ray_octant(direction: [f32; 3]) -> usize {
     let [x, y, z] = direction.map(f32::abs);
     let longest = if z >= x && z >= y {

@@ -72,7 +72,6 @@ pub(super) struct ClosestHit {
 
 impl ClosestHit {
     /// No hit yet with t < `t_max`.
-    #[inline(always)]
     pub fn before(t_max: f32) -> Self {
         Self {
             t: t_max,
@@ -81,19 +80,16 @@ impl ClosestHit {
         }
     }
 
-    #[inline(always)]
     pub fn hit(&self) -> Option<Hit> {
         Some(Hit::of(self.t, self.triangle?, self.areas))
     }
 }
 
 impl HitSink for ClosestHit {
-    #[inline(always)]
     fn t_max(&self) -> f32 {
         self.t
     }
 
-    #[inline(always)]
     fn record(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
         let is_first = || self.triangle.is_some_and(|other| triangle < other);
         if t < self.t || is_first() {
@@ -286,7 +282,6 @@ struct Children {
 
 impl Children {
     /// Takes the next child and prefetches it, because memory latency dominates traversal.
-    #[inline(always)]
     fn take(&mut self, wide: &Wide, node: &Node) -> Entry {
         let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
         self.children &= self.children - 1;
@@ -429,17 +424,14 @@ pub(super) struct Entry(u64);
 impl Entry {
     pub const ROOT: Self = Self(0);
 
-    #[inline(always)]
     pub fn new(distance: f32, child: u32) -> Self {
         Self(u64::from(distance.to_bits()) << 32 | u64::from(child))
     }
 
-    #[inline(always)]
     pub fn child(self) -> u32 {
         self.0 as u32
     }
 
-    #[inline(always)]
     fn distance(self) -> f32 {
         f32::from_bits((self.0 >> 32) as u32)
     }
@@ -453,7 +445,6 @@ pub(super) struct Stack {
 }
 
 impl Stack {
-    #[inline(always)]
     pub fn new() -> Self {
         Self {
             entries: [const { MaybeUninit::uninit() }; STACK_SIZE],
@@ -461,13 +452,11 @@ impl Stack {
         }
     }
 
-    #[inline(always)]
     pub fn push(&mut self, entry: Entry) {
         self.entries[self.height].write(entry);
         self.height += 1;
     }
 
-    #[inline(always)]
     pub fn pop(&mut self) -> Option<Entry> {
         self.height = self.height.checked_sub(1)?;
         // SAFETY: everything below the height that was has been written by `push` or `insert`.
@@ -475,7 +464,6 @@ impl Stack {
     }
 
     /// Pops the next entry that is no farther than `t_max`.
-    #[inline(always)]
     pub fn pop_before(&mut self, t_max: f32) -> Option<Entry> {
         loop {
             let entry = self.pop()?;
@@ -486,7 +474,6 @@ impl Stack {
     }
 
     /// Inserts an entry below the nearer entries from `base` on.
-    #[inline(always)]
     pub fn insert(&mut self, entry: Entry, base: usize) {
         let mut at = self.height;
         self.height += 1;

@@ -18,31 +18,27 @@ pub struct TextureMean {
 
 /// Mean of a texture map.
 pub fn texture_mean(picture: &Texture) -> TextureMean {
-    let mut sums = [0_u64; 4];
-    for texel in picture.rgba8.as_chunks::<4>().0 {
-        sums.iter_mut()
-            .zip(texel)
-            .for_each(|(sum, code)| *sum += u64::from(*code));
-    }
-    let texels = (picture.rgba8.len() / 4).max(1) as f64;
-    TextureMean {
-        codes: sums.map(|sum| (sum as f64 / (255.0 * texels)) as f32),
-        linear: mean_linear(picture),
-    }
-}
-
-/// Mean of sRGB codes, linear.
-fn mean_linear(picture: &Texture) -> [f32; 3] {
-    let mut counts = [[0u32; CODES]; 3];
-    for texel in picture.rgba8.as_chunks::<4>().0 {
+    let mut counts = [[0_u32; CODES]; 4];
+    let texels = picture.rgba8.as_chunks::<4>().0;
+    for texel in texels {
         for (counts, code) in counts.iter_mut().zip(texel) {
             counts[usize::from(*code)] += 1;
         }
     }
-    let texels = (picture.rgba8.len() / 4).max(1) as f64;
-    counts.map(|counts| {
-        let linear = |code: usize| linear_from_srgb(Vec3::<f64>::splat(code as f64 / 255.0)).x;
-        let sum: f64 = (0..CODES).map(|code| f64::from(counts[code]) * linear(code)).sum();
-        (sum / texels) as f32
-    })
+    let texels = texels.len().max(1) as f64;
+    let sum = |counts: [u32; CODES]| {
+        (0..)
+            .zip(counts)
+            .map(|(code, count)| code * u64::from(count))
+            .sum::<u64>()
+    };
+    let [red, green, blue, _] = counts;
+    TextureMean {
+        codes: counts.map(|counts| (sum(counts) as f64 / (255.0 * texels)) as f32),
+        linear: [red, green, blue].map(|counts| {
+            let linear = |code: usize| linear_from_srgb(Vec3::<f64>::splat(code as f64 / 255.0)).x;
+            let sum: f64 = (0..CODES).map(|code| f64::from(counts[code]) * linear(code)).sum();
+            (sum / texels) as f32
+        }),
+    }
 }

@@ -22,10 +22,9 @@ use crate::optics::material::{
     COATS_BASE, MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY, coat_blur,
 };
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::{Real, Scalar};
+use crate::optics::prelude::*;
 use crate::optics::table::table_lookup;
 use crate::optics::target::TextureTarget as On;
-use crate::optics::vector::{Vec3, vec3};
 
 pub use crate::optics::target::{TextureTarget, TextureValues};
 pub use mean::{TextureMean, texture_mean};
@@ -93,7 +92,6 @@ pub fn texture_lookup<T: Scalar>(textures: &Textures, index: u32, uvs: Uvs<T>) -
 }
 
 /// Value of a target's texture at a surface point, if there is one.
-#[inline(always)]
 fn material_lookup<T: Scalar>(
     textures: &Textures,
     material: &Material<T>,
@@ -123,7 +121,7 @@ fn filtered<T: Scalar>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>)
         let place = |x: T, size: u32| (x.to_f64() as u32).min(size - 1);
         return texel(textures, record, place(x, record.width), place(y, record.height));
     }
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     let (left, top) = ((x - half).floor(), (y - half).floor());
     let columns = neighbours(left, record.width, wrap[0]);
     let rows = neighbours(top, record.height, wrap[1]);
@@ -143,9 +141,9 @@ fn mix_texels<T: Scalar>((a, a_alpha): (Vec3<T>, T), (b, b_alpha): (Vec3<T>, T),
 /// A place along one side of a texture, brought into [0, 1].
 pub fn wrapped<T: Scalar>(place: T, wrap: u32) -> T {
     match wrap {
-        WRAP_CLAMP => place.clamp(T::zero(), T::one()),
+        WRAP_CLAMP => place.clamp(T::ZERO, T::ONE),
         WRAP_MIRRORED => {
-            let two = T::from_f64(2.0);
+            let two = T::TWO;
             let turn = place - two * (place / two).floor();
             turn.min(two - turn)
         }
@@ -194,7 +192,6 @@ fn texel<T: Scalar>(textures: &Textures, record: &TextureRecord, column: u32, ro
 }
 
 /// Texture coordinates at the barycentric weights of a triangle; box projection only if `has_box`.
-#[inline(always)]
 pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
     let corners = geometry.vertices(triangle);
     let sum = |number: &dyn Fn(&Vertex) -> f32| {
@@ -210,7 +207,7 @@ pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], 
             let smooth = between(geometry.normals(triangle).map(Vec3::from_f32));
             box_uv(between(places), normalize_or(smooth, triangle_normal(places)))
         } else {
-            [T::zero(); 2]
+            [T::ZERO; 2]
         },
     ]
 }
@@ -218,7 +215,7 @@ pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], 
 /// Horizontal axis of the box side that a surface with this normal faces: seen from outside, with +Y up, and −Z up on top.
 pub fn box_right<T: Scalar>(normal: Vec3<T>) -> Vec3<T> {
     let [x, y, z] = normal.to_f64();
-    let axis = |x: f64, z: f64| vec3(T::from_f64(x), T::zero(), T::from_f64(z));
+    let axis = |x: f64, z: f64| vec3(T::from_f64(x), T::ZERO, T::from_f64(z));
     if x.abs() >= y.abs() && x.abs() >= z.abs() {
         axis(0.0, if x < 0.0 { 1.0 } else { -1.0 })
     } else if y.abs() >= z.abs() {
@@ -238,7 +235,7 @@ fn box_uv<T: Scalar>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
         true => position.z,
         false => -position.y,
     };
-    let half = T::from_f64(0.5);
+    let half = T::HALF;
     [box_right(normal).dot(position) * half + half, down * half + half]
 }
 
@@ -281,7 +278,7 @@ pub fn textured_material<T: Scalar>(
         }
         // The refraction keeps its extra roughness.
         let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
-        at_point.transmission_roughness = rough.clamp(T::zero(), T::one());
+        at_point.transmission_roughness = rough.clamp(T::ZERO, T::ONE);
     }
     let is_shared = material.texture(On::Metalness) == material.texture(On::Roughness);
     let of_metalness = if is_shared { of_roughness } else { value(On::Metalness) };
@@ -319,15 +316,7 @@ pub fn textured_materials<T: Real>(
     vertex_color: Vec3<T>,
 ) -> Material<T> {
     let colors = vertex_color.to_each();
-    let at = T::each(|lane| {
-        TexturedNumbers::of(textured_material(
-            textures,
-            tables,
-            of_lane,
-            uvs.as_ref()[lane],
-            colors.as_ref()[lane],
-        ))
-    });
+    let at = T::each(|lane| TexturedNumbers::of(textured_material(textures, tables, of_lane, uvs[lane], colors[lane])));
     TexturedNumbers::over(at.as_ref(), material)
 }
 
@@ -341,7 +330,6 @@ macro_rules! textured_numbers {
         }
 
         impl<S: Scalar> TexturedNumbers<S> {
-            #[inline(always)]
             fn of(at: Material<S>) -> Self {
                 Self { $($color: at.$color,)* $($number: at.$number,)* }
             }
@@ -372,7 +360,7 @@ pub fn vertex_factors<T: Scalar>(
     triangle: usize,
     weights: [T; 3],
 ) -> (Vec3<T>, T) {
-    let (mut color, mut alpha) = (Vec3::splat(T::one()), T::one());
+    let (mut color, mut alpha) = (Vec3::ONE, T::ONE);
     if !material.has_flag(VERTEX_EMISSION | VERTEX_OPACITY) {
         return (color, alpha);
     }
@@ -399,7 +387,7 @@ pub fn emission_at<T: Scalar>(
     let share = if material.has_holes() {
         opacity_at(textures, material, uvs, alpha)
     } else {
-        T::one()
+        T::ONE
     };
     let radiance = material.emission * color * share;
     match material_lookup(textures, material, On::Emission, uvs) {
@@ -418,7 +406,7 @@ pub fn put_coat<T: Scalar>(material: &mut Material<T>, textures: &Textures, uvs:
     }
     if let Some((values, _)) = material_lookup(textures, material, On::CoatRoughness, uvs) {
         material.coat_roughness = material.coat_roughness * values.y;
-        if T::zero().less(material.coat_blur) {
+        if material.coat_blur.above_zero() {
             material.coat_blur = coat_blur(material.coat_roughness);
         }
     }
@@ -439,8 +427,8 @@ pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: U
 /// Effective opacity of a surface point: 0 or 1 for a masked material.
 fn stopped_share<T: Scalar>(material: &Material<T>, opacity: T) -> T {
     let cutoff = material.alpha_cutoff;
-    let masked = T::select(opacity.less(cutoff), T::zero(), T::one());
-    T::select(cutoff.less(T::zero()), opacity, masked)
+    let masked = T::select(opacity.less(cutoff), T::ZERO, T::ONE);
+    T::select(cutoff.below_zero(), opacity, masked)
 }
 
 /// The normal of a normal map, in world space. `tangent` and the bitangent's sign are the geometry's, `normal` the
@@ -454,7 +442,7 @@ pub fn mapped_normal<T: Scalar>(
 ) -> Vec3<T> {
     let record = &textures.records[texture as usize];
     let (texel, _) = filtered(textures, record, uvs);
-    let signed = |x: T| T::from_f64(2.0) * x - T::one();
+    let signed = |x: T| T::TWO * x - T::ONE;
     let (mut x, mut y) = (signed(texel.x) * strength, signed(texel.y) * strength);
     if record.flags & TURNS_NORMALS != 0 {
         let [a, b, _] = record.u_from_uv.map(|x| T::from_f64(f64::from(x)));
@@ -464,11 +452,11 @@ pub fn mapped_normal<T: Scalar>(
     }
     let is_box = record.flags & IS_BOX != 0;
     let tangent = if is_box { box_right(outward) } else { tangent };
-    let along = frame_from_tangent(normal, tangent, T::zero());
+    let along = frame_from_tangent(normal, tangent, T::ZERO);
     let is_left = !is_box && sign.to_f64() < 0.0;
     let bitangent = if is_left { -along.bitangent } else { along.bitangent };
     // A normal that points into the surface is bent onto it.
-    let up = signed(texel.z).max(T::zero());
+    let up = signed(texel.z).max(T::ZERO);
     let mapped = along.tangent * x + bitangent * y + normal * up;
     normalize_or(mapped, normal)
 }

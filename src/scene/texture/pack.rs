@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::mean::{TextureMean, texture_mean};
 use super::scale::{fraction, halved};
+use super::user::UserTexture;
 use super::uses::{SlotUses, TextureAssignment, Use, of_slot, of_user_texture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
 use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
@@ -24,10 +25,17 @@ pub type Pictures<'a> = &'a dyn Fn(&Path, bool) -> Result<Arc<Texture>, String>;
 /// A user's texture map, or the reason why it cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UserTextureFile {
-    /// File of the map.
     pub file: PathBuf,
-    /// The map, or the error.
     pub picture: Result<Arc<Texture>, String>,
+    is_srgb: bool,
+    /// Index among the packed maps, if readable.
+    index: Option<usize>,
+}
+
+impl UserTextureFile {
+    fn is_of(&self, texture: &UserTexture, target: TextureTarget) -> bool {
+        self.file == texture.file && self.is_srgb == texture.is_srgb(target)
+    }
 }
 
 /// Texture data of a model.
@@ -108,19 +116,10 @@ fn vertex_flags(slot: &Slot) -> u32 {
 pub struct Pack {
     words: Arc<Vec<u32>>,
     pictures: Vec<Packed>,
-    user_textures: Vec<PackedUserTexture>,
+    user_textures: Vec<UserTextureFile>,
     /// Whether the triangles of each slot have texture coordinates.
     has_coordinates: Vec<bool>,
     warnings: Vec<String>,
-}
-
-/// A packed user's map.
-#[derive(Debug)]
-struct PackedUserTexture {
-    is_srgb: bool,
-    /// Index among the packed maps, if readable.
-    index: Option<usize>,
-    source: UserTextureFile,
 }
 
 /// A packed map.
@@ -150,38 +149,33 @@ impl Pack {
 
     fn within(model: &Model, assigned: &[TextureAssignment], read: Pictures<'_>, words_max: usize) -> Self {
         let mut warnings = Vec::new();
-        let mut user_textures: Vec<PackedUserTexture> = Vec::new();
+        let mut user_textures: Vec<UserTextureFile> = Vec::new();
         let mut count = model.textures.len();
         for TextureAssignment { target, texture, .. } in assigned {
-            let is_srgb = texture.is_srgb(*target);
-            if user_textures
-                .iter()
-                .any(|user| user.source.file == texture.file && user.is_srgb == is_srgb)
-            {
+            if user_textures.iter().any(|user| user.is_of(texture, *target)) {
                 continue;
             }
-            let picture = read(&texture.file, is_srgb);
+            let (file, is_srgb) = (texture.file.clone(), texture.is_srgb(*target));
+            let picture = read(&file, is_srgb);
             if let Err(why) = &picture {
                 warnings.push(format!(
                     "{}: the {} texture can't be had: {why}; put the file there, or choose another",
-                    texture.file.display(),
+                    file.display(),
                     target.label().to_lowercase()
                 ));
             }
             let index = picture.is_ok().then_some(count);
             count += usize::from(picture.is_ok());
-            user_textures.push(PackedUserTexture {
+            user_textures.push(UserTextureFile {
+                file,
+                picture,
                 is_srgb,
                 index,
-                source: UserTextureFile {
-                    file: texture.file.clone(),
-                    picture,
-                },
             });
         }
         let read: Vec<Arc<Texture>> = user_textures
             .iter()
-            .filter_map(|user| user.source.picture.clone().ok())
+            .filter_map(|user| user.picture.clone().ok())
             .collect();
         let all: Vec<&Texture> = model.textures.iter().chain(read.iter().map(Arc::as_ref)).collect();
         let mut pack = Self {
@@ -222,8 +216,7 @@ impl Pack {
         let is_translucent = |picture: usize| self.pictures[picture].is_translucent;
         let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
         for assignment in assigned {
-            let (file, is_srgb) = assignment.picture();
-            let is_it = |user: &&PackedUserTexture| user.is_srgb == is_srgb && user.source.file == file;
+            let is_it = |user: &&UserTextureFile| user.is_of(&assignment.texture, assignment.target);
             let picture = self.user_textures.iter().find(is_it).and_then(|user| user.index);
             let has_coordinates = self.has_coordinates.get(assignment.slot) == Some(&true);
             let used = |picture| of_user_texture(assignment, picture, is_translucent(picture), has_coordinates);
@@ -241,7 +234,7 @@ impl Pack {
             words: self.words.clone(),
             slots: Vec::new(),
             warnings: self.warnings.clone(),
-            user_textures: self.user_textures.iter().map(|user| user.source.clone()).collect(),
+            user_textures: self.user_textures.clone(),
         };
         for (slot, uses) in model.slots.iter().zip(self.uses(model, assigned)) {
             let mut packed = SlotTextures {
@@ -307,17 +300,15 @@ impl Packed {
             return;
         }
         *first = Some(words.len() as u32);
+        // A flipped green channel counts from the other end.
+        let green = if used.is_flipped { u16::MAX } else { 0 };
         if is_fine {
-            let upside_down = if used.is_flipped { 0xffff_0000 } else { 0 };
             let texels = picture.rgba16.as_chunks::<4>().0.iter();
-            words.extend(texels.flat_map(|[r, g, b, a]| {
-                let pair = |low: &u16, high: &u16| u32::from(*low) | u32::from(*high) << 16;
-                [pair(r, g) ^ upside_down, pair(b, a)]
-            }));
+            let pair = |low: u16, high: u16| u32::from(low) | u32::from(high) << 16;
+            words.extend(texels.flat_map(|[r, g, b, a]| [pair(*r, g ^ green), pair(*b, *a)]));
         } else {
-            let upside_down = if used.is_flipped { 0x0000_ff00 } else { 0 };
             let texels = picture.rgba8.as_chunks::<4>().0.iter();
-            words.extend(texels.map(|texel| u32::from_le_bytes(*texel) ^ upside_down));
+            words.extend(texels.map(|[r, g, b, a]| u32::from_le_bytes([*r, g ^ green as u8, *b, *a])));
         }
     }
 

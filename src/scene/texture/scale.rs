@@ -14,27 +14,6 @@ pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
     }
 }
 
-/// A number of a channel as texture maps store it.
-trait Code: Copy + PartialEq + Into<usize> {
-    const MOST: usize;
-    /// The number nearest to one within its range.
-    fn nearest(number: f64) -> Self;
-}
-
-impl Code for u8 {
-    const MOST: usize = 255;
-    fn nearest(number: f64) -> Self {
-        number.round() as Self
-    }
-}
-
-impl Code for u16 {
-    const MOST: usize = 65535;
-    fn nearest(number: f64) -> Self {
-        number.round() as Self
-    }
-}
-
 /// Half a width and height.
 fn half(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| (side / 2).max(1))
@@ -54,13 +33,13 @@ pub fn nearest_of_16(code: u16) -> u8 {
 pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
     let size = [picture.width, picture.height];
     let [width, height] = half(size);
-    let rgba16 = halved_codes(&picture.rgba16, size, is_color);
+    let rgba16 = halved_codes(&picture.rgba16, 65535, |code| code as u16, size, is_color);
     Texture {
         name: picture.name.clone(),
         width,
         height,
         rgba8: match rgba16.is_empty() {
-            true => halved_codes(&picture.rgba8, size, is_color),
+            true => halved_codes(&picture.rgba8, 255, |code| code as u8, size, is_color),
             false => rgba16.iter().copied().map(nearest_of_16).collect(),
         },
         rgba16,
@@ -68,58 +47,56 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
 }
 
 /// The same of one kind of codes, by box filtering; colours are filtered linearly.
-fn halved_codes<C: Code>(codes: &[C], size: [u32; 2], is_color: bool) -> Vec<C> {
+fn halved_codes<C: Copy + PartialEq + Into<usize>>(
+    codes: &[C],
+    most: usize,
+    code: impl Fn(f64) -> C,
+    size: [u32; 2],
+    is_color: bool,
+) -> Vec<C> {
     if codes.is_empty() {
         return Vec::new();
     }
     let decoded = |code: usize| {
-        let fraction = code as f64 / C::MOST as f64;
-        match is_color {
-            true => linear_from_srgb(Vec3::splat(fraction)).x,
-            false => fraction,
+        let fraction = code as f64 / most as f64;
+        if is_color {
+            linear_from_srgb(Vec3::splat(fraction)).x
+        } else {
+            fraction
         }
     };
-    let values: Vec<f64> = (0..=C::MOST).map(decoded).collect();
+    let values: Vec<f64> = (0..=most).map(decoded).collect();
     let [width, height] = size.map(|side| side as usize);
     let [to_width, to_height] = half(size).map(|side| side as usize);
     let texels = codes.as_chunks::<4>().0;
-    let texel = |place: usize| {
-        let (columns, rows) = (
-            span(place % to_width, width, to_width),
-            span(place / to_width, height, to_height),
-        );
-        let of_row = |row: usize| &texels[row * width..][columns.clone()];
-        mean(|| rows.clone().flat_map(of_row), &values, is_color)
+    // The mean of the texels that one covers, of which there is one at least.
+    let mean = |place: usize| {
+        let columns = span(place % to_width, width, to_width);
+        let rows = span(place / to_width, height, to_height);
+        let covered = || rows.clone().flat_map(|row| &texels[row * width..][columns.clone()]);
+        let mut others = covered();
+        // Large maps of little content mostly have equal texels.
+        if let Some(first) = others.next()
+            && others.all(|texel| texel == first)
+        {
+            return *first;
+        }
+        let (mut sums, mut count) = ([0.0; 4], 0.0);
+        for texel in covered() {
+            let [r, g, b, a] = texel.map(Into::<usize>::into);
+            let of_texel = [values[r], values[g], values[b], a as f64 / most as f64];
+            sums.iter_mut().zip(of_texel).for_each(|(sum, value)| *sum += value);
+            count += 1.0;
+        }
+        let [r, g, b, a] = sums.map(|sum| sum / count);
+        let color = if is_color {
+            srgb_from_linear(vec3(r, g, b))
+        } else {
+            vec3(r, g, b)
+        };
+        [color.x, color.y, color.z, a].map(|value| code((most as f64 * value).round()))
     };
-    (0..to_width * to_height).flat_map(texel).collect()
-}
-
-/// Mean of some texels, of which there is one at least; `values` are the colours' by code.
-fn mean<'a, C: Code + 'a, I: Iterator<Item = &'a [C; 4]>>(
-    texels: impl Fn() -> I,
-    values: &[f64],
-    is_color: bool,
-) -> [C; 4] {
-    let mut others = texels();
-    // Large maps of little content mostly have equal texels.
-    if let Some(first) = others.next()
-        && others.all(|texel| texel == first)
-    {
-        return *first;
-    }
-    let (mut sums, mut count) = ([0.0; 4], 0.0);
-    for texel in texels() {
-        let [r, g, b, a] = texel.map(Into::<usize>::into);
-        let of_texel = [values[r], values[g], values[b], a as f64 / C::MOST as f64];
-        sums.iter_mut().zip(of_texel).for_each(|(sum, value)| *sum += value);
-        count += 1.0;
-    }
-    let [r, g, b, a] = sums.map(|sum| sum / count);
-    let mut color = vec3(r, g, b);
-    if is_color {
-        color = srgb_from_linear(color);
-    }
-    [color.x, color.y, color.z, a].map(|value| C::nearest(C::MOST as f64 * value))
+    (0..to_width * to_height).flat_map(mean).collect()
 }
 
 /// A map halved until its sides are at most `side_max`, and the original size if it was larger.

@@ -21,34 +21,35 @@ enum Meaning {
 use Meaning::{Is, IsInverted, Other, Packed};
 use TextureTarget as To;
 
-/// Known words, in lower case without separators. A word of two parts comes before its parts.
-#[rustfmt::skip]
-const WORDS: &[(&str, Meaning)] = &[
-    ("basecolor", Is(To::BaseColor)), ("basecolour", Is(To::BaseColor)), ("albedo", Is(To::BaseColor)),
-    ("diffuse", Is(To::BaseColor)), ("diff", Is(To::BaseColor)), ("color", Is(To::BaseColor)),
-    ("colour", Is(To::BaseColor)), ("col", Is(To::BaseColor)), ("bc", Is(To::BaseColor)),
-    ("metallicroughness", Packed), ("roughnessmetallic", Packed), ("orm", Packed), ("arm", Packed), ("aorm", Packed),
-    ("roughness", Is(To::Roughness)), ("rough", Is(To::Roughness)), ("rgh", Is(To::Roughness)),
-    ("glossiness", IsInverted(To::Roughness)), ("gloss", IsInverted(To::Roughness)),
-    ("smoothness", IsInverted(To::Roughness)),
-    ("metalness", Is(To::Metalness)), ("metallic", Is(To::Metalness)), ("metal", Is(To::Metalness)),
-    ("normaldx", IsInverted(To::Normal)), ("nordx", IsInverted(To::Normal)), ("nrmdx", IsInverted(To::Normal)),
-    ("normaldirectx", IsInverted(To::Normal)),
-    ("normalgl", Is(To::Normal)), ("norgl", Is(To::Normal)), ("nrmgl", Is(To::Normal)),
-    ("normalopengl", Is(To::Normal)), ("normal", Is(To::Normal)), ("normals", Is(To::Normal)),
-    ("nor", Is(To::Normal)), ("nrm", Is(To::Normal)), ("norm", Is(To::Normal)),
-    ("opacity", Is(To::Opacity)), ("alpha", Is(To::Opacity)), ("opac", Is(To::Opacity)),
-    ("transparency", IsInverted(To::Opacity)),
-    ("emission", Is(To::Emission)), ("emissive", Is(To::Emission)), ("emit", Is(To::Emission)),
-    ("clearcoat", Is(To::Coat)), ("coat", Is(To::Coat)),
-    ("clearcoatroughness", Is(To::CoatRoughness)), ("coatroughness", Is(To::CoatRoughness)),
-    ("clearcoatnormal", Is(To::CoatNormal)), ("coatnormal", Is(To::CoatNormal)),
-    ("coatcolor", Is(To::CoatColor)), ("coatcolour", Is(To::CoatColor)),
-    ("fuzz", Is(To::Fuzz)), ("fuzzroughness", Is(To::FuzzRoughness)),
-    ("fuzzcolor", Is(To::FuzzColor)), ("fuzzcolour", Is(To::FuzzColor)),
-    ("ao", Other), ("ambientocclusion", Other), ("occlusion", Other), ("displacement", Other), ("disp", Other),
-    ("height", Other), ("bump", Other), ("specular", Other), ("spec", Other), ("preview", Other), ("thumbnail", Other),
-    ("sheen", Other), ("anisotropy", Other), ("thickness", Other), ("curvature", Other), ("id", Other),
+/// Known words, in lower case without separators. Of several words in a row the longest counts.
+const WORDS: &[(Meaning, &str)] = &[
+    (
+        Is(To::BaseColor),
+        "basecolor basecolour albedo diffuse diff color colour col bc",
+    ),
+    (Packed, "metallicroughness roughnessmetallic orm arm aorm"),
+    (Is(To::Roughness), "roughness rough rgh"),
+    (IsInverted(To::Roughness), "glossiness gloss smoothness"),
+    (Is(To::Metalness), "metalness metallic metal"),
+    (IsInverted(To::Normal), "normaldx nordx nrmdx normaldirectx"),
+    (
+        Is(To::Normal),
+        "normalgl norgl nrmgl normalopengl normal normals nor nrm norm",
+    ),
+    (Is(To::Opacity), "opacity alpha opac"),
+    (IsInverted(To::Opacity), "transparency"),
+    (Is(To::Emission), "emission emissive emit"),
+    (Is(To::Coat), "clearcoat coat"),
+    (Is(To::CoatRoughness), "clearcoatroughness coatroughness"),
+    (Is(To::CoatNormal), "clearcoatnormal coatnormal"),
+    (Is(To::CoatColor), "coatcolor coatcolour"),
+    (Is(To::Fuzz), "fuzz"),
+    (Is(To::FuzzRoughness), "fuzzroughness"),
+    (Is(To::FuzzColor), "fuzzcolor fuzzcolour"),
+    (
+        Other,
+        "ao ambientocclusion occlusion displacement disp height bump specular spec preview thumbnail sheen anisotropy thickness curvature id",
+    ),
 ];
 
 /// The words of a file name in lower case: split at characters other than letters and digits, and before a capital after a
@@ -77,20 +78,15 @@ fn words(path: &Path) -> Vec<String> {
 fn meaning(path: &Path) -> Option<Meaning> {
     let words = words(path);
     let known = |text: &str| {
-        WORDS
+        let row = WORDS
             .iter()
-            .find(|(word, _)| *word == text)
-            .map(|(_, meaning)| *meaning)
+            .find(|(_, known)| known.split(' ').any(|word| word == text));
+        row.map(|(meaning, _)| *meaning)
     };
     (1..=words.len()).rev().find_map(|end| {
         let longest = (end.saturating_sub(3)..end).map(|start| words[start..end].concat());
         longest.into_iter().find_map(|text| known(&text))
     })
-}
-
-/// True if a file name announces roughness in green and metalness in blue.
-fn is_packed(path: &Path) -> bool {
-    meaning(path) == Some(Packed)
 }
 
 impl UserTexture {
@@ -103,8 +99,9 @@ impl UserTexture {
             TextureChannel::Alpha => 3,
             TextureChannel::Auto => match target {
                 TextureTarget::Opacity if has_alpha => 3,
-                TextureTarget::Roughness if is_packed(&self.file) => 1,
-                TextureTarget::Metalness if is_packed(&self.file) => 2,
+                // A file name may announce roughness in green and metalness in blue.
+                To::Roughness if meaning(&self.file) == Some(Packed) => 1,
+                To::Metalness if meaning(&self.file) == Some(Packed) => 2,
                 _ => 0,
             },
         }
@@ -116,13 +113,13 @@ pub fn targets_of(path: &Path) -> Vec<(TextureTarget, UserTexture)> {
     let plain = || UserTexture::of(path.to_owned());
     match meaning(path) {
         Some(Is(target)) => vec![(target, plain())],
-        Some(IsInverted(target)) => {
-            let inverted = UserTexture {
+        Some(IsInverted(target)) => vec![(
+            target,
+            UserTexture {
                 inverted: true,
                 ..plain()
-            };
-            vec![(target, inverted)]
-        }
+            },
+        )],
         Some(Packed) => vec![(To::Roughness, plain()), (To::Metalness, plain())],
         Some(Other) | None => Vec::new(),
     }

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use super::user::{TextureProjection, UserTexture};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_NEAREST, IS_SECOND_SET, IS_SRGB, TURNS_NORMALS, WRAP_SHIFT};
-use super::{WRAP_CLAMP, WRAP_MIRRORED, WRAP_REPEAT};
 use crate::optics::target::TextureTarget;
 use crate::scene::model::{Filter, Slot, TextureRef, Wrap};
 
@@ -59,9 +58,9 @@ pub(super) fn of_slot(slot: &Slot, is_translucent: impl Fn(usize) -> bool) -> Sl
         let reference = slot.texture(target)?;
         let is_seen = target != TextureTarget::Opacity || is_translucent(reference.texture);
         let mut used = of_reference(target, &reference);
-        if target == TextureTarget::FilmThickness && slot.film_thickness > 0.0 {
+        if target == TextureTarget::FilmThickness {
             // From the least thickness to the largest.
-            used.offset = slot.film_thickness_min / slot.film_thickness;
+            used.offset = slot.thinnest;
             used.scale = 1.0 - used.offset;
         }
         is_seen.then_some(used)
@@ -85,13 +84,8 @@ fn of_reference(target: TextureTarget, reference: &TextureRef) -> Use {
     }
 }
 
-fn wrap_flags(wrap: [Wrap; 2]) -> u32 {
-    let [u, v] = wrap.map(|wrap| match wrap {
-        Wrap::Repeat => WRAP_REPEAT,
-        Wrap::MirroredRepeat => WRAP_MIRRORED,
-        Wrap::ClampToEdge => WRAP_CLAMP,
-    });
-    u << WRAP_SHIFT | v << (WRAP_SHIFT + 2)
+fn wrap_flags([u, v]: [Wrap; 2]) -> u32 {
+    (u as u32) << WRAP_SHIFT | (v as u32) << (WRAP_SHIFT + 2)
 }
 
 /// A use of a user's map with its index, whether it is translucent anywhere, and whether the slot's triangles have texture

@@ -5,39 +5,27 @@ use std::path::Path;
 use serde_json::Value as Json;
 
 use super::surface::{Surface, Takes};
-use super::{ExchangeError, Format, Subject, Written, carried, shown};
-
-/// Scripts for Blender 4 and later.
-pub struct Blender;
+use super::{ExchangeError, Subject, Written, carried, shown};
 
 const TAKES: Takes = Takes {
     widths: Surface::disney_widths,
     lacks: [
         Takes::OPEN_PBR.lacks[0],
-        &[
-            "transmission.depth",
-            "coat.anisotropy",
-            "coat.on_base",
-            "coat.darkening",
-            "thin_film.weight",
-            "specular.on_metal",
-        ],
+        "transmission.depth coat.anisotropy coat.on_base coat.darkening thin_film.weight specular.on_metal",
     ],
     ..Takes::OPEN_PBR
 };
 
-impl Format for Blender {
-    fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
-        let mut text = HEAD.to_owned();
-        let mut reports = Vec::new();
-        for material in &subject.materials {
-            let (surface, report) = shown(material, &TAKES);
-            text += &format!("\n# {}\n", carried::comment(material));
-            text += &call(&surface, &carried::line(material));
-            reports.push(report);
-        }
-        Ok(Written::text(text, reports))
+pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
+    let mut text = HEAD.to_owned();
+    let mut reports = Vec::new();
+    for material in &subject.materials {
+        let (surface, report) = shown(material, &TAKES);
+        text += &format!("\n# {}\n", carried::comment(material));
+        text += &call(&surface, &carried::line(material));
+        reports.push(report);
     }
+    Ok(Written::text(text, reports))
 }
 
 const HEAD: &str = r#"# Materials of Glossmith for Blender: Text Editor > Open > Run Script. The new materials are in the list of materials.

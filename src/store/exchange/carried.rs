@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value as Json};
 
-use super::{ExchangeError, Subject};
+use super::{ExchangeError, ReadOptions, Subject};
 use crate::document::MaterialSettings;
 use crate::store::{file, preset};
 
@@ -47,7 +47,7 @@ pub fn from_json(json: Json) -> Option<MaterialSettings> {
 }
 
 /// The materials in the comments of a file.
-pub fn in_comments(path: &Path) -> Result<Subject, ExchangeError> {
+pub fn in_comments(path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = file::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let found: Vec<_> = text

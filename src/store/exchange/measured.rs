@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::report::{Entry, MaterialReport, Residual};
-use super::{ExchangeError, Format, Subject, Written};
+use super::{ExchangeError, Subject, Written};
 use crate::analysis::fit::merl::{CELLS, FILE_LENGTH, SCALES};
 use crate::compile::compile;
 use crate::document::MaterialSettings;
@@ -12,38 +12,29 @@ use crate::optics::material::{Material, Surface};
 use crate::optics::vector::{Vec3, vec3};
 use crate::parallel;
 
-/// `.binary` files.
-pub struct Measured;
-
 /// Least cosine that reflectances are asked at: at 0 there is none.
 const COSINE_MIN: f64 = 1e-3;
 
-impl Format for Measured {
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let material = subject.only(path)?;
-        let reflectance = Reflectance::of(material).map_err(|reason| ExchangeError::Unsuitable {
-            path: path.to_owned(),
-            reason,
-        })?;
-        let cells = parallel::map(CELLS.iter().product(), |cell| reflectance.both_ways(cell));
-        let mut bytes = Vec::with_capacity(FILE_LENGTH);
-        bytes.extend(CELLS.iter().flat_map(|count| (*count as i32).to_le_bytes()));
-        for (channel, scale) in SCALES.into_iter().enumerate() {
-            for [there, back] in &cells {
-                let mean = 0.5 * (there.to_f64()[channel] + back.to_f64()[channel]);
-                bytes.extend((mean / scale).to_le_bytes());
-            }
+pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+    let material = subject.only(path)?;
+    let reflectance = Reflectance::of(material).map_err(|reason| ExchangeError::Unsuitable {
+        path: path.to_owned(),
+        reason,
+    })?;
+    let cells = parallel::map(CELLS.iter().product(), |cell| reflectance.both_ways(cell));
+    let mut bytes = Vec::with_capacity(FILE_LENGTH);
+    bytes.extend(CELLS.iter().flat_map(|count| (*count as i32).to_le_bytes()));
+    for (channel, scale) in SCALES.into_iter().enumerate() {
+        for [there, back] in &cells {
+            let mean = 0.5 * (there.to_f64()[channel] + back.to_f64()[channel]);
+            bytes.extend((mean / scale).to_le_bytes());
         }
-        Ok(Written {
-            bytes,
-            beside: None,
-            materials: vec![report(material, &cells)],
-        })
     }
-
-    fn is_text(&self) -> bool {
-        false
-    }
+    Ok(Written {
+        bytes,
+        beside: None,
+        materials: vec![report(material, &cells)],
+    })
 }
 
 fn report(material: &MaterialSettings, cells: &[[Vec3<f64>; 2]]) -> MaterialReport {
@@ -102,7 +93,7 @@ impl Reflectance {
 
     fn at(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> Vec3<f64> {
         if wo.z <= 0.0 || wi.z <= 0.0 {
-            return Vec3::zero();
+            return Vec3::ZERO;
         }
         let (material, tables, surface) = (&self.material, &self.tables, Surface::upwards(wo));
         let layers = material_layers(material, tables, &surface);

@@ -4,13 +4,10 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::surface::{Law, Surface, Takes};
-use super::xml::{Element, identifier, numbers};
-use super::{ExchangeError, Format, Subject, Written, carried, shown};
+use super::xml::{HEAD, element, identifier, numbers};
+use super::{ExchangeError, Subject, Written, carried, shown};
 use crate::document::MaterialSettings;
 use crate::optics::fresnel::Fresnel;
-
-/// Scenes for Mitsuba 3.
-pub struct Mitsuba;
 
 /// The material that stands for another one there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,167 +50,125 @@ impl Kind {
                 Surface::widths
             },
             lacks: [
-                &[
-                    "base.diffuse_roughness",
-                    "base.color_texture",
-                    "specular.multiple_scattering",
-                    "specular.weight_in_index",
-                    "specular.edge_tint",
-                    "specular.on_metal",
-                    "coat.ior",
-                    "coat.color",
-                    "coat.anisotropy",
-                    "coat.on_base",
-                    "coat.darkening",
-                    "fuzz.weight",
-                    "thin_film.weight",
-                    "thin_film.thickness",
-                    "transmission.depth",
-                    "transmission.roughness",
-                ],
+                "base.diffuse_roughness base.color_texture specular.multiple_scattering specular.weight_in_index \
+                 specular.edge_tint specular.on_metal coat.ior coat.color coat.anisotropy coat.on_base coat.darkening \
+                 fuzz.weight thin_film.weight thin_film.thickness transmission.depth transmission.roughness",
                 match self {
-                    Self::Diffuse => &["specular.eta", "specular.weight", "specular.color", "coat.weight"],
-                    Self::Conductor => &["specular.weight", "specular.color", "coat.weight"],
-                    Self::Glass => &["specular.eta", "coat.weight"],
-                    Self::Principled => &["specular.eta", "specular.weight", "specular.color"],
+                    Self::Diffuse => "specular.eta specular.weight specular.color coat.weight",
+                    Self::Conductor => "specular.weight specular.color coat.weight",
+                    Self::Glass => "specular.eta coat.weight",
+                    Self::Principled => "specular.eta specular.weight specular.color",
                 },
             ],
         }
     }
 }
 
-impl Format for Mitsuba {
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let material = subject.only(path)?;
-        let kind = Kind::of(material);
-        let (surface, mut report) = shown(material, &kind.takes());
-        report.entries.splice(0..0, surface.rotation_loss());
-        let name = identifier(&material.name, &mut HashMap::new());
-        let mut bsdf = match kind {
-            Kind::Diffuse => bsdf("diffuse").child(rgb("reflectance", surface.base_color)),
-            Kind::Conductor => conductor(material, &surface),
-            Kind::Glass => glass(&surface),
-            Kind::Principled => principled(&surface),
-        };
-        if kind != Kind::Glass && !(kind == Kind::Principled && surface.transmission_weight > 0.0) {
-            bsdf = Element::new("bsdf").with("type", "twosided").child(bsdf);
-        }
-        if surface.opacity < 1.0 {
-            bsdf = Element::new("bsdf")
-                .with("type", "mask")
-                .child(float("opacity", surface.opacity))
-                .child(bsdf);
-        }
-        let scene = scene(bsdf.with("id", name.clone()), &name, surface.emission());
-        let text = scene.document(Some(&carried::comment(material)));
-        Ok(Written::text(text, vec![report]))
+pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+    let material = subject.only(path)?;
+    let kind = Kind::of(material);
+    let (surface, mut report) = shown(material, &kind.takes());
+    report.entries.splice(0..0, surface.rotation_loss());
+    let name = identifier(&material.name, &mut HashMap::new());
+    let (kind_name, parameters) = match kind {
+        Kind::Diffuse => ("diffuse", rgb("reflectance", surface.base_color)),
+        Kind::Conductor => ("roughconductor", conductor(material, &surface)),
+        Kind::Glass => glass(&surface),
+        Kind::Principled => ("principled", principled(&surface)),
+    };
+    let (mut head, mut inside) = (format!("bsdf type=\"{kind_name}\""), parameters);
+    if kind != Kind::Glass && !(kind == Kind::Principled && surface.transmission_weight > 0.0) {
+        (head, inside) = ("bsdf type=\"twosided\"".to_owned(), element(&head, &inside));
     }
+    if surface.opacity < 1.0 {
+        inside = float("opacity", surface.opacity) + &element(&head, &inside);
+        head = "bsdf type=\"mask\"".to_owned();
+    }
+    let bsdf = element(&format!("{head} id=\"{name}\""), &inside);
+    let mut ball = format!("<ref name=\"bsdf\" id=\"{name}\" />\n");
+    if surface.emission().iter().any(|x| *x > 0.0) {
+        ball += &element("emitter type=\"area\"", &rgb("radiance", surface.emission()));
+    }
+    let ball = element("shape type=\"sphere\"", &ball);
+    let inside = format!("<integrator type=\"path\" />\n{bsdf}{SENSOR}{ball}{LIGHT}");
+    let scene = element("scene version=\"3.0.0\"", &inside);
+    let text = format!("{HEAD}<!-- {} -->\n{scene}", carried::comment(material));
+    Ok(Written::text(text, vec![report]))
 }
 
-fn bsdf(kind: &'static str) -> Element {
-    Element::new("bsdf").with("type", kind)
+const SENSOR: &str = r#"<sensor type="perspective">
+  <float name="fov" value="35" />
+  <transform name="to_world">
+    <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0" />
+  </transform>
+  <film type="hdrfilm">
+    <integer name="width" value="256" />
+    <integer name="height" value="256" />
+  </film>
+  <sampler type="independent">
+    <integer name="sample_count" value="64" />
+  </sampler>
+</sensor>
+"#;
+const LIGHT: &str = r#"<emitter type="constant">
+  <rgb name="radiance" value="1, 1, 1" />
+</emitter>"#;
+const GGX: &str = "<string name=\"distribution\" value=\"ggx\" />\n";
+
+fn rgb(name: &str, value: [f32; 3]) -> String {
+    format!("<rgb name=\"{name}\" value=\"{}\" />\n", numbers(&value))
 }
 
-fn rgb(name: &'static str, value: [f32; 3]) -> Element {
-    Element::new("rgb").with("name", name).with("value", numbers(&value))
+fn float(name: &str, value: f32) -> String {
+    format!("<float name=\"{name}\" value=\"{value}\" />\n")
 }
 
-fn float(name: &'static str, value: f32) -> Element {
-    Element::new("float")
-        .with("name", name)
-        .with("value", value.to_string())
-}
-
-fn text(name: &'static str, value: &'static str) -> Element {
-    Element::new("string").with("name", name).with("value", value)
-}
-
-fn conductor(material: &MaterialSettings, surface: &Surface) -> Element {
+fn conductor(material: &MaterialSettings, surface: &Surface) -> String {
     let [along, across] = surface.alphas();
     let tint = material.specular_color.map(|x| x * material.specular_weight);
-    bsdf("roughconductor")
-        .child(text("distribution", "ggx"))
-        .child(float("alpha_u", along.max(1e-4)))
-        .child(float("alpha_v", across.max(1e-4)))
-        .child(rgb("eta", material.eta))
-        .child(rgb("k", material.k))
-        .child(rgb("specular_reflectance", tint))
+    [
+        GGX.to_owned(),
+        float("alpha_u", along.max(1e-4)),
+        float("alpha_v", across.max(1e-4)),
+        rgb("eta", material.eta),
+        rgb("k", material.k),
+        rgb("specular_reflectance", tint),
+    ]
+    .concat()
 }
 
-fn glass(surface: &Surface) -> Element {
+fn glass(surface: &Surface) -> (&'static str, String) {
     let [along, across] = surface.alphas();
-    let is_smooth = along < 1e-3;
-    let mut glass = if is_smooth {
-        bsdf("dielectric")
-    } else {
-        bsdf("roughdielectric").child(text("distribution", "ggx"))
-    };
-    if !is_smooth {
-        glass.push(float("alpha_u", along));
-        glass.push(float("alpha_v", across));
-    }
     let tint = surface.specular_color.map(|x| x * surface.specular_weight);
     let through = if surface.transmission_depth > 0.0 {
         [1.0; 3]
     } else {
         surface.transmission_color
     };
-    glass
-        .child(float("int_ior", surface.ior.max(1.0001)))
-        .child(float("ext_ior", 1.0))
-        .child(rgb("specular_reflectance", tint))
-        .child(rgb("specular_transmittance", through))
-}
-
-fn principled(surface: &Surface) -> Element {
-    let principled = bsdf("principled")
-        .child(rgb("base_color", surface.base_color))
-        .child(float("metallic", surface.metalness))
-        .child(float("roughness", surface.roughness))
-        .child(float("anisotropic", surface.disney_anisotropy()))
-        .child(float("spec_trans", surface.transmission_weight))
-        .child(float("clearcoat", surface.coat_weight))
-        .child(float("clearcoat_gloss", 1.0 - surface.coat_roughness));
-    principled.child(float("eta", surface.ior.max(1.0001)))
-}
-
-fn scene(bsdf: Element, name: &str, emission: [f32; 3]) -> Element {
-    let look = Element::new("lookat")
-        .with("origin", "0, 0, 4")
-        .with("target", "0, 0, 0")
-        .with("up", "0, 1, 0");
-    let film = Element::new("film")
-        .with("type", "hdrfilm")
-        .child(Element::new("integer").with("name", "width").with("value", "256"))
-        .child(Element::new("integer").with("name", "height").with("value", "256"));
-    let sampler = Element::new("sampler")
-        .with("type", "independent")
-        .child(Element::new("integer").with("name", "sample_count").with("value", "64"));
-    let sensor = Element::new("sensor")
-        .with("type", "perspective")
-        .child(float("fov", 35.0))
-        .child(Element::new("transform").with("name", "to_world").child(look))
-        .child(film)
-        .child(sampler);
-    let mut ball = Element::new("shape")
-        .with("type", "sphere")
-        .child(Element::new("ref").with("name", "bsdf").with("id", name));
-    if emission.iter().any(|x| *x > 0.0) {
-        ball.push(
-            Element::new("emitter")
-                .with("type", "area")
-                .child(rgb("radiance", emission)),
-        );
+    let smooth = [
+        float("int_ior", surface.ior.max(1.0001)),
+        float("ext_ior", 1.0),
+        rgb("specular_reflectance", tint),
+        rgb("specular_transmittance", through),
+    ]
+    .concat();
+    if along < 1e-3 {
+        return ("dielectric", smooth);
     }
-    Element::new("scene")
-        .with("version", "3.0.0")
-        .child(Element::new("integrator").with("type", "path"))
-        .child(bsdf)
-        .child(sensor)
-        .child(ball)
-        .child(
-            Element::new("emitter")
-                .with("type", "constant")
-                .child(rgb("radiance", [1.0; 3])),
-        )
+    let rough = [GGX, &float("alpha_u", along), &float("alpha_v", across), &smooth].concat();
+    ("roughdielectric", rough)
+}
+
+fn principled(surface: &Surface) -> String {
+    let floats = [
+        ("metallic", surface.metalness),
+        ("roughness", surface.roughness),
+        ("anisotropic", surface.disney_anisotropy()),
+        ("spec_trans", surface.transmission_weight),
+        ("clearcoat", surface.coat_weight),
+        ("clearcoat_gloss", 1.0 - surface.coat_roughness),
+        ("eta", surface.ior.max(1.0001)),
+    ];
+    let floats: String = floats.into_iter().map(|(name, value)| float(name, value)).collect();
+    rgb("base_color", surface.base_color) + &floats
 }

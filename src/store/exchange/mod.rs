@@ -1,18 +1,15 @@
-//! Materials in other programs' formats, there and back: one file a format behind one trait, one line in a registry.
+//! Materials in other programs' formats, there and back: one file a format, one line in a registry.
 //!
 //! None of them has the geometric lobe. What is written is the GGX that looks nearest ([`surface`]), a report says how far
 //! off it is ([`report`]), and the exact parameters travel along where the format leaves room for them ([`carried`]).
 
 mod blender;
 pub mod carried;
-mod coat;
 mod gltf;
 mod materialx;
 mod measured;
 mod mitsuba;
 mod native;
-mod open_pbr;
-mod reflection;
 pub mod report;
 mod snippet;
 pub mod surface;
@@ -37,26 +34,16 @@ use crate::scene::path_text::path_of_text;
 pub use self::materialx::{SURFACES, SurfaceKind};
 pub use self::snippet::Language;
 
-/// A format that materials are written in or read from.
-pub trait Format: Sync {
-    /// The bytes of the file that `path` names.
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError>;
-
-    /// What a file holds, where the format is read; as a rule the exact parameters in its comments.
-    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let _ = options;
-        carried::in_comments(path)
-    }
-
-    /// Whether its files are text, which fits a clipboard.
-    fn is_text(&self) -> bool {
-        true
-    }
-
-    /// Whether it takes a model with all its materials.
-    fn takes_models(&self) -> bool {
-        false
-    }
+/// What the files of a format have in them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Holds {
+    /// Glossmith's own: materials and documents, as text.
+    Documents,
+    /// Materials of another program, as text, which fits a clipboard.
+    Materials,
+    /// A model with all its materials.
+    Model,
+    Measurement,
 }
 
 /// A line of the registry.
@@ -67,18 +54,32 @@ pub struct Registered {
     pub label: &'static str,
     /// Endings of its files, without the dot. What several formats share belongs to the first.
     pub extensions: &'static [&'static str],
-    /// Whether files of it are read.
-    pub is_read: bool,
-    /// Whether files of it are written.
-    pub is_written: bool,
+    holds: Holds,
+    write: fn(&Subject, &Path) -> Result<Written, ExchangeError>,
+    /// None of a format that is only written.
+    read: Option<fn(&Path, ReadOptions) -> Result<Subject, ExchangeError>>,
     pub help: &'static str,
-    pub format: &'static dyn Format,
 }
 
 impl Registered {
+    /// Whether files of it are read.
+    pub fn is_read(&self) -> bool {
+        self.read.is_some()
+    }
+
+    /// Whether its files are text, which fits a clipboard.
+    pub fn is_text(&self) -> bool {
+        matches!(self.holds, Holds::Documents | Holds::Materials)
+    }
+
+    /// Whether it takes a model with all its materials.
+    pub fn takes_models(&self) -> bool {
+        self.holds == Holds::Model
+    }
+
     /// Whether its files hold materials of another program, and nothing else that is opened.
     pub fn is_material_alone(&self) -> bool {
-        self.is_read && self.name != "glossmith" && !self.format.takes_models()
+        self.is_read() && self.holds == Holds::Materials
     }
 }
 
@@ -88,46 +89,50 @@ impl std::fmt::Debug for Registered {
     }
 }
 
-/// The lines of the registry.
 macro_rules! registered {
-    ($($name:literal, $label:literal, $extensions:expr, $read:literal, $write:literal, $format:expr, $help:literal;)*) => {
+    ($($name:literal $label:literal $extensions:expr, $holds:ident $write:expr, $read:expr, $help:literal;)*) => {
         &[$(Registered {
             name: $name,
             label: $label,
             extensions: &$extensions,
-            is_read: $read,
-            is_written: $write,
+            holds: Holds::$holds,
+            write: $write,
+            read: $read,
             help: $help,
-            format: &$format,
         },)*]
     };
 }
 
-/// Every format, in the order of the menus: name, label, endings, whether it is read and written, where it is, what it is.
+/// Every format, in the order of the menus: name, label, endings, what it holds, how it is written and read, what it is.
 pub static FORMATS: &[Registered] = registered! {
-    "glossmith", "Glossmith", ["json", "png"], true, true, native::Native,
+    "glossmith" "Glossmith" ["json", "png"], Documents native::write, Some(native::read),
         "Glossmith's own materials and projects; images with a document inside are read.";
-    "materialx", "MaterialX, OpenPBR", ["mtlx"], true, true, materialx::MaterialX { is_standard: false },
+    "materialx" "MaterialX, OpenPBR" ["mtlx"], Materials |subject, _| materialx::write(subject, false), Some(materialx::read),
         "MaterialX 1.39 with an OpenPBR surface.";
-    "standard-surface", "MaterialX, Standard Surface", ["mtlx"], true, true, materialx::MaterialX { is_standard: true },
+    "standard-surface" "MaterialX, Standard Surface" ["mtlx"], Materials |subject, _| materialx::write(subject, true), Some(materialx::read),
         "MaterialX 1.39 with a standard_surface.";
-    "gltf", "glTF", ["glb", "gltf"], true, true, gltf::Gltf,
+    "gltf" "glTF" ["glb", "gltf"], Model gltf::write, Some(gltf::read),
         "glTF 2.0: a project's model with its materials and textures, or a ball with the material.";
-    "usd", "USD", ["usda"], true, true, usd::Usd,
+    "usd" "USD" ["usda"], Materials usd::write, Some(usd::read),
         "USD as text, with UsdPreviewSurface, which is read, and an OpenPBR surface of MaterialX.";
-    "mitsuba", "Mitsuba 3", ["xml"], true, true, mitsuba::Mitsuba,
+    "mitsuba" "Mitsuba 3" ["xml"], Materials mitsuba::write, Some(carried::in_comments),
         "A scene for Mitsuba 3: a ball with the material. Read are the exact parameters alone.";
-    "blender", "Blender", ["py"], true, true, blender::Blender,
+    "blender" "Blender" ["py"], Materials blender::write, Some(carried::in_comments),
         "A Python script that makes the material in Blender. Read are the exact parameters alone.";
-    "merl", "MERL measurement", ["binary"], false, true, measured::Measured,
+    "merl" "MERL measurement" ["binary"], Measurement measured::write, None,
         "The whole reflectance in a table, as the MERL BRDF database has it.";
-    "table", "Table of the lobe", ["csv"], true, true, table::Table,
+    "table" "Table of the lobe" ["csv"], Materials table::write, Some(carried::in_comments),
         "Values and densities of the lobe over directions. Read are the exact parameters alone.";
-    "glsl", "Sampler in GLSL", ["glsl"], true, true, Language::Glsl, "A function that samples the geometric lobe.";
-    "wgsl", "Sampler in WGSL", ["wgsl"], true, true, Language::Wgsl, "A function that samples the geometric lobe.";
-    "hlsl", "Sampler in HLSL", ["hlsl"], true, true, Language::Hlsl, "A function that samples the geometric lobe.";
-    "osl", "Sampler in OSL", ["osl"], true, true, Language::Osl, "A function that samples the geometric lobe.";
-    "c", "Sampler in C", ["c", "h"], true, true, Language::C, "A function that samples the geometric lobe.";
+    "glsl" "Sampler in GLSL" ["glsl"], Materials |subject, path| Language::Glsl.write(subject, path), Some(carried::in_comments),
+        "A function that samples the geometric lobe.";
+    "wgsl" "Sampler in WGSL" ["wgsl"], Materials |subject, path| Language::Wgsl.write(subject, path), Some(carried::in_comments),
+        "A function that samples the geometric lobe.";
+    "hlsl" "Sampler in HLSL" ["hlsl"], Materials |subject, path| Language::Hlsl.write(subject, path), Some(carried::in_comments),
+        "A function that samples the geometric lobe.";
+    "osl" "Sampler in OSL" ["osl"], Materials |subject, path| Language::Osl.write(subject, path), Some(carried::in_comments),
+        "A function that samples the geometric lobe.";
+    "c" "Sampler in C" ["c", "h"], Materials |subject, path| Language::C.write(subject, path), Some(carried::in_comments),
+        "A function that samples the geometric lobe.";
 };
 
 /// How files are read.
@@ -274,9 +279,7 @@ pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
 
 /// The endings of the files that are written for other programs.
 pub fn endings_written() -> Vec<&'static str> {
-    let written = FORMATS
-        .iter()
-        .filter(|format| format.is_written && format.name != "glossmith");
+    let written = FORMATS.iter().filter(|format| format.holds != Holds::Documents);
     let mut endings: Vec<&str> = written.flat_map(|format| format.extensions).copied().collect();
     endings.dedup();
     endings
@@ -334,11 +337,10 @@ pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialS
 
 /// What a file holds.
 pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-    let registered = by_ending(path)?;
-    if !registered.is_read {
-        return Err(ExchangeError::NotRead { path: path.to_owned() });
+    match by_ending(path)?.read {
+        Some(read) => read(path, options),
+        None => Err(ExchangeError::NotRead { path: path.to_owned() }),
     }
-    registered.format.read(path, options)
 }
 
 /// A file that is made and not written yet, with what it loses.
@@ -367,7 +369,7 @@ impl Prepared {
 
 /// Makes the file of a subject and reports what becomes of it. `input` is only named in the report.
 pub fn prepare(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Prepared, ExchangeError> {
-    let mut written = format.format.write(subject, path)?;
+    let mut written = (format.write)(subject, path)?;
     for (report, losses) in written.materials.iter_mut().zip(&subject.losses) {
         report.entries.splice(0..0, losses.iter().cloned());
     }

@@ -3,36 +3,31 @@
 use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written};
+use super::{ExchangeError, ReadOptions, Subject, Written};
 use crate::store::opened::{self, Opened};
 use crate::store::preset::material_text;
 use crate::store::project::own_text;
 
-/// Materials, projects and images with a document inside.
-pub struct Native;
-
-impl Format for Native {
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let ending = path.extension().unwrap_or_default();
-        if ending.eq_ignore_ascii_case("png") {
-            return Err(ExchangeError::NotWritten { path: path.to_owned() });
-        }
-        let text = match &subject.document {
-            Some(document) if subject.materials.len() > 1 => own_text(path, document)?,
-            _ => material_text(path, subject.only(path)?),
-        };
-        let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);
-        Ok(Written::text(text, subject.materials.iter().map(report).collect()))
+pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+    let ending = path.extension().unwrap_or_default();
+    if ending.eq_ignore_ascii_case("png") {
+        return Err(ExchangeError::NotWritten { path: path.to_owned() });
     }
+    let text = match &subject.document {
+        Some(document) if subject.materials.len() > 1 => own_text(path, document)?,
+        _ => material_text(path, subject.only(path)?),
+    };
+    let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);
+    Ok(Written::text(text, subject.materials.iter().map(report).collect()))
+}
 
-    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        Ok(match opened::open(path)? {
-            Opened::Material(material) => Subject::of(material.value),
-            Opened::Document(document) | Opened::Picture(document) => Subject {
-                materials: document.value.materials.clone(),
-                document: Some(Box::new(document.value)),
-                losses: Vec::new(),
-            },
-        })
-    }
+pub fn read(path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+    Ok(match opened::open(path)? {
+        Opened::Material(material) => Subject::of(material.value),
+        Opened::Document(document) | Opened::Picture(document) => Subject {
+            materials: document.value.materials.clone(),
+            document: Some(Box::new(document.value)),
+            losses: Vec::new(),
+        },
+    })
 }

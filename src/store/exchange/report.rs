@@ -92,6 +92,11 @@ impl Entry {
         }
     }
 
+    /// What of a material is left out where its specular lobe alone is written.
+    pub fn all_but_the_lobe(detail: &str) -> Self {
+        Self::dropped("colours, base, coat, refraction", detail)
+    }
+
     /// A part that is left out.
     pub fn dropped(what: impl Into<String>, detail: impl Into<String>) -> Self {
         Self {

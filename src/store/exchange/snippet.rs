@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use super::report::{Entry, MaterialReport};
-use super::{ExchangeError, Format, Subject, Written, carried};
+use super::{ExchangeError, Subject, Written, carried};
 use crate::document::MaterialSettings;
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::{Horizon, Lobe, stretch_from_anisotropy};
@@ -24,8 +24,9 @@ pub enum Language {
     C,
 }
 
-impl Format for Language {
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+impl Language {
+    /// The function for a material.
+    pub fn write(self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
         let material = subject.only(path)?;
         if material.lobe != Lobe::Geometric {
             return Err(ExchangeError::Unsuitable {
@@ -38,10 +39,7 @@ impl Format for Language {
             });
         }
         let detail = "the function draws directions; multiply by your own Fresnel factor";
-        let entries = vec![
-            Entry::dropped("colours, base, coat, refraction", detail),
-            Entry::exact("the lobe's sampling"),
-        ];
+        let entries = vec![Entry::all_but_the_lobe(detail), Entry::exact("the lobe's sampling")];
         Ok(Written::text(
             self.function(material),
             vec![MaterialReport::of(material, entries)],
@@ -49,90 +47,116 @@ impl Format for Language {
     }
 }
 
+/// What the languages that have C's declarations write for WGSL's; the kind of a vector is still to be written.
+const AS_IN_C: [(&str, &str); 8] = [
+    ("fn distance(xi: f32) -> f32", "float distance(float xi)"),
+    (
+        "fn sample(wo: vec3f, xi: vec3f) -> vec3f",
+        "vec3f sample(vec3f wo, vec3f xi)",
+    ),
+    // Constants are not indexed by variables in WGSL.
+    ("    var curve = curve_values;\n", ""),
+    ("f32(low)", "low"),
+    ("var low", "int low"),
+    ("let ", "float "),
+    ("var ", "float "),
+    ("vec3f ", "VECTOR "),
+];
+
+/// What C itself writes besides.
+const IN_C: [(&str, &str); 12] = [
+    ("VECTOR sample", "static inline VECTOR sample"),
+    ("float distance(", "static inline float distance("),
+    ("⟨", "(vec3){"),
+    ("⟩", "}"),
+    ("\'", "f"),
+    ("sqrt(", "sqrtf("),
+    ("pow(", "powf("),
+    ("log(", "logf("),
+    ("sin(", "sinf("),
+    ("cos(", "cosf("),
+    ("max(", "fmaxf("),
+    ("min(", "fminf("),
+];
+
+/// The quantile of a density that is linear between the nodes of a table (`optics::curve::custom_distance`).
+const CUSTOM: &str = "    var curve = curve_values;
+    var low = 0;
+    while (low < LAST && curve[low + 2] <= xi) {
+        low = low + 1;
+    }
+    let width = curve[0] / INTERVALS';
+    let left = curve[low + FIRST];
+    let right = curve[low + NEXT];
+    let missing = max(xi - curve[low + 1], 0.0');
+    let root = sqrt(max(left * left + 2.0' * (right - left) / width * missing, 0.0'));
+    let step = 2.0' * missing / max(left + root, 1e-12');
+    return width * f32(low) + min(step, width);
+";
+
+/// A point on the unit sphere, lifted by R.
+const SAMPLE: &str = "fn sample(wo: vec3f, xi: vec3f) -> vec3f {
+    let ball_x = 2.0' * xi.x - 1.0';
+    let ring = sqrt(max(1.0' - ball_x * ball_x, 0.0'));
+    let phi = TAU' * xi.y;
+    let distance = distance(xi.z);
+    let along = ALONG' * ball_x;
+    let across = ACROSS' * ring * sin(phi);
+    let up = UP' * (ring * cos(phi) + UP');
+    let x = distance * TURNED_X - KEEP' * wo.x;
+    let y = distance * TURNED_Y - KEEP' * wo.y;
+    var z = distance * up + KEEP' * wo.z;
+    let size = sqrt(x * x + y * y + z * z);
+MIRROR    if (size < 1e-20') {
+        return ⟨0.0', 0.0', 1.0'⟩;
+    }
+    return ⟨x / size, y / size, z / size⟩;
+}
+";
+
 impl Language {
-    fn vector(self) -> &'static str {
-        match self {
+    /// Code in this language. In `wgsl` a vector stands in angle brackets, and an apostrophe behind a number that is not whole.
+    fn translated(self, wgsl: &str) -> String {
+        let replaced = |text: String, (from, to): &(&str, &str)| text.replace(from, to);
+        let mut text = wgsl.to_owned();
+        if self != Self::Wgsl {
+            text = AS_IN_C.iter().fold(text, replaced);
+        }
+        if self == Self::C {
+            text = IN_C.iter().fold(text, replaced);
+        }
+        let vector = match self {
             Self::Glsl | Self::C => "vec3",
             Self::Wgsl => "vec3f",
             Self::Hlsl => "float3",
             Self::Osl => "vector",
-        }
-    }
-
-    /// A vector of three numbers.
-    fn vector_of(self, numbers: [&str; 3]) -> String {
-        let numbers = numbers.join(", ");
-        match self {
-            Self::C => format!("(vec3){{{numbers}}}"),
-            _ => format!("{}({numbers})", self.vector()),
-        }
-    }
-
-    /// A number as it is written in code.
-    fn number(self, x: f64) -> String {
-        let text = format!("{:?}", x as f32);
-        match self {
-            Self::C => format!("{text}f"),
-            _ => text,
-        }
-    }
-
-    /// The name of a function of C's library.
-    fn of_library(self, name: &str) -> String {
-        match self {
-            Self::C => format!("{name}f"),
-            _ => name.to_owned(),
-        }
-    }
-
-    /// A line that names a number; one that is assigned again where `is_variable`.
-    fn named(self, name: &str, value: &str, is_variable: bool) -> String {
-        match self {
-            Self::Wgsl if is_variable => format!("    var {name} = {value};\n"),
-            Self::Wgsl => format!("    let {name} = {value};\n"),
-            _ => format!("    float {name} = {value};\n"),
-        }
-    }
-
-    /// The head of a function of numbers that gives a number or a vector.
-    fn head(self, name: &str, gives_vector: bool, arguments: &[(&str, bool)]) -> String {
-        let kind = |is_vector: bool| match (self, is_vector) {
-            (_, true) => self.vector(),
-            (Self::Wgsl, false) => "f32",
-            _ => "float",
         };
-        let arguments: Vec<String> = arguments
-            .iter()
-            .map(|(name, is_vector)| match self {
-                Self::Wgsl => format!("{name}: {}", kind(*is_vector)),
-                _ => format!("{} {name}", kind(*is_vector)),
-            })
-            .collect();
-        let arguments = arguments.join(", ");
-        match self {
-            Self::Wgsl => format!("fn {name}({arguments}) -> {} {{\n", kind(gives_vector)),
-            Self::C => format!("static inline {} {name}({arguments}) {{\n", kind(gives_vector)),
-            _ => format!("{} {name}({arguments}) {{\n", kind(gives_vector)),
-        }
+        let open = format!("{vector}(");
+        let rest = [
+            ("VECTOR", vector),
+            ("⟨", &open),
+            ("⟩", ")"),
+            ("\'", ""),
+            ("distance(xi", "glossmith_distance(xi"),
+            ("distance(float", "glossmith_distance(float"),
+            ("sample(", "glossmith_sample("),
+            ("curve[", "glossmith_curve["),
+            ("var curve = curve", "var glossmith_curve = glossmith_curve"),
+        ];
+        rest.iter().fold(text, replaced)
     }
 
     /// A constant list of numbers, at the place that the language has for it.
-    fn list(self, name: &str, values: &[f32]) -> String {
-        let numbers: Vec<String> = values.iter().map(|x| self.number(f64::from(*x))).collect();
+    fn list(self, values: &[f32]) -> String {
+        let suffix = if self == Self::C { "f" } else { "" };
+        let numbers: Vec<String> = values.iter().map(|x| format!("{x:?}{suffix}")).collect();
         let (numbers, count) = (numbers.join(", "), values.len());
         match self {
-            Self::Glsl => format!("const float {name}[{count}] = float[{count}]({numbers});\n"),
-            Self::Wgsl => format!("const {name}_values = array<f32, {count}>({numbers});\n"),
-            Self::Hlsl | Self::C => format!("static const float {name}[{count}] = {{{numbers}}};\n"),
-            Self::Osl => format!("    float {name}[{count}] = {{{numbers}}};\n"),
+            Self::Glsl => format!("const float glossmith_curve[{count}] = float[{count}]({numbers});\n"),
+            Self::Wgsl => format!("const glossmith_curve_values = array<f32, {count}>({numbers});\n"),
+            Self::Hlsl | Self::C => format!("static const float glossmith_curve[{count}] = {{{numbers}}};\n"),
+            Self::Osl => format!("    float glossmith_curve[{count}] = {{{numbers}}};\n"),
         }
-    }
-
-    fn function(self, material: &MaterialSettings) -> String {
-        let mut text = self.introduction(material);
-        text += &self.distance_function(material);
-        text += &self.sample_function(material);
-        text
     }
 
     fn introduction(self, material: &MaterialSettings) -> String {
@@ -157,139 +181,70 @@ impl Language {
         text
     }
 
-    /// D(ξ).
-    fn distance_function(self, material: &MaterialSettings) -> String {
-        let head = self.head("glossmith_distance", false, &[("xi", false)]);
-        let n = |x: f64| self.number(x);
-        let f = |name: &str| self.of_library(name);
-        let mut body = String::new();
-        let mut before = String::new();
-        match material.curve {
-            Curve::Linear => body += "    return xi;\n",
-            Curve::Sqrt => body += &format!("    return {}(xi);\n", f("sqrt")),
-            Curve::Cbrt => body += &format!("    return {}(xi, {});\n", f("pow"), n(1.0 / 3.0)),
+    /// D(ξ) and the sampling.
+    fn function(self, material: &MaterialSettings) -> String {
+        let (mut before, mut inside) = (String::new(), String::new());
+        let distance = match material.curve {
+            Curve::Linear => "    return xi;\n".to_owned(),
+            Curve::Sqrt => "    return sqrt(xi);\n".to_owned(),
+            Curve::Cbrt => format!("    return pow(xi, {:?}');\n", 1.0_f32 / 3.0),
             Curve::Smooth => {
-                body += &self.named("root", &format!("{}(xi)", f("sqrt")), false);
-                body += &format!(
-                    "    return root / ({one} + {sqrt}({max}({one} - root, {zero})));\n",
-                    one = n(1.0),
-                    zero = n(0.0),
-                    sqrt = f("sqrt"),
-                    max = self.maximum(),
-                );
+                "    let root = sqrt(xi);\n    return root / (1.0' + sqrt(max(1.0' - root, 0.0')));\n".to_owned()
             }
-            Curve::LongTail => {
-                body += &self.named("root", &format!("{}(xi)", f("sqrt")), false);
-                // 1 − √ξ without cancellation, and above 0 for the largest number below 1.
-                let complement = format!("({one} - xi) / ({one} + root)", one = n(1.0));
-                let least = n(0.5 / 16_777_216.0);
-                body += &format!("    return -{}({}({complement}, {least}));\n", f("log"), self.maximum());
-            }
+            // 1 − √ξ without cancellation, and above 0 for the largest number below 1.
+            Curve::LongTail => format!(
+                "    let root = sqrt(xi);\n    return -log(max((1.0' - xi) / (1.0' + root), {:?}'));\n",
+                0.5_f32 / 16_777_216.0
+            ),
             Curve::Custom => {
-                let list = self.list("glossmith_curve", &curve_numbers(&material.custom_curve.table()));
-                if self == Self::Osl {
-                    body += &list
-                } else {
-                    before += &list
-                }
-                body += &self.custom_curve();
+                let list = self.list(&curve_numbers(&material.custom_curve.table()));
+                *(if self == Self::Osl { &mut inside } else { &mut before }) = list;
+                CUSTOM
+                    .replace("LAST", &(CUSTOM_INTERVALS - 1).to_string())
+                    .replace("FIRST", &(CUSTOM_INTERVALS + 1).to_string())
+                    .replace("NEXT", &(CUSTOM_INTERVALS + 2).to_string())
+                    .replace("INTERVALS", &format!("{:?}", CUSTOM_INTERVALS as f32))
             }
-        }
-        format!("{before}{head}{body}}}\n\n")
-    }
-
-    fn maximum(self) -> &'static str {
-        if self == Self::C { "fmaxf" } else { "max" }
-    }
-
-    /// The quantile of a density that is linear between the nodes of a table (`optics::curve::custom_distance`).
-    fn custom_curve(self) -> String {
-        let n = |x: f64| self.number(x);
-        let (sqrt, max) = (self.of_library("sqrt"), self.maximum());
-        let table = "glossmith_curve";
-        let mut text = String::new();
-        if self == Self::Wgsl {
-            // Constants are not indexed by variables there.
-            text += "    var glossmith_curve = glossmith_curve_values;\n";
-        }
-        text += if self == Self::Wgsl {
-            "    var low = 0;\n"
-        } else {
-            "    int low = 0;\n"
         };
-        let last = CUSTOM_INTERVALS - 1;
-        text += &format!("    while (low < {last} && {table}[low + 2] <= xi) {{\n        low = low + 1;\n    }}\n");
-        text += &self.named("width", &format!("{table}[0] / {}", n(CUSTOM_INTERVALS as f64)), false);
-        let first = CUSTOM_INTERVALS + 1;
-        text += &self.named("left", &format!("{table}[low + {first}]"), false);
-        text += &self.named("right", &format!("{table}[low + {}]", first + 1), false);
-        text += &self.named("missing", &format!("{max}(xi - {table}[low + 1], {})", n(0.0)), false);
-        let square = format!("left * left + {} * (right - left) / width * missing", n(2.0));
-        text += &self.named("root", &format!("{sqrt}({max}({square}, {}))", n(0.0)), false);
-        let step = format!("{} * missing / {max}(left + root, {})", n(2.0), n(1e-12));
-        text += &self.named("step", &step, false);
-        let low = if self == Self::Wgsl { "f32(low)" } else { "low" };
-        let least = if self == Self::C { "fminf" } else { "min" };
-        text += &format!("    return width * {low} + {least}(step, width);\n");
-        text
-    }
-
-    fn sample_function(self, material: &MaterialSettings) -> String {
-        let n = |x: f64| self.number(x);
-        let f = |name: &str| self.of_library(name);
         let roughness = f64::from(material.roughness);
         let stretch = stretch_from_anisotropy(f64::from(material.anisotropy));
         let (sin, cos) = f64::from(material.rotation_deg).to_radians().sin_cos();
-        let mut text = self.head("glossmith_sample", true, &[("wo", true), ("xi", true)]);
-        let mut line = |name: &str, value: String| text += &self.named(name, &value, name == "z");
-        // A point on the unit sphere, lifted by R.
-        line("ball_x", format!("{} * xi.x - {}", n(2.0), n(1.0)));
-        let square = format!("{} - ball_x * ball_x", n(1.0));
-        line(
-            "ring",
-            format!("{}({}({square}, {}))", f("sqrt"), self.maximum(), n(0.0)),
-        );
-        line("phi", format!("{} * xi.y", n(std::f64::consts::TAU)));
-        line("distance", "glossmith_distance(xi.z)".to_owned());
-        line("along", format!("{} * ball_x", n(roughness * stretch)));
-        line(
-            "across",
-            format!("{} * ring * {}(phi)", n(roughness / stretch), f("sin")),
-        );
-        let up = format!("ring * {}(phi) + {}", f("cos"), n(roughness));
-        line("up", format!("{} * ({up})", n(roughness)));
-        let keep = n(1.0 - roughness);
-        let (turned_x, turned_y) = if stretch != 1.0 && material.rotation_deg != 0.0 {
+        let n = |x: f64| format!("{:?}", x as f32);
+        let [mut x, mut y] = ["along", "across"].map(str::to_owned);
+        if stretch != 1.0 && material.rotation_deg != 0.0 {
             let [sin, cos] = [n(sin), n(cos)];
-            (
-                format!("({cos} * along - {sin} * across)"),
-                format!("({sin} * along + {cos} * across)"),
-            )
-        } else {
-            ("along".to_owned(), "across".to_owned())
-        };
-        line("x", format!("distance * {turned_x} - {keep} * wo.x"));
-        line("y", format!("distance * {turned_y} - {keep} * wo.y"));
-        line("z", format!("distance * up + {keep} * wo.z"));
-        line("size", format!("{}(x * x + y * y + z * z)", f("sqrt")));
-        if material.horizon == Horizon::Mirror {
-            text += &format!("    z = {}(z);\n", if self == Self::C { "fabsf" } else { "abs" });
+            x = format!("({cos}' * along - {sin}' * across)");
+            y = format!("({sin}' * along + {cos}' * across)");
         }
-        // R = 1 may leave nothing to normalise.
-        text += &format!("    if (size < {}) {{\n", n(1e-20));
-        text += &format!(
-            "        return {};\n    }}\n",
-            self.vector_of([&n(0.0), &n(0.0), &n(1.0)])
-        );
-        text += &format!(
-            "    return {};\n}}\n",
-            self.vector_of(["x / size", "y / size", "z / size"])
-        );
-        text
+        let mirror = match (material.horizon, self) {
+            (Horizon::Mirror, Self::C) => "    z = fabsf(z);\n",
+            (Horizon::Mirror, _) => "    z = abs(z);\n",
+            _ => "",
+        };
+        let values = [
+            ("TAU", n(std::f64::consts::TAU)),
+            ("ALONG", n(roughness * stretch)),
+            ("ACROSS", n(roughness / stretch)),
+            ("UP", n(roughness)),
+            ("TURNED_X", x),
+            ("TURNED_Y", y),
+            ("KEEP", n(1.0 - roughness)),
+            // R = 1 may leave nothing to normalise.
+            ("MIRROR", mirror.to_owned()),
+        ];
+        let sample = values
+            .iter()
+            .fold(SAMPLE.to_owned(), |text, (key, value)| text.replace(key, value));
+        let head = self.translated("fn distance(xi: f32) -> f32 {\n");
+        let (distance, sample) = (self.translated(&distance), self.translated(&sample));
+        format!(
+            "{}{before}{head}{inside}{distance}}}\n\n{sample}",
+            self.introduction(material)
+        )
     }
 }
 
-/// What [`Language::custom_curve`] reads, each number once: D's maximum, the distribution where each interval begins, the
+/// What [`CUSTOM`] reads, each number once: D's maximum, the distribution where each interval begins, the
 /// density at each node. From a table of `optics::curve`.
 fn curve_numbers(table: &[f32]) -> Vec<f32> {
     let (intervals, _) = table.as_chunks::<NODE_LENGTH>();

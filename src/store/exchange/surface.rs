@@ -1,18 +1,19 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
-use super::reflection::{fresnel_terms, shown_tint};
 use super::report::{Entry, Residual};
 use crate::document::import::ggx_under_texture;
-use crate::document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, Value, parameter};
+use crate::document::{CoatLobe, ImportLobe, MaterialSettings, PARAMETERS, TextureUse, parameter};
 use crate::matching::{lobe_of_material, nearest_ggx};
 use crate::optics::fresnel::{
-    Fresnel, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick, weighted_ior,
 };
 use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
+use crate::optics::material::coat_blur;
+use crate::optics::thin_film::FilmTerms;
 use crate::optics::vector::Vec3;
 use crate::scene::texture::TextureTarget;
 
-/// A material as other programs know it: both lobes are GGX, and what only Glossmith has is that of [`plain`].
+/// A material as other programs know it: both lobes are GGX, and what only Glossmith has is that of [`MaterialSettings::of_file`].
 pub type Surface = MaterialSettings;
 
 /// How a format's dielectric reflects more towards grazing angles.
@@ -30,22 +31,29 @@ pub struct Takes {
     pub law: Law,
     /// The widths of a stretched highlight that it shows, as GGX's α, the longer one first.
     pub widths: fn(&Surface) -> [f32; 2],
-    /// Keys of the parameters that it has no place for. `base.color_texture` is every texture, `thin_film.thickness` the
+    /// Keys of the parameters that it has no place for, with blanks between. `base.color_texture` is every texture, `thin_film.thickness` the
     /// film, `specular.eta` all of a measured metal.
-    pub lacks: [&'static [&'static str]; 2],
+    pub lacks: [&'static str; 2],
 }
 
 impl Takes {
     /// Whether it has a place for a parameter.
     pub fn has(&self, key: &str) -> bool {
-        !self.lacks.iter().any(|keys| keys.contains(&key))
+        !self.lacks().any(|lacking| lacking == key)
+    }
+
+    fn lacks(&self) -> impl Iterator<Item = &'static str> {
+        self.lacks.into_iter().flat_map(str::split_whitespace)
     }
 
     /// What becomes of a part that this parameter is for.
     pub(super) fn part(&self, is_used: bool, key: &str, what: &str, detail: &str) -> Option<Entry> {
-        let entry = || match self.has(key) {
-            true => Entry::exact(what),
-            false => Entry::dropped(what, detail),
+        let entry = || {
+            if self.has(key) {
+                Entry::exact(what)
+            } else {
+                Entry::dropped(what, detail)
+            }
         };
         is_used.then(entry)
     }
@@ -55,22 +63,6 @@ impl Takes {
 const NOTABLE: f64 = 1e-3;
 /// Cosines at which reflectances are compared.
 const COSINES: usize = 64;
-
-/// The surface of a file that says nothing of it.
-pub fn plain() -> Surface {
-    Surface {
-        name: String::new(),
-        metalness: 0.0,
-        specular_on_metal: false,
-        lobe: Lobe::Ggx,
-        roughness: 0.5,
-        coat_lobe: CoatLobe::Ggx,
-        coat_roughness: 0.0,
-        coat_on_base: false,
-        coat_darkening: 0.0,
-        ..Surface::default()
-    }
-}
 
 fn scaled(color: [f32; 3], by: [f32; 3]) -> [f32; 3] {
     [color[0] * by[0], color[1] * by[1], color[2] * by[2]]
@@ -89,11 +81,10 @@ impl Surface {
     /// The material that looks nearest, and what its highlight became.
     pub fn of(material: &MaterialSettings) -> (Self, Entry) {
         let (roughness, entry) = highlight(material);
-        let mut surface = plain();
+        let mut surface = Surface::of_file();
         for parameter in PARAMETERS.iter() {
-            let value = parameter.get(material);
-            if matches!(value, Value::Number(_) | Value::Color(_)) {
-                parameter.put(&mut surface, value);
+            if let Some(numbers) = parameter.rgb(material) {
+                parameter.put_rgb(&mut surface, numbers);
             }
         }
         surface = Self {
@@ -155,33 +146,6 @@ impl Surface {
         }
     }
 
-    /// A material that looks like it. Roughness is GGX's, or that of the lobe that looks like it.
-    pub fn material(&self, lobe: ImportLobe) -> MaterialSettings {
-        let (brightest, emission) = self.strength_and_color();
-        let mut material = MaterialSettings {
-            emission_color: emission,
-            emission_strength: brightest,
-            ..self.clone()
-        };
-        material.bring_into_range();
-        lobe.at_roughest(material.roughness).apply(&mut material);
-        if self.coat_weight > 0.0 {
-            material.set_coat_ggx_roughness(material.coat_roughness, lobe);
-        } else {
-            // That of a new coat.
-            let Surface {
-                coat_lobe,
-                coat_roughness,
-                coat_on_base,
-                coat_darkening,
-                ..
-            } = Surface::default();
-            (material.coat_lobe, material.coat_roughness) = (coat_lobe, coat_roughness);
-            (material.coat_on_base, material.coat_darkening) = (coat_on_base, coat_darkening);
-        }
-        material
-    }
-
     /// What a program shows of a material that takes what `takes` says.
     pub fn as_taken(&self, material: &MaterialSettings, takes: &Takes) -> MaterialSettings {
         let mut taken = self.clone();
@@ -191,8 +155,8 @@ impl Surface {
             let stretch = anisotropy_from_ratio(f64::from(shorter / longer)) as f32;
             taken.anisotropy = stretch.copysign(self.anisotropy);
         }
-        let plain = plain();
-        for parameter in takes.lacks.concat().into_iter().flat_map(parameter) {
+        let plain = Surface::of_file();
+        for parameter in takes.lacks().flat_map(parameter) {
             parameter.put(&mut taken, parameter.get(&plain));
         }
         if takes.law == Law::Exact {
@@ -209,7 +173,7 @@ impl Surface {
         if takes.has("thin_film.thickness") && !takes.has("thin_film.weight") {
             taken.film_weight = f32::from(self.film_weight > 0.0);
         }
-        let mut shown = taken.material(ImportLobe::Ggx);
+        let mut shown = taken.with_lobe(ImportLobe::Ggx, 1.0);
         shown.fresnel = match takes.law {
             _ if takes.has("specular.eta") => material.fresnel,
             Law::Exact => Fresnel::Dielectric,
@@ -261,19 +225,6 @@ impl Surface {
         }
     }
 
-    /// Emitted radiance.
-    pub fn emission(&self) -> [f32; 3] {
-        self.emission_color.map(|x| x * self.emission_strength)
-    }
-
-    /// The brightest channel of the emission and the colour that makes the emission of it; white where there is none.
-    pub fn strength_and_color(&self) -> (f32, [f32; 3]) {
-        let emission = self.emission();
-        let brightest = emission.into_iter().fold(0.0_f32, f32::max);
-        let color = emission.map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });
-        (brightest, color)
-    }
-
     /// What is lost where a highlight lies along the tangent though it is turned.
     pub fn rotation_loss(&self) -> Option<Entry> {
         let is_turned = self.anisotropy != 0.0 && self.ratio_and_rotation().1 != 0.0;
@@ -303,9 +254,10 @@ impl Surface {
             white
         };
         let metal = fresnel_metal(Vec3::from_f32(self.base_color), edge, cosine);
-        let (tint, weight) = match takes.has("specular.weight") {
-            true => (Vec3::from_f32(self.specular_color), f64::from(self.specular_weight)),
-            false => (white, 1.0),
+        let (tint, weight) = if takes.has("specular.weight") {
+            (Vec3::from_f32(self.specular_color), f64::from(self.specular_weight))
+        } else {
+            (white, 1.0)
         };
         let metal = if takes.has("specular.on_metal") {
             metal * weight
@@ -428,6 +380,122 @@ impl Surface {
         };
         Entry::approximated(what, law, Some(Residual::reflectance(worst)))
     }
+
+    /// The coat's narrower width over its wider one.
+    pub fn coat_ratio(&self) -> f32 {
+        let stretch = stretch_from_anisotropy(self.coat_anisotropy.abs());
+        1.0 / (stretch * stretch)
+    }
+
+    /// Sets index and roughness of the base so that a coat which changes both (OpenPBR 1.1, "Coat") leaves the look of one
+    /// that does not.
+    pub(super) fn counter_coat(&mut self) {
+        if self.coat_on_base || self.coat_weight == 0.0 {
+            return;
+        }
+        if let Some(ior) = self.countered_ior() {
+            self.ior = ior;
+        }
+        let below = |roughness: f32| {
+            let blurred = (roughness.powi(4) + coat_blur(self.coat_roughness)).min(1.0).powf(0.25);
+            roughness + (blurred - roughness) * self.coat_weight
+        };
+        let (mut low, mut high) = (0.0, self.roughness);
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            if below(middle) < self.roughness {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        (self.coat_on_base, self.roughness) = (true, rounded(low));
+    }
+
+    /// The index that a coat brings down to that of the base; none where light is refracted by it or a film lies on it.
+    fn countered_ior(&self) -> Option<f32> {
+        let ior = self.ior / (1.0 - self.coat_weight + self.coat_weight / self.coat_ior);
+        let is_free = self.transmission_weight == 0.0 && self.film_weight == 0.0 && ior >= self.coat_ior;
+        is_free.then(|| rounded(ior))
+    }
+
+    /// What becomes of a material's coat.
+    fn coat_losses(&self, material: &MaterialSettings, takes: &Takes) -> Vec<Entry> {
+        if material.coat_weight == 0.0 {
+            return Vec::new();
+        }
+        if !takes.has("coat.weight") {
+            return vec![Entry::dropped("coat", "the format has none")];
+        }
+        let mut entries = Vec::new();
+        let mut part = |is_used, key, what, detail| entries.extend(takes.part(is_used, key, what, detail));
+        let is_tinted = material.coat_ior != 1.5 || material.coat_color != [1.0; 3];
+        part(is_tinted, "coat.ior", "the coat's index and colour", "1.5 and white");
+        let is_stretched = material.coat_anisotropy != 0.0;
+        part(is_stretched, "coat.anisotropy", "the coat's anisotropy", "it is round");
+        let changes = material.coat_on_base || material.coat_darkening > 0.0;
+        let detail = "what lies below keeps its reflection, roughness, brightness and emission";
+        part(changes, "coat.on_base", "what the coat changes below it", detail);
+        if takes.has("coat.on_base") && !material.coat_on_base {
+            let set = match self.countered_ior() {
+                Some(_) => "index and roughness are",
+                None => "roughness is",
+            };
+            let dimmed = if self.emission() == [0.0; 3] {
+                ""
+            } else {
+                "; emission is dimmed"
+            };
+            let detail = format!("the base's {set} set against a coat that always acts on it{dimmed}");
+            entries.push(Entry::approximated("the coat's share in the base", detail, None));
+        }
+        entries.push(match material.coat_lobe {
+            CoatLobe::Geometric => {
+                let detail = format!("GGX of roughness {} stands for its geometric lobe", self.coat_roughness);
+                Entry::approximated("coat", detail, None)
+            }
+            CoatLobe::Ggx => Entry::exact("coat"),
+        });
+        entries
+    }
+}
+
+/// The Fresnel factor's terms of a material as it is edited.
+fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
+    let tint = Vec3::from_f32(shown_tint(material));
+    let weight = f64::from(material.specular_weight);
+    FresnelTerms {
+        model: material.fresnel_model(),
+        metal_f0: Vec3::from_f32(material.base_color) * f64::from(material.base_weight),
+        metalness: f64::from(material.metalness),
+        tint,
+        metal_tint: if material.specular_on_metal {
+            tint * weight
+        } else {
+            Vec3::splat(1.0)
+        },
+        edge_tint: Vec3::from_f32(material.edge_tint),
+        weight: if material.has_weight_in_index() { 1.0 } else { weight },
+        ior: if material.has_weight_in_index() {
+            weighted_ior(material.ior.into(), weight)
+        } else {
+            f64::from(material.ior)
+        },
+        eta: Vec3::from_f32(material.eta),
+        k: Vec3::from_f32(material.k),
+        // A thin film is reported as a part of its own.
+        has_film: false,
+        film: FilmTerms::none(),
+    }
+}
+
+/// The tint that shows: only Schlick's reflectance head-on can be raised, up to 1.
+fn shown_tint(material: &MaterialSettings) -> [f32; 3] {
+    let most = match material.fresnel_model() {
+        Fresnel::Schlick => fresnel_f0(material.ior).recip(),
+        _ => 1.0,
+    };
+    material.specular_color.map(|x| x.min(most))
 }
 
 /// The roughness of GGX that looks like a material's highlight, and how near it comes.

@@ -1,7 +1,6 @@
 //! Documents of elements with attributes, read and written.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use roxmltree::Document;
 
@@ -22,64 +21,17 @@ fn attributes(tag: &str) -> usize {
     tag.split('=').skip(1).filter(is_value).count()
 }
 
-/// An element of a document.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Element {
-    name: &'static str,
-    attributes: Vec<(&'static str, String)>,
-    children: Vec<Element>,
-}
+/// What stands before the elements of a document.
+pub(super) const HEAD: &str = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
 
-impl Element {
-    pub fn new(name: &'static str) -> Self {
-        Self {
-            name,
-            ..Self::default()
-        }
+/// An element of this name and these attributes, with others in it, each on lines of its own.
+pub(super) fn element(head: &str, inside: &str) -> String {
+    if inside.is_empty() {
+        return format!("<{head} />\n");
     }
-
-    /// The same with another attribute.
-    pub fn with(mut self, name: &'static str, value: impl Into<String>) -> Self {
-        self.attributes.push((name, value.into()));
-        self
-    }
-
-    /// The same with another child.
-    pub fn child(mut self, child: Element) -> Self {
-        self.children.push(child);
-        self
-    }
-
-    pub fn push(&mut self, child: Element) {
-        self.children.push(child);
-    }
-
-    /// The document of which it is the root, after a comment where there is one.
-    pub fn document(&self, comment: Option<&str>) -> String {
-        let mut text = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n".to_owned();
-        if let Some(comment) = comment {
-            let _ = writeln!(text, "<!-- {comment} -->");
-        }
-        self.write(&mut text, 0);
-        text
-    }
-
-    fn write(&self, text: &mut String, depth: usize) {
-        let indent = "  ".repeat(depth);
-        let _ = write!(text, "{indent}<{}", self.name);
-        for (name, value) in &self.attributes {
-            let _ = write!(text, " {name}=\"{}\"", escaped(value));
-        }
-        if self.children.is_empty() {
-            text.push_str(" />\n");
-            return;
-        }
-        text.push_str(">\n");
-        for child in &self.children {
-            child.write(text, depth + 1);
-        }
-        let _ = writeln!(text, "{indent}</{}>", self.name);
-    }
+    let name = head.split(' ').next().unwrap_or(head);
+    let inside: String = inside.lines().map(|line| format!("  {line}\n")).collect();
+    format!("<{head}>\n{inside}</{name}>\n")
 }
 
 /// Text as an attribute's value. Control characters, which XML has no place for, are left out.

@@ -58,13 +58,11 @@ pub fn compare(a: &Report, b: &Report) -> Comparison {
 }
 
 fn counterpart<'a>(engine: &EngineReport, of: &Report, among: &'a Report) -> Option<&'a EngineReport> {
-    let same_kind = |report: &'a Report| report.engines.iter().filter(|other| other.engine == engine.engine);
-    let exact = same_kind(among).find(|other| (&other.adapter, &other.backend) == (&engine.adapter, &engine.backend));
-    let is_only = of.engines.iter().filter(|other| other.engine == engine.engine).count() == 1;
-    let only = same_kind(among)
-        .next()
-        .filter(|_| is_only && same_kind(among).count() == 1);
-    exact.or(only)
+    let is_same = |other: &&EngineReport| other.engine == engine.engine;
+    let theirs: Vec<_> = among.engines.iter().filter(is_same).collect();
+    let is_exact = |other: &&EngineReport| other.adapter == engine.adapter && other.backend == engine.backend;
+    let is_only = theirs.len() == 1 && of.engines.iter().filter(is_same).count() == 1;
+    theirs.into_iter().find(|other| is_only || is_exact(other))
 }
 
 fn compared((a, row): (&EngineReport, &Row), (b, other): (&EngineReport, &Row)) -> ComparedRow {

@@ -10,8 +10,9 @@ use tempfile::TempDir;
 use super::report::EngineReport;
 use super::scene::Scene;
 use super::{Done, GOAL, Place, REFERENCE_SHARE, Run, default_scene, turns};
-use crate::analysis::error::relative_mean_squared_error;
+use crate::analysis::error::{colors, relative_mean_squared_error};
 use crate::document::{Denoise, Document};
+use crate::gpu::Traversal;
 use crate::job::film::Image;
 use crate::render::denoise::Denoiser;
 use crate::render::{EngineChoice, Session};
@@ -75,22 +76,18 @@ pub(super) fn references(run: &mut Run<'_, '_>, folder: &TempDir) -> Result<Vec<
     Ok(goals)
 }
 
-fn colors(image: &Image) -> Vec<f32> {
-    image.pixels.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]).collect()
-}
-
 /// Measures the times of all scenes with a reference.
 pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineReport, end: Instant) -> Done {
-    let mut session = place.open()?;
+    let mut session = place.open(Traversal::Own)?;
     session.keep_guides("for the benchmark");
     let mut denoiser = Denoiser::open();
     let mut times = vec![[const { Vec::new() }; 2]; run.goals.len()];
     for (turn, number) in turns(end, TURNS, times.len()) {
         let goal = &run.goals[number];
-        let found = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
+        let (raw, denoised) = goal.times(&mut session, denoiser.as_mut().ok(), turn)?;
         if turn != WARM {
-            times[number][0].push(found.raw);
-            times[number][1].extend(found.denoised);
+            times[number][0].push(raw);
+            times[number][1].extend(denoised);
         }
         let what = format!("{}, to a clean image: {}", report.name(), goal.name);
         run.report(&what)?;
@@ -109,15 +106,14 @@ pub(super) fn goals(run: &mut Run<'_, '_>, place: &Place, report: &mut EngineRep
     Ok(())
 }
 
-/// Times to the goal in seconds.
-struct Times {
-    raw: f64,
-    denoised: Option<f64>,
-}
-
 impl Goal {
     /// Renders with doubling samples until raw and denoised image are clean.
-    fn times(&self, session: &mut Session, denoiser: Option<&mut Denoiser>, turn: usize) -> Result<Times, StudyError> {
+    fn times(
+        &self,
+        session: &mut Session,
+        denoiser: Option<&mut Denoiser>,
+        turn: usize,
+    ) -> Result<(f64, Option<f64>), StudyError> {
         let mut document = self.document.clone();
         document.render.seed = turn as u32;
         let mut denoiser = denoiser;
@@ -138,14 +134,11 @@ impl Goal {
             let error = self.error(&session.image()?);
             if error <= GOAL || seconds > PATIENCE || !progress.is_done {
                 let raw = between(before, (seconds, error));
-                return Ok(Times { raw, denoised });
+                return Ok((raw, denoised));
             }
             before = Some((seconds, error));
         }
-        Ok(Times {
-            raw: f64::NAN,
-            denoised,
-        })
+        Ok((f64::NAN, denoised))
     }
 
     fn error(&self, image: &Image) -> f64 {

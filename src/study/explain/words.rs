@@ -2,8 +2,10 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use serde_json::Value as Json;
+
 use super::PathAccount;
-use crate::cpu::recorder::{End, Event, Purpose, Source};
+use crate::cpu::recorder::Event;
 
 /// Width of the column of events.
 const HEAD: usize = 11;
@@ -21,9 +23,9 @@ impl PathAccount {
             if matches!(event, Event::Camera { .. } | Event::Hit { .. }) {
                 lines.push(String::new());
             }
-            let [head, text] = self.words(event);
+            let (head, text) = self.words(event);
             if !numbers.is_empty() {
-                lines.push(line("numbers", &drawn(&std::mem::take(&mut numbers))));
+                lines.push(line("numbers", &self.drawn(&std::mem::take(&mut numbers))));
             }
             lines.push(line(&head, &text));
         }
@@ -66,98 +68,63 @@ impl PathAccount {
         text
     }
 
-    fn surface(&self, slot: u32) -> &str {
-        self.surfaces.get(slot as usize).map_or("a surface", String::as_str)
-    }
-
-    fn words(&self, event: &Event) -> [String; 2] {
-        match event {
-            Event::Number { .. } => ["number".into(), drawn(&[event])],
-            Event::Camera { origin, direction } => [
-                "camera".into(),
-                format!("from {} along {}", vector(origin), vector(direction)),
-            ],
-            Event::Passed {
-                slot,
-                distance,
-                opacity,
-            } => [
-                "passed".into(),
-                format!(
-                    "{} after {}, opacity {}",
-                    self.surface(*slot),
-                    short(*distance),
-                    short(*opacity)
-                ),
-            ],
-            Event::Hit { .. } => self.hit(event),
-            Event::CatcherHit {
-                is_mirrored,
-                background,
-                light,
-                ..
-            } => [
-                "caught".into(),
-                if *is_mirrored {
-                    format!("mirrors what is above, or shows the background, {}", vector(background))
-                } else {
-                    format!(
-                        "shows the background, {}, as far as light arrives: {} if nothing stood in its way",
-                        vector(background),
-                        vector(light)
-                    )
-                },
-            ],
-            Event::Absorption { distance, kept } => [
-                "absorbed".into(),
-                format!(
-                    "over {} inside: {} of the light is left",
-                    short(*distance),
-                    vector(kept)
-                ),
-            ],
-            Event::LightHit { .. } => found(event),
-            Event::Light { .. } => light(event),
-            Event::Scattered { .. } => scattered(event),
-            Event::Roulette { survival, number } => [
-                "roulette".into(),
-                format!(
-                    "goes on with probability {}: {} was drawn",
-                    short(*survival),
-                    short(*number)
-                ),
-            ],
-            Event::Contribution { .. } => added(event),
-            Event::Ended { why } => ["end".into(), end(*why).into()],
+    /// What an event is called, and its words.
+    fn words(&self, event: &Event) -> (String, String) {
+        let (head, words) = template(event);
+        let fields = serde_json::to_value(event).unwrap_or_default();
+        let mut pieces = words.split('{');
+        let mut text = pieces.next().unwrap_or_default().to_owned();
+        for piece in pieces {
+            let (field, rest) = piece.split_once('}').unwrap_or_default();
+            text += &self.field(field, &fields[field]);
+            text += rest;
         }
+        (head, text)
     }
 
-    fn hit(&self, event: &Event) -> [String; 2] {
-        let Event::Hit {
-            bounce,
-            triangle,
-            slot,
-            distance,
-            position,
-            normal,
-            shading_normal,
-            is_inside,
-        } = event
-        else {
-            return Default::default();
-        };
-        let side = if *is_inside { "back" } else { "front" };
-        [
-            format!("bounce {bounce}"),
-            format!(
-                "{} after {} at {}, {side} of triangle {triangle}, normal {}, shading normal {}",
-                self.surface(*slot),
-                short(*distance),
-                vector(position),
-                vector(normal),
-                vector(shading_normal)
-            ),
-        ]
+    /// Random numbers by what they are drawn for.
+    fn drawn(&self, numbers: &[&Event]) -> String {
+        let (mut text, mut last) = (String::new(), String::new());
+        for event in numbers {
+            let Event::Number {
+                dimension, half, value, ..
+            } = event
+            else {
+                continue;
+            };
+            let (_, purpose) = self.words(event);
+            if purpose != last {
+                let separator = if last.is_empty() { "" } else { "; " };
+                text += &format!("{separator}{purpose}");
+            }
+            text += &format!(" {value:.4} [{dimension}:{half}]");
+            last = purpose;
+        }
+        text
+    }
+
+    fn field(&self, name: &str, value: &Json) -> String {
+        match value {
+            Json::Array(parts) => {
+                let parts: Vec<String> = parts.iter().map(|part| self.field("", part)).collect();
+                format!("({})", parts.join(", "))
+            }
+            Json::String(word) => {
+                let row = WORDS.iter().find(|row| row.0 == name && row.1 == word);
+                row.map_or(word.as_str(), |row| row.2).to_owned()
+            }
+            Json::Number(number) => match (name, number.as_u64()) {
+                ("slot", Some(slot)) => self
+                    .surfaces
+                    .get(slot as usize)
+                    .cloned()
+                    .unwrap_or("a surface".to_owned()),
+                (_, Some(whole)) => whole.to_string(),
+                _ => short(number.as_f64().unwrap_or(f64::NAN) as f32),
+            },
+            // JSON has no other numbers.
+            _ => "NaN".to_owned(),
+        }
     }
 }
 
@@ -171,190 +138,99 @@ fn line(head: &str, text: &str) -> String {
     format!("{head:HEAD$} {text}")
 }
 
-/// Numbers by purpose, each with its pair and half.
-fn drawn(numbers: &[&Event]) -> String {
-    let mut text = String::new();
-    let mut last = None;
-    for event in numbers {
-        let Event::Number {
-            dimension,
-            half,
-            value,
-            purpose,
-        } = event
-        else {
-            continue;
-        };
-        if last != Some(*purpose) {
-            let separator = if last.is_some() { "; " } else { "" };
-            text += &format!("{separator}{}", name(*purpose));
+/// Words of fields, where they are not the values' own.
+const WORDS: [(&str, &str, &str); 8] = [
+    ("source", "environment", "the environment"),
+    ("source", "surface", "a surface that emits"),
+    ("source", "background", "the background"),
+    ("why", "left", "met nothing more"),
+    ("why", "bounces", "has all the bounces that it may have"),
+    ("why", "absorbed", "nothing is reflected into the direction drawn"),
+    ("why", "roulette", "Russian roulette"),
+    ("purpose", "below", "below the lobe"),
+];
+
+/// What an event is called, and its words with its fields in braces.
+fn template(event: &Event) -> (String, String) {
+    let (name, words) = match event {
+        Event::Number { .. } => ("number", "{purpose}"),
+        Event::Camera { .. } => ("camera", "from {origin} along {direction}"),
+        Event::Passed { .. } => ("passed", "{slot} after {distance}, opacity {opacity}"),
+        Event::Hit { bounce, is_inside, .. } => {
+            let side = if *is_inside { "back" } else { "front" };
+            let end = "of triangle {triangle}, normal {normal}, shading normal {shading_normal}";
+            return (
+                format!("bounce {bounce}"),
+                ["{slot} after {distance} at {position},", side, end].join(" "),
+            );
         }
-        text += &format!(" {value:.4} [{dimension}:{half}]");
-        last = Some(*purpose);
-    }
-    text
-}
-
-fn name(purpose: Purpose) -> &'static str {
-    match purpose {
-        Purpose::Pixel => "pixel",
-        Purpose::Lens => "lens",
-        Purpose::Opacity => "opacity",
-        Purpose::Lobe => "lobe",
-        Purpose::Layer => "layer",
-        Purpose::Below => "below the lobe",
-        Purpose::Light => "light",
-        Purpose::Roulette => "roulette",
-        Purpose::Catcher => "catcher",
-        Purpose::Blur => "blur",
-        Purpose::Unused => "unused",
-    }
-}
-
-fn of(source: Source) -> &'static str {
-    match source {
-        Source::Environment => "the environment",
-        Source::Surface => "a surface that emits",
-        Source::Background => "the background",
-    }
-}
-
-fn end(why: End) -> &'static str {
-    match why {
-        End::Escaped => "met nothing more",
-        End::Bounces => "has all the bounces that it may have",
-        End::Absorbed => "nothing is reflected into the direction drawn",
-        End::Roulette => "Russian roulette",
-    }
-}
-
-fn found(event: &Event) -> [String; 2] {
-    let Event::LightHit {
-        source,
-        radiance,
-        lobe_density,
-        light_density,
-        weight,
-    } = event
-    else {
-        return Default::default();
-    };
-    let competition = if *light_density > 0.0 {
-        format!(
-            ", lobe density {} against light density {}",
-            short(*lobe_density),
-            short(*light_density)
-        )
-    } else {
-        String::new()
-    };
-    [
-        "met light".into(),
-        format!(
-            "{}, radiance {}, MIS weight {}{competition}",
-            of(*source),
-            vector(radiance),
-            short(*weight)
+        Event::CatcherHit { is_mirrored: true, .. } => {
+            ("caught", "mirrors what is above, or shows the background, {background}")
+        }
+        Event::CatcherHit { .. } => (
+            "caught",
+            "shows the background, {background}, as far as light arrives: {light} if nothing stood in its way",
         ),
-    ]
-}
-
-fn light(event: &Event) -> [String; 2] {
-    let Event::Light {
-        source,
-        direction,
-        density,
-        value,
-        weight,
-        visible,
-        radiance,
-    } = event
-    else {
-        return Default::default();
-    };
-    let start = format!(
-        "{} along {}, density {}",
-        of(*source),
-        vector(direction),
-        short(*density)
-    );
-    let text = if *weight == [0.0; 3] {
-        format!("{start}: nothing is reflected from there")
-    } else {
-        let arrives = match visible {
-            0.0 => "in shadow".to_owned(),
-            1.0 => format!("radiance {}", vector(radiance)),
-            share => format!("radiance {}, of which {} arrives", vector(radiance), short(*share)),
-        };
-        format!(
-            "{start}, lobe value {}, MIS weight {}: {arrives}",
-            vector(value),
-            vector(weight)
-        )
-    };
-    ["to light".into(), text]
-}
-
-fn scattered(event: &Event) -> [String; 2] {
-    let Event::Scattered {
-        layer,
-        probabilities,
-        direction,
-        factor,
-        density,
-        is_mirror,
-        throughput,
-    } = event
-    else {
-        return Default::default();
-    };
-    let possible = probabilities.iter().filter(|chance| chance.probability > 0.0);
-    let choice: Vec<_> = possible
-        .map(|chance| format!("{} {}", chance.layer.label(), short(chance.probability)))
-        .collect();
-    let density = match (is_mirror, *density > 0.0) {
-        (true, _) => ", as by a mirror".to_owned(),
-        (_, true) => format!(", density {}", short(*density)),
-        _ => String::new(),
-    };
-    [
-        "scattered".into(),
-        format!(
-            "by the {} (of {}) along {}{density}, factor {}; throughput {}",
-            layer.label(),
-            choice.join(", "),
-            vector(direction),
-            vector(factor),
-            vector(throughput)
+        Event::Absorption { .. } => ("absorbed", "over {distance} inside: {kept} of the light is left"),
+        Event::LightHit { light_density, .. } if *light_density > 0.0 => (
+            "met light",
+            "{source}, radiance {radiance}, MIS weight {weight}, lobe density {lobe_density} against light density \
+             {light_density}",
         ),
-    ]
-}
-
-fn added(event: &Event) -> [String; 2] {
-    let Event::Contribution {
-        source,
-        reflections,
-        found,
-        added,
-    } = event
-    else {
-        return Default::default();
+        Event::LightHit { .. } => ("met light", "{source}, radiance {radiance}, MIS weight {weight}"),
+        Event::Light { weight, visible, .. } => {
+            let arrives = match visible {
+                _ if *weight == [0.0; 3] => ": nothing is reflected from there",
+                0.0 => ", lobe value {value}, MIS weight {weight}: in shadow",
+                1.0 => ", lobe value {value}, MIS weight {weight}: radiance {radiance}",
+                _ => ", lobe value {value}, MIS weight {weight}: radiance {radiance}, of which {visible} arrives",
+            };
+            return (
+                "to light".to_owned(),
+                "{source} along {direction}, density {density}".to_owned() + arrives,
+            );
+        }
+        Event::Scattered {
+            layer,
+            probabilities,
+            density,
+            is_mirror,
+            ..
+        } => {
+            let possible = probabilities.iter().filter(|chance| chance.probability > 0.0);
+            let choice: Vec<_> = possible
+                .map(|chance| format!("{} {}", chance.layer.label(), short(chance.probability)))
+                .collect();
+            let density = match (is_mirror, *density > 0.0) {
+                (true, _) => ", as by a mirror",
+                (_, true) => ", density {density}",
+                _ => "",
+            };
+            let start = format!("by the {} (of {}) along ", layer.label(), choice.join(", "));
+            let end = ", factor {factor}; throughput {throughput}";
+            return ("scattered".to_owned(), [&start, "{direction}", density, end].concat());
+        }
+        Event::Roulette { .. } => ("roulette", "goes on with probability {survival}: {number} was drawn"),
+        Event::Contribution {
+            reflections,
+            found,
+            added,
+            ..
+        } => {
+            let limited = match added {
+                _ if found == added => "",
+                [0.0, 0.0, 0.0] => ": {found} is not of the light that is shown",
+                _ => ", limited from {found}",
+            };
+            let reflections = counted(*reflections as usize, "reflection");
+            return (
+                "+".to_owned(),
+                ["{added} from {source} after ", &reflections, limited].concat(),
+            );
+        }
+        Event::Ended { .. } => ("end", "{why}"),
     };
-    let limited = match added {
-        _ if found == added => String::new(),
-        // The firefly clamp never removes everything.
-        [0.0, 0.0, 0.0] => format!(": {} is not of the light that is shown", vector(found)),
-        _ => format!(", limited from {}", vector(found)),
-    };
-    [
-        "+".into(),
-        format!(
-            "{} from {} after {}{limited}",
-            vector(added),
-            of(*source),
-            counted(*reflections as usize, "reflection")
-        ),
-    ]
+    (name.to_owned(), words.to_owned())
 }
 
 fn counted(count: usize, what: &str) -> String {
@@ -369,9 +245,4 @@ fn short(value: f32) -> String {
     } else {
         format!("{value:.4}")
     }
-}
-
-fn vector(value: &[f32; 3]) -> String {
-    let [x, y, z] = value.map(short);
-    format!("({x}, {y}, {z})")
 }

@@ -2,14 +2,15 @@
 
 use std::sync::atomic::Ordering;
 
-use super::{HardCase, HardError, Stage};
+use super::{HardCase, Stage, StudyError};
 use crate::compile::compile;
 use crate::cpu::probe::probe_material;
-use crate::document::{Kind, MaterialSettings, PARAMETERS, Value};
+use crate::document::{CoatLobe, Kind, MaterialSettings, PARAMETERS, Value};
 use crate::job::precision::{ERROR_BOUND, relative_error};
 use crate::job::probe::{MaterialQuestion, MaterialView, ProbeScene};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
+use crate::optics::material::Material;
 use crate::optics::random::hash_bits;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
@@ -22,6 +23,7 @@ const PAIRS: [usize; 2] = [1_000_000, 10_000];
 const DOCUMENTS: [usize; 2] = [250, 10];
 /// Densities of the light's sample, per steradian: the weights of the competing strategies are tried, too.
 const LIGHT_DENSITIES: [f32; 3] = [0.08, 10.0, 1e6];
+const COSINES: [f32; 5] = [1.0, 0.7, 0.2, 1e-3, 1e-6];
 
 macro_rules! cases {
     ($($module:ident $lobe:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
@@ -33,7 +35,7 @@ macro_rules! cases {
                    view, normals and light. Singularities are left out: there one rounding of the light's direction \
                    changes the f64 value by more than 2e-5",
             must: "largest error of the material's value, relative to it (or to 1e-3 of white), against f64",
-            naive: || "–".to_owned(),
+            naive: "–",
             measure: "error",
             limit: ERROR_BOUND,
             find: |stage| largest_error(stage, Lobe::$lobe),
@@ -42,6 +44,20 @@ macro_rules! cases {
 }
 
 crate::optics::lobe::list!(cases);
+
+/// The coat's extremes.
+pub(super) const COAT: &[HardCase] = &[HardCase {
+    name: "coat-at-its-ends",
+    group: "lobe",
+    danger: "a coat that reflects all over a white base is 0/0, and its way at index 1 has no end at the horizon",
+    made: "coats of weight 0, 1e-6 and 1, roughness 0 and 1, index 1 and 3, white to black. Metal, gloss and glass below; \
+           cosines from 1 to 1e-6",
+    must: "every value is finite and not negative, and that of f64",
+    naive: "NaN",
+    measure: "error",
+    limit: ERROR_BOUND,
+    find: largest_error_of_coats,
+}];
 
 /// Numbers that depend on their place only.
 struct Numbers(u32);
@@ -73,8 +89,8 @@ fn random_material(numbers: &mut Numbers) -> MaterialSettings {
             _ => low + (high - low) * numbers.unit(),
         };
         let value = match &parameter.kind {
-            Kind::Number { range, .. } => Value::Number(within(*range)),
-            Kind::Color | Kind::Tint { .. } => Value::Color([(); 3].map(|()| within([0.0, 1.0]))),
+            Kind::Number { range, .. } => Value::Number(within(range.map(|end| end as f32)).into()),
+            Kind::Color { .. } => Value::Color([(); 3].map(|()| within([0.0, 1.0]))),
             Kind::Triple { range } => Value::Triple([(); 3].map(|()| within(*range))),
             Kind::Choice(all) => Value::Choice(all[numbers.below(all.len())].name),
             Kind::Toggle => Value::Toggle(numbers.below(2) == 0),
@@ -118,7 +134,7 @@ fn random_question(numbers: &mut Numbers, material: u32, shape: &LobeShape<'_, f
     }
 }
 
-fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
+fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, StudyError> {
     let which = usize::from(!stage.thorough);
     let (pairs, documents) = (PAIRS[which], DOCUMENTS[which]);
     let settings: Vec<MaterialSettings> = (0..documents)
@@ -130,43 +146,108 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
             }
         })
         .collect();
-    let (materials, tables) = compile(&settings);
-    let question = |pair: usize| {
+    let question = |pair: usize, materials: &[Material<f32>], tables: &[f32]| {
         let mut numbers = Numbers(hash_bits(pair as u32) ^ lobe as u32);
         let material = pair % documents;
         let shape = LobeShape {
             horizon: Horizon::Mirror,
-            ..materials[material].shape(&tables)
+            ..materials[material].shape(tables)
         };
         random_question(&mut numbers, material as u32, &shape)
     };
-    let questions: Vec<MaterialQuestion> = parallel::map(pairs, question);
+    let answers = answers(stage, &settings, pairs, question)?;
+    Ok(answers.into_iter().filter_map(|(_, error)| error).fold(0.0, f64::max))
+}
+
+/// Values of materials with their errors; none where the value is singular.
+fn answers(
+    stage: &Stage,
+    settings: &[MaterialSettings],
+    count: usize,
+    question: impl Fn(usize, &[Material<f32>], &[f32]) -> MaterialQuestion + Sync,
+) -> Result<Vec<(Vec3<f32>, Option<f64>)>, StudyError> {
+    let (materials, tables) = compile(settings);
+    let questions = parallel::map(count, |index| question(index, &materials, &tables));
     let scene = ProbeScene {
         tables: &tables,
         materials: &materials,
         geometry: None,
     };
     let answers = stage.prober.materials(&scene, &questions)?;
-    let stop = stage.stop();
-    let errors = parallel::map(pairs, |pair| match stop.load(Ordering::Relaxed) {
-        true => None,
-        false => error(&scene, &questions[pair], &answers[pair]),
+    let stop = &stage.stop;
+    let errors = parallel::map(count, |index| {
+        let right = |moved| probe_material::<f64>(&scene, &questions[index], moved);
+        (!stop.load(Ordering::Relaxed))
+            .then(|| relative_error(answers[index], right))
+            .flatten()
     });
     stage.check_stop()?;
-    let singular = errors.iter().filter(|error| error.is_none()).count();
-    log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());
-    let regular = (0..pairs).filter_map(|pair| Some((pair, errors[pair]?)));
-    let Some((worst, error)) = regular.max_by(|a, b| a.1.total_cmp(&b.1)) else {
-        return Ok(0.0);
-    };
-    let question = &questions[worst];
-    let right = probe_material::<f64>(&scene, question, [0.0; 2]);
-    let (material, answer) = (&materials[question.view.material as usize], answers[worst]);
-    log::debug!("{error:.1e} at {question:?} of {material:?}: {answer:?}, right is {right:?}");
-    Ok(error)
+    Ok(answers.into_iter().zip(errors).collect())
 }
 
-/// Relative error of an answer; 0 at a singularity.
-fn error(scene: &ProbeScene<'_>, question: &MaterialQuestion, answer: &Vec3<f32>) -> Option<f64> {
-    relative_error(*answer, |moved| probe_material::<f64>(scene, question, moved))
+/// Every coat over every base.
+fn coated() -> Vec<MaterialSettings> {
+    let mut all = Vec::new();
+    let bases = [(1.0, 0.0), (0.0, 0.0), (0.0, 1.0)];
+    for (number, (metalness, transmission_weight)) in (0..).zip(bases) {
+        for ends in 0..24_u32 {
+            let [is_rough, is_dense, is_grey] = [1, 2, 4].map(|bit| ends & bit != 0);
+            let color = [[1.0; 3], [0.9, 0.5, 0.2], [0.0; 3]][(ends as usize + number) % 3];
+            all.push(MaterialSettings {
+                metalness,
+                transmission_weight,
+                base_color: [if is_grey { 0.5 } else { 1.0 }; 3],
+                coat_weight: [0.0, 1e-6, 1.0][ends as usize / 8],
+                coat_roughness: f32::from(is_rough),
+                coat_lobe: if is_rough { CoatLobe::Ggx } else { CoatLobe::Geometric },
+                coat_ior: if is_dense { 3.0 } else { 1.0 },
+                coat_color: color,
+                ..MaterialSettings::default()
+            });
+        }
+    }
+    all
+}
+
+fn question(material: u32, cosines: [f32; 2], azimuth_rad: f32) -> MaterialQuestion {
+    let up = vec3(0.0, 0.0, 1.0);
+    let [wo, wi] = [(cosines[0], 0.0), (cosines[1], azimuth_rad)].map(|(cosine, azimuth)| {
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        vec3(sine * azimuth.cos(), sine * azimuth.sin(), cosine)
+    });
+    MaterialQuestion {
+        view: MaterialView {
+            material,
+            is_inside: 0,
+            shading: up,
+            tangent: vec3(1.0, 0.0, 0.0),
+            normal: up,
+            wo,
+        },
+        wi,
+        light_density: 1.0,
+        competing: 0.0,
+    }
+}
+
+fn largest_error_of_coats(stage: &mut Stage) -> Result<f64, StudyError> {
+    let settings = coated();
+    let question = |index: usize, _: &[Material<f32>], _: &[f32]| {
+        let [light, view, material] = [index / 2, index / 10, index / 50];
+        question(
+            material as u32,
+            [view, light].map(|i| COSINES[i % 5]),
+            [0.3, 2.9][index % 2],
+        )
+    };
+    let answers = answers(stage, &settings, 50 * settings.len(), question)?;
+    let is_sound = |value: Vec3<f32>| value.to_f64().iter().all(|x| x.is_finite() && *x >= 0.0);
+    let error = |(value, error)| {
+        if is_sound(value) {
+            Option::unwrap_or_default(error)
+        } else {
+            f64::INFINITY
+        }
+    };
+    Ok(answers.into_iter().map(error).fold(0.0, f64::max))
 }

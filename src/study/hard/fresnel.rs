@@ -1,10 +1,13 @@
-//! Hard cases of the Fresnel equations: cancellation, overflow, changes of form; against complex arithmetic in f64.
+//! Hard cases of the Fresnel equations and of thin films: cancellation, overflow, changes of form, grazing views, both ends
+//! of weight, thickness and index; against Airy's sum of complex amplitudes in f64.
 
-use super::{HardError, Stage};
-use crate::job::probe::FresnelQuestion;
+use super::{Stage, StudyError};
+use crate::job::probe::{FresnelQuestion, ProbeScene};
+use crate::optics::fresnel::METALS;
+use crate::optics::thin_film::film_path;
 
 /// Cosines from grazing to head-on.
-pub(super) const COSINES: [f32; 14] = [
+const COSINES: [f32; 14] = [
     0.0,
     1e-30,
     1e-7,
@@ -22,91 +25,9 @@ pub(super) const COSINES: [f32; 14] = [
 ];
 /// The largest error in the share that is reflected; four roundings of 1.
 const LIMIT: f64 = 2.5e-7;
-
-cases! {
-    "fresnel"
-    "fresnel-grazing-and-normal"
-        "at grazing and at normal incidence numerators and denominators vanish together: 0/0"
-        "14 cosines from 0 to 1, glass, water and diamond, from both sides, and six metals"
-        "the share reflected is that of complex arithmetic in f64"
-        || format!("{} at cosine 0, index 1", naive_dielectric(0.0, 1.0)),
-        "error" LIMIT, |stage| {
-            let dielectrics = [1.33_f32, 1.5, 2.42].into_iter().flat_map(|ior| [ior, 1.0 / ior]);
-            let mut terms: Vec<_> = dielectrics.map(|ior| (0, ior, 0.0)).collect();
-            for metal in crate::optics::fresnel::METALS {
-                let channels = metal.eta.into_iter().zip(metal.k);
-                terms.extend(channels.map(|(eta, k)| (1, eta as f32, k as f32)));
-            }
-            worst(stage, &with_cosines(&terms))
-        };
-    "fresnel-total-reflection"
-        "just beyond the critical angle the square of the refracted cosine is below 0: NaN"
-        "from within glass, the critical cosine and its 40 neighbours in f32 on either side"
-        "the share is 1 beyond, that of f64 before, with nothing in between"
-        || {
-            let ior = 1.0 / 1.5;
-            let bad = around_critical(ior)
-                .filter(|&c| !naive_dielectric(c, ior).is_finite())
-                .count();
-            format!("{bad} of 81 are NaN")
-        },
-        "error" // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
-        2e-3, |stage| {
-            let question = |cosine| FresnelQuestion {
-                model: 0,
-                cosine,
-                eta: 1.0 / 1.5,
-                k: 0.0,
-                film: [0.0; 3],
-            };
-            worst(stage, &around_critical(1.0 / 1.5).map(question).collect::<Vec<_>>())
-        };
-    "fresnel-index-of-one"
-        "with both sides alike η² − 1 + cos² cancels: an invisible surface reflects"
-        "η = 1 and up to 1e-3 beside it, at every cosine"
-        "nothing is reflected by η = 1, and the share is that of f64 beside it"
-        || {
-            let error =
-                |(cosine, ior): (f32, f32)| (f64::from(naive_dielectric(cosine, ior)) - exact(cosine, ior, 0.0)).abs();
-            let pairs = COSINES
-                .into_iter()
-                .flat_map(|c| NEARLY_ONE.into_iter().map(move |ior| (c, ior)));
-            let worst = pairs
-                .map(error)
-                .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
-            format!("{worst:.1e}")
-        },
-        "error" 1e-5, |stage| {
-            let terms = NEARLY_ONE.map(|ior| (0, ior, 0.0));
-            worst(stage, &with_cosines(&terms))
-        };
-    "fresnel-no-absorption"
-        "a conductor with k = 0 is a dielectric: √(… − …) of two equal numbers"
-        "conductors of k = 0, 1e-20 and 1e-7 with η from 0 to 20"
-        "the share reflected is that of complex arithmetic in f64"
-        || {
-            let error = |(c, eta, k): (f32, f32, f32)| (f64::from(naive_conductor(c, eta, k)) - exact(c, eta, k)).abs();
-            let worst = conductors(&ETAS, &[0.0, 1e-20, 1e-7]).into_iter().map(error);
-            format!(
-                "{:.1e}",
-                worst.fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a })
-            )
-        },
-        "error" 1e-3, |stage| worst(stage, &asked(&conductors(&ETAS, &[0.0, 1e-20, 1e-7])));
-    "fresnel-huge-absorption"
-        "k² overflows f32 from k = 4e9 on: inf − inf is NaN"
-        "conductors of k = 20, 1e3, 1e6, 1e10 and 1e18 with η from 0 to 20"
-        "the share reflected is that of complex arithmetic in f64"
-        || {
-            let all = conductors(&ETAS, &HUGE);
-            let bad = all
-                .iter()
-                .filter(|&&(c, eta, k)| !naive_conductor(c, eta, k).is_finite());
-            format!("{} of {} are NaN", bad.count(), all.len())
-        },
-        "error" 1e-6, |stage| worst(stage, &asked(&conductors(&ETAS, &HUGE)));
-}
-
+const WEIGHTS: [f32; 3] = [0.0, 1e-6, 1.0];
+const THICKNESSES_UM: [f32; 6] = [0.0, 1e-6, 0.05, 0.3, 1.0, 10.0];
+const FILM_IORS: [f32; 5] = [1.0, 1.33, 1.5, 2.4, 3.0];
 const NEARLY_ONE: [f32; 9] = [
     1.0,
     1.0 + f32::EPSILON,
@@ -118,103 +39,196 @@ const NEARLY_ONE: [f32; 9] = [
     1.001,
     0.999,
 ];
-const ETAS: [f32; 7] = [0.0, 1e-6, 0.05, 0.5, 1.0, 1.5, 20.0];
-const HUGE: [f32; 5] = [20.0, 1e3, 1e6, 1e10, 1e18];
 
-fn conductors(etas: &[f32], ks: &[f32]) -> Vec<(f32, f32, f32)> {
-    let of_eta = |&eta: &f32| {
-        ks.iter()
-            .flat_map(move |&k| COSINES.into_iter().map(move |cosine| (cosine, eta, k)))
-    };
-    etas.iter().flat_map(of_eta).collect()
+cases! {
+    "fresnel"
+    "film-over-glass"
+        "the two sides of a film are 0/0 at grazing angles, and its phase has dozens of turns"
+        "films of 0 to 10 µm, index 1 to 3, weights 0, 1e-6, 1, over indices 1, 1.33, 1.5 and 2.42, and from within them"
+        "the share reflected is that of complex amplitudes in f64"
+        "3108 of 10026 are NaN",
+        "error" // The rounding of the thickest film's phase, 350 rad.
+        2e-4, |stage| {
+            let sides = |ior: f32| [(1.0, ior, 0.0), (ior, 1.0 / ior, 0.0)];
+            worst(stage, &films(2, &[1.0, 1.33, 1.5, 2.42].map(sides).concat()))
+        };
+    "film-over-metal"
+        "the amplitude behind the film is complex, and its root loses all digits of the smaller part"
+        "the same films over each of the measured metals"
+        "the share reflected is that of complex amplitudes in f64"
+        "37188 of 37458 are NaN",
+        "error" 2e-4, |stage| {
+            let media: Vec<_> = metals().map(|(eta, k)| (1.0, eta, k)).collect();
+            worst(stage, &films(3, &media))
+        };
+    "fresnel-grazing-and-normal"
+        "at grazing and at normal incidence numerators and denominators vanish together: 0/0"
+        "14 cosines from 0 to 1, glass, water and diamond, from both sides, and six metals"
+        "the share reflected is that of complex arithmetic in f64"
+        "NaN at cosine 0, index 1",
+        "error" LIMIT, |stage| {
+            let iors = [1.33_f32, 1.5, 2.42].into_iter().flat_map(|ior| [ior, 1.0 / ior]);
+            let glass = bare(0, iors.map(|ior| (ior, 0.0)));
+            worst(stage, &[glass, bare(1, metals())].concat())
+        };
+    "fresnel-total-reflection"
+        "just beyond the critical angle the square of the refracted cosine is below 0: NaN"
+        "from within glass, the critical cosine and its 40 neighbours in f32 on either side"
+        "the share is 1 beyond, that of f64 before, with nothing in between"
+        "40 of 81 are NaN",
+        "error" // The reflectance has a vertical tangent there: this is the effect of one rounding of the cosine.
+        2e-3, |stage| {
+            let ior = 1.0 / 1.5;
+            let critical = (1.0 - f64::from(ior) * f64::from(ior)).sqrt() as f32;
+            let around = (-40..=40).map(|step: i32| f32::from_bits(critical.to_bits().wrapping_add_signed(step)));
+            worst(stage, &around.map(|cosine| question(0, cosine, (ior, 0.0))).collect::<Vec<_>>())
+        };
+    "fresnel-index-of-one"
+        "with both sides alike η² − 1 + cos² cancels: an invisible surface reflects"
+        "η = 1 and up to 1e-3 beside it, at every cosine"
+        "nothing is reflected by η = 1, and the share is that of f64 beside it"
+        "NaN",
+        "error" 1e-5, |stage| worst(stage, &bare(0, NEARLY_ONE.map(|ior| (ior, 0.0))));
+    "fresnel-no-absorption"
+        "a conductor with k = 0 is a dielectric: √(… − …) of two equal numbers"
+        "conductors of k = 0, 1e-20 and 1e-7 with η from 0 to 20"
+        "the share reflected is that of complex arithmetic in f64"
+        "NaN",
+        "error" 1e-3, |stage| worst(stage, &bare(1, conductors(&[0.0, 1e-20, 1e-7])));
+    "fresnel-huge-absorption"
+        "k² overflows f32 from k = 4e9 on: inf − inf is NaN"
+        "conductors of k = 20, 1e3, 1e6, 1e10 and 1e18 with η from 0 to 20"
+        "the share reflected is that of complex arithmetic in f64"
+        "196 of 490 are NaN",
+        "error" 1e-6, |stage| worst(stage, &bare(1, conductors(&[20.0, 1e3, 1e6, 1e10, 1e18])));
 }
 
-fn asked(conductors: &[(f32, f32, f32)]) -> Vec<FresnelQuestion> {
-    let question = |&(cosine, eta, k): &(f32, f32, f32)| FresnelQuestion {
-        model: 1,
+/// Indices and absorptions of the measured metals.
+fn metals() -> impl Iterator<Item = (f32, f32)> {
+    let channels = |metal: &crate::optics::fresnel::Metal| [0, 1, 2].map(|i| (metal.eta[i] as f32, metal.k[i] as f32));
+    METALS.iter().flat_map(channels)
+}
+
+fn conductors(ks: &[f32]) -> impl Iterator<Item = (f32, f32)> {
+    let etas = [0.0, 1e-6, 0.05, 0.5, 1.0, 1.5, 20.0];
+    etas.into_iter().flat_map(|eta| ks.iter().map(move |&k| (eta, k)))
+}
+
+fn question(model: u32, cosine: f32, (eta, k): (f32, f32)) -> FresnelQuestion {
+    FresnelQuestion {
+        model,
         cosine,
         eta,
         k,
         film: [0.0; 3],
-    };
-    conductors.iter().map(question).collect()
+    }
 }
 
-fn with_cosines(terms: &[(u32, f32, f32)]) -> Vec<FresnelQuestion> {
-    let question = |&(model, eta, k): &(u32, f32, f32)| {
-        let film = [0.0; 3];
-        COSINES.map(|cosine| FresnelQuestion {
-            model,
-            cosine,
-            eta,
-            k,
-            film,
-        })
-    };
-    terms.iter().flat_map(question).collect()
+/// Media without a film, at every cosine.
+fn bare(model: u32, media: impl IntoIterator<Item = (f32, f32)>) -> Vec<FresnelQuestion> {
+    media
+        .into_iter()
+        .flat_map(|medium| COSINES.map(|cosine| question(model, cosine, medium)))
+        .collect()
 }
 
-/// The critical cosine from within an index below 1, and 40 neighbours on either side.
-fn around_critical(ior: f32) -> impl Iterator<Item = f32> {
-    let critical = (1.0 - f64::from(ior) * f64::from(ior)).sqrt() as f32;
-    (-40..=40).map(move |step: i32| f32::from_bits(critical.to_bits().wrapping_add_signed(step)))
+/// Films between media: the index before them, index and absorption behind them.
+fn films(model: u32, media: &[(f32, f32, f32)]) -> Vec<FresnelQuestion> {
+    let mut all = Vec::new();
+    for &(before, eta, k) in media {
+        for (weight, thickness) in WEIGHTS.into_iter().flat_map(|w| THICKNESSES_UM.map(|d| (w, d))) {
+            for (ior, cosine) in FILM_IORS.into_iter().flat_map(|n| COSINES.map(|c| (n, c))) {
+                // A film of lower index than what is before it has total reflection of its own, unless both have.
+                let square = f64::from(ior / before).powi(2) - 1.0 + f64::from(cosine).powi(2);
+                let behind = f64::from(eta).powi(2) - 1.0 + f64::from(cosine).powi(2);
+                if square <= 0.0 && behind > 0.0 {
+                    continue;
+                }
+                let film = [weight, ior / before, film_path(thickness).y * before];
+                all.push(FresnelQuestion {
+                    film,
+                    ..question(model, cosine, (eta, k))
+                });
+            }
+        }
+    }
+    all
 }
 
-/// Largest difference from f64; infinite for NaN.
-fn worst(stage: &Stage, questions: &[FresnelQuestion]) -> Result<f64, HardError> {
-    let answers = stage.prober.fresnel(questions)?;
+/// The largest error; infinite where a share is NaN.
+fn worst(stage: &Stage, questions: &[FresnelQuestion]) -> Result<f64, StudyError> {
+    let answers = stage.prober.fresnel(&ProbeScene::default(), questions)?;
     let error = |(q, &share): (&FresnelQuestion, &f32)| {
-        let error = (f64::from(share) - exact(q.cosine, q.eta, q.k)).abs();
+        let error = (f64::from(share) - exact(q)).abs();
         if error.is_nan() { f64::INFINITY } else { error }
     };
     Ok(questions.iter().zip(&answers).map(error).fold(0.0, f64::max))
 }
 
-/// Fresnel's equations with the complex index `eta` + i `k`, in f64.
-fn exact(cosine: f32, eta: f32, k: f32) -> f64 {
-    let (c, eta, k) = (f64::from(cosine), f64::from(eta), f64::from(k));
-    // m² − sin², and its root in the upper right quadrant.
-    let square = [(eta - 1.0) * (eta + 1.0) - k * k + c * c, 2.0 * eta * k];
-    let size = square[0].hypot(square[1]);
-    let half_sum = |sum: f64| (0.5 * sum).max(0.0).sqrt();
-    let root = if square[0] >= 0.0 {
-        let real = half_sum(size + square[0]);
-        [real, if real > 0.0 { 0.5 * square[1] / real } else { 0.0 }]
-    } else {
-        let imaginary = half_sum(size - square[0]);
-        [0.5 * square[1] / imaginary, imaginary]
-    };
-    let share = |[ar, ai]: [f64; 2], [br, bi]: [f64; 2]| {
-        let (below, above) = ((ar + br).hypot(ai + bi), (ar - br).hypot(ai - bi));
-        if below > 0.0 { (above / below).powi(2) } else { 0.0 }
-    };
-    let perpendicular = share([c, 0.0], root);
-    // m² cos against the root. At normal incidence there is no plane of incidence, so that both are equal, even if terms
-    // vanish.
-    let parallel = if cosine < 1.0 {
-        share([(eta * eta - k * k) * c, 2.0 * eta * k * c], root)
-    } else {
-        perpendicular
-    };
-    0.5 * (perpendicular + parallel)
+type Complex = [f64; 2];
+
+fn sum(a: Complex, b: Complex) -> Complex {
+    [a[0] + b[0], a[1] + b[1]]
 }
 
-/// The textbook form without guards.
-fn naive_dielectric(cosine: f32, ior: f32) -> f32 {
-    let g = (ior * ior - 1.0 + cosine * cosine).sqrt();
-    let perpendicular = (cosine - g) / (cosine + g);
-    let parallel = (ior * ior * cosine - g) / (ior * ior * cosine + g);
-    0.5 * (perpendicular * perpendicular + parallel * parallel)
+fn product(a: Complex, b: Complex) -> Complex {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }
 
-/// Reflectance of a conductor in the textbook form, without guards.
-pub fn naive_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
-    let (cos2, sin2) = (cosine * cosine, 1.0 - cosine * cosine);
-    let t0 = eta * eta - k * k - sin2;
-    let size = (t0 * t0 + 4.0 * eta * eta * k * k).sqrt();
-    let a = (0.5 * (size + t0)).sqrt();
-    let (t1, t2) = (size + cos2, 2.0 * a * cosine);
-    let perpendicular = (t1 - t2) / (t1 + t2);
-    let (t3, t4) = (cos2 * size + sin2 * sin2, t2 * sin2);
-    0.5 * (perpendicular + perpendicular * (t3 - t4) / (t3 + t4))
+fn ratio(a: Complex, b: Complex) -> Complex {
+    let square = b[0] * b[0] + b[1] * b[1];
+    let above = product(a, [b[0], -b[1]]);
+    [above[0] / square, above[1] / square]
+}
+
+/// The root in the upper right quadrant.
+fn root([re, im]: Complex) -> Complex {
+    let size = re.hypot(im);
+    if re >= 0.0 {
+        let real = (0.5 * (size + re)).sqrt();
+        [real, if real > 0.0 { 0.5 * im / real } else { 0.0 }]
+    } else {
+        let imaginary = (0.5 * (size - re)).sqrt();
+        [0.5 * im / imaginary, imaginary]
+    }
+}
+
+/// The share reflected by a film between two media, by their heights and what they are weighed by.
+fn share(heights: [Complex; 3], weights: [Complex; 3], turn: Complex) -> f64 {
+    let amplitude = |i: usize, j: usize| {
+        let [a, b] = [product(heights[i], weights[j]), product(heights[j], weights[i])];
+        match sum(a, b) {
+            [0.0, 0.0] => [0.0, 0.0],
+            below => ratio(sum(a, [-b[0], -b[1]]), below),
+        }
+    };
+    let first = amplitude(0, 1);
+    let second = product(amplitude(1, 2), turn);
+    let found = ratio(sum(first, second), sum([1.0, 0.0], product(first, second)));
+    found[0] * found[0] + found[1] * found[1]
+}
+
+fn exact(q: &FresnelQuestion) -> f64 {
+    let [weight, film_ior, path] = q.film.map(f64::from);
+    // Without a film any index does.
+    let film_ior = if weight == 0.0 { 1.0 } else { film_ior };
+    let c = f64::from(q.cosine).max(1e-12);
+    let (eta, k) = (f64::from(q.eta), f64::from(q.k));
+    let film = root([(film_ior - 1.0) * (film_ior + 1.0) + c * c, 0.0]);
+    let behind = root([(eta - 1.0) * (eta + 1.0) - k * k + c * c, 2.0 * eta * k]);
+    let squares = [[1.0, 0.0], [film_ior * film_ior, 0.0], product([eta, k], [eta, k])];
+    let heights = [[c, 0.0], film, behind];
+    let of = |path: f64| {
+        let phase = 2.0 * path * film[0];
+        let turn = [phase.cos(), phase.sin()];
+        let perpendicular = share(heights, [[1.0, 0.0]; 3], turn);
+        // Along the normal both are the same, and where the index is 0 the other is 0/0.
+        let parallel = if c == 1.0 {
+            perpendicular
+        } else {
+            share(heights, squares, turn)
+        };
+        0.5 * (perpendicular + parallel)
+    };
+    (1.0 - weight) * of(0.0) + weight * of(path)
 }

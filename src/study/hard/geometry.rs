@@ -6,12 +6,9 @@ use serde_json::json;
 
 use super::glb::Glb;
 use super::meshes::{add_square, model, needle, small_ball, spirals};
-use super::rays::{
-    axis_rays, direction, edge_aim, edge_aims, leaks, leaving_rays, naive_leaks, naive_misses, ray, unit,
-};
-use super::stage::document;
-use super::{HardError, Stage, over_zero};
-use crate::document::Document;
+use super::rays::{axis_rays, direction, edge_aim, leaks, leaving_rays, ray, unit};
+use super::stage::{mean_luminance, worst_pixel};
+use super::{Stage, StudyError};
 use crate::job::film::Film;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
@@ -19,6 +16,7 @@ use crate::optics::random::hash_bits;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::mesh::Mesh;
 use crate::scene::{Geometry, ModelSource, shapes, teapot};
+use crate::study::small_document;
 
 /// Largest difference of an image's mean under a change of scale or position: silhouettes by a rounding.
 const SAME_PICTURE: f64 = 1e-3;
@@ -31,7 +29,7 @@ cases! {
         "a ray offset of a fixed length swallows a model of 1e-6 and does nothing for one of 1e6"
         "a teapot scaled by 1e-6, 1e-3, 1e3 and 1e6 through its node"
         "the image of the unscaled one, numbers drawn alike: mean difference over mean"
-        || format!("an offset of 1e-4 is {:.0} radii", 1e-4 / 1e-6),
+        "an offset of 1e-4 is 100 radii",
         "error" SAME_PICTURE, |stage| {
             let scaled = [1e-6, 1e-3, 1e3, 1e6].map(|scale| json!({"scale": [scale, scale, scale]}));
             picture_difference(stage, &scaled)
@@ -40,12 +38,7 @@ cases! {
         "f32 places 1e5 from the origin are 0.008 apart: the model crumbles"
         "a teapot moved by 1e5 along each axis and along all through its node"
         "the image of the unmoved one, numbers drawn alike: mean difference over mean"
-        || {
-            format!(
-                "vertices off by {:.1e}",
-                f64::from((1e5_f32 + 0.123_456).fract() - 0.123_456).abs()
-            )
-        },
+        "vertices off by 1.5e-3",
         "error" SAME_PICTURE, |stage| {
             let far = 1e5;
             let places = [[far, 0.0, 0.0], [0.0, -far, 0.0], [0.0, 0.0, far], [far, far, far]];
@@ -55,7 +48,7 @@ cases! {
         "a model of 1e-6 at 1e5: places differ in their twelfth digit, f64 transforms leave four of them"
         "a teapot scaled by 1e-6 or 1e6 and moved by 1e5 along all axes through its node"
         "the image of the unscaled, unmoved one, numbers drawn alike: mean difference over mean"
-        || format!("vertices off by {:.0} radii", 0.004 / 1e-6),
+        "vertices off by 4000 radii",
         "error" SAME_PICTURE, |stage| {
             let moved = [1e-6, 1e6].map(|s| json!({"scale": [s, s, s], "translation": [1e5, 1e5, 1e5]}));
             picture_difference(stage, &moved)
@@ -64,12 +57,7 @@ cases! {
         "a triangle of 1e-6 beside one of 1: its area is rounding noise, rays slip through"
         "a closed ball of radius 1e-6 in a scene of radius 1; rays from within, and from outside to its middle"
         "no ray leaks out of it or misses it; those that do are counted"
-        || {
-            format!(
-                "{} of 10 000 rays",
-                naive_leaks(&small_ball(), DVec3::new(0.4, 0.3, 0.2), 10_000)
-            )
-        },
+        "10000 of 10 000 rays",
         "count" 0.0, |stage| {
             let middle = DVec3::new(0.4, 0.3, 0.2);
             let mut mesh = small_ball();
@@ -85,7 +73,7 @@ cases! {
         "triangles 1e5 times as long as wide: normals and areas cancel, rays slip through"
         "a closed rod of 1 × 1e-5 × 1e-5, turned off the axes; rays from within"
         "no ray leaks out; those that do are counted"
-        || format!("{} of 10 000 rays", naive_leaks(&needle(), DVec3::ZERO, 10_000)),
+        "2485 of 10 000 rays",
         "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(needle()), false);
             let rays: Vec<_> = (0..stage.rays() / 10).map(|i| ray(Vec3::ZERO, direction(i))).collect();
@@ -95,14 +83,7 @@ cases! {
         "a ray at a shared edge or vertex is outside both triangles by rounding: black or bright specks"
         "a sphere of 18 000 triangles; a million rays (100 000 in a quick run) from within to its edges and vertices"
         "no ray leaks out; those that do are counted"
-        || {
-            let sphere = shapes::sphere(24, 12);
-            let aims = edge_aims(&sphere, 10_000);
-            format!(
-                "{} of 10 000 rays",
-                naive_misses(&sphere, DVec3::new(0.1, 0.2, 0.05), &aims)
-            )
-        },
+        "755 of 10 000 rays",
         "count" 0.0, |stage| {
             let mesh = shapes::sphere(96, 96);
             let geometry = Geometry::build(&model(mesh), false);
@@ -119,16 +100,13 @@ cases! {
                  is 0/0"
         "a cube of 6 × 8 × 8 squares; rays from places of its grid along axes (±0), diagonals, and in its planes"
         "each leaves at the wall that it must; others are counted"
-        || {
-            let (origin, inverse) = (0.5_f32, 1.0 / 0.0_f32);
-            format!("(0.5 − {origin}) · {inverse} = {}", (0.5 - origin) * inverse)
-        },
+        "(0.5 − 0.5) · inf = NaN",
         "count" 0.0, |stage| axis_rays(stage);
     "seen-from-afar"
         "the places of boxes and triangles relative to a far eye round apart: triangles vanish from their boxes"
         "a sphere seen from 30, 1e3 and 3e4 radii away; rays into its inner part, at edges and vertices too"
         "no ray misses it; those that do are counted"
-        || format!("relative places round by {:.0e} radii", 3e4 * f32::EPSILON),
+        "relative places round by 4e-3 radii",
         "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(shapes::sphere(192, 96)), false);
             let mut rays = Vec::new();
@@ -146,16 +124,13 @@ cases! {
         "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1. Rays leave hits at all \
                angles down to 1e-5 from the plane, outwards and inwards"
         "outwards nothing is met, inwards the mesh is; others are counted"
-        || {
-            let (place, offset) = (0.7_f32, 1e-8_f32);
-            format!("0.7 + 1e-8 is 0.7: {}", place + offset == place)
-        },
+        "0.7 + 1e-8 is 0.7: true",
         "count" 0.0, |stage| leaving_rays(stage);
     "deep-hierarchy"
         "a stack of fixed size drops boxes that do not fit: parts of the model vanish"
         "20 000 triangles in spirals, each 0.968 times the last, down to 1e-8; those above 3e-6 are aimed at"
         "each triangle is found by a ray at its middle, or one before it; those that are not are counted"
-        || "boxes beyond the 32nd level dropped".to_owned(),
+        "boxes beyond the 32nd level dropped",
         "count" 0.0, |stage| {
             let geometry = Geometry::build(&model(spirals()), false);
             let rays: Vec<_> = (0..geometry.triangle_count())
@@ -174,7 +149,7 @@ cases! {
         "no normal, 0/0 in the weights; thousands of equal boxes take the builder for ever"
         "a sphere whose triangles are there three times, with 1000 of no area; white furnace"
         "the furnace is white: worst pixel"
-        || format!("a normal of {}", over_zero(0.0)),
+        "a normal of nan",
         "error" WHITE, |stage| {
             let mut mesh = shapes::sphere(48, 24);
             let once = mesh.triangles.clone();
@@ -195,7 +170,7 @@ cases! {
         "a sphere whose normals are by turns right, 0, opposite, NaN and 1e30 long, its tangents 0, NaN or along the \
                normal; anisotropy 1; white furnace"
         "the furnace is white: worst pixel"
-        || format!("a frame of {}", (Vec3::ZERO / 0.0).x.to_string().to_lowercase()),
+        "a frame of nan",
         "error" WHITE, |stage| {
             let mut mesh = shapes::sphere(32, 16);
             for (i, normal) in mesh.normals.iter_mut().enumerate() {
@@ -212,7 +187,7 @@ cases! {
         "faces in one place hide each other by turns; a fan of faces on one edge has no inside"
         "eight squares in one plane, turned against each other, and seven on one edge; white furnace"
         "the furnace is white: worst pixel"
-        || "rays that start inside the other face: dark".to_owned(),
+        "rays that start inside the other face: dark",
         "error" WHITE, |stage| {
             let mut mesh = Mesh::default();
             for i in 0..8 {
@@ -233,16 +208,16 @@ cases! {
         "rays caught between surfaces that nearly touch, offsets into the next glass, paths of 64 bounces cut off"
         "ten instances of a clear sphere of index 1.1 inside each other, each 0.95 of the last; white furnace"
         "the mean of the image is white"
-        || "0.96²⁰ = 0.44 where reflected light is dropped".to_owned(),
+        "0.96²⁰ = 0.44 where reflected light is dropped",
         "error" WHITE, |stage| {
             let mut glb = Glb::default();
-            let ball = glb.mesh(&shapes::sphere(64, 32), true);
+            let ball = glb.mesh(&shapes::sphere(64, 32));
             for i in 0..10 {
                 let scale = 0.95_f64.powi(i);
                 glb.node(ball, json!({"scale": [scale, scale, scale]}));
             }
             let model = glb.write(stage, "glasses.glb")?;
-            let mut document = document(model, EnvironmentSource::Furnace, 24, 32);
+            let mut document = small_document(model, EnvironmentSource::Furnace, 24, 32);
             let glass = &mut document.materials[0];
             glass.metalness = 0.0;
             glass.ior = 1.1;
@@ -252,18 +227,16 @@ cases! {
             glass.transmission_depth = 0.0;
             glass.transmission_color = [1.0; 3];
             let film = stage.film(&document)?;
-            let image = film.image();
-            let mean = image.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / image.pixels.len() as f64;
-            Ok((mean - 1.0).abs() + film.dropped() as f64)
+            Ok((mean_luminance(&film) - 1.0).abs() + film.dropped() as f64)
         };
 }
 
 /// Relative mean difference of images of the same model at other nodes.
-fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<f64, HardError> {
+fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<f64, StudyError> {
     let mesh = teapot::mesh(4);
     let mut picture = |node: serde_json::Value, name: &str| {
         let model = Glb::of(&mesh, node).write(stage, name)?;
-        let mut document = document(model, EnvironmentSource::Studio, 48, 8);
+        let mut document = small_document(model, EnvironmentSource::Studio, 48, 8);
         document.ground = true;
         document.materials[0].roughness = 0.3;
         stage.film(&document)
@@ -293,14 +266,12 @@ fn difference(a: &Film, b: &Film) -> f64 {
 }
 
 /// Largest deviation from white of a pixel in the white furnace, plus the number of dropped samples.
-fn furnace(stage: &mut Stage, model: ModelSource) -> Result<f64, HardError> {
-    let mut document: Document = document(model, EnvironmentSource::Furnace, 40, 4);
+fn furnace(stage: &mut Stage, model: ModelSource) -> Result<f64, StudyError> {
+    let mut document = small_document(model, EnvironmentSource::Furnace, 40, 4);
     let material = &mut document.materials[0];
     material.fresnel = Fresnel::None;
     material.horizon = Horizon::Mirror;
     material.roughness = 0.5;
     material.anisotropy = 1.0;
-    let film = stage.film(&document)?;
-    let off = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
-    Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
+    Ok(worst_pixel(&stage.film(&document)?, [1.0; 3]))
 }

@@ -1,9 +1,9 @@
 //! Small glTF files of hard geometry, to test the whole way from file to image.
 
-use glam::{Vec3, Vec4};
+use glam::Vec4;
 use serde_json::{Value, json};
 
-use super::stage::{HardError, Stage};
+use super::{Stage, StudyError};
 use crate::scene::ModelSource;
 use crate::scene::mesh::Mesh;
 
@@ -21,45 +21,32 @@ impl Glb {
     /// A file with one mesh at one node.
     pub(super) fn of(mesh: &Mesh, node: Value) -> Self {
         let mut glb = Self::default();
-        let index = glb.mesh(mesh, true);
+        let index = glb.mesh(mesh);
         glb.node(index, node);
         glb
     }
 
-    /// Adds a mesh, with or without its normals; no tangents and texture coordinates.
-    pub(super) fn mesh(&mut self, mesh: &Mesh, with_normals: bool) -> usize {
-        let positions: Vec<Vec3> = mesh.positions.iter().map(|p| p.as_vec3()).collect();
-        let mut attributes = json!({"POSITION": self.vectors(&positions)});
-        if with_normals {
-            attributes["NORMAL"] = json!(self.vectors(&mesh.normals));
-        }
-        let indices: Vec<u8> = mesh
-            .triangles
-            .as_flattened()
-            .iter()
-            .flat_map(|vertex| vertex.to_le_bytes())
-            .collect();
-        let view = self.view(&indices);
-        self.accessors.push(
-            json!({"bufferView": view, "componentType": 5125, "count": 3 * mesh.triangles.len(), "type": "SCALAR"}),
+    pub(super) fn mesh(&mut self, mesh: &Mesh) -> usize {
+        let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+        let end =
+            |pick: fn(f32, f32) -> f32| [0, 1, 2].map(|i| positions.iter().map(|p| p[i]).fold(positions[0][i], pick));
+        let [low, high] = [end(f32::min), end(f32::max)];
+        let vectors = json!({"componentType": 5126, "type": "VEC3", "min": low, "max": high});
+        let position = self.accessor(&positions, vectors);
+        let normals = json!({"componentType": 5126, "type": "VEC3"});
+        let normal = self.accessor(&mesh.normals, normals);
+        let indices = self.accessor(
+            mesh.triangles.as_flattened(),
+            json!({"componentType": 5125, "type": "SCALAR"}),
         );
-        let indices = self.accessors.len() - 1;
+        let attributes = json!({"POSITION": position, "NORMAL": normal});
         self.meshes
             .push(json!({"primitives": [{"attributes": attributes, "indices": indices}]}));
         self.meshes.len() - 1
     }
 
-    /// Adds tangents to a mesh, valid or not.
     pub(super) fn tangents(&mut self, mesh: usize, tangents: &[Vec4]) {
-        let bytes: Vec<u8> = tangents
-            .iter()
-            .flat_map(|t| t.to_array())
-            .flat_map(f32::to_le_bytes)
-            .collect();
-        let view = self.view(&bytes);
-        self.accessors
-            .push(json!({"bufferView": view, "componentType": 5126, "count": tangents.len(), "type": "VEC4"}));
-        let accessor = self.accessors.len() - 1;
+        let accessor = self.accessor(tangents, json!({"componentType": 5126, "type": "VEC4"}));
         self.meshes[mesh]["primitives"][0]["attributes"]["TANGENT"] = json!(accessor);
     }
 
@@ -69,7 +56,7 @@ impl Glb {
         self.nodes.push(transform);
     }
 
-    pub(super) fn write(self, stage: &Stage, name: &str) -> Result<ModelSource, HardError> {
+    pub(super) fn write(self, stage: &Stage, name: &str) -> Result<ModelSource, StudyError> {
         let roots: Vec<usize> = (0..self.nodes.len()).collect();
         let document = json!({
             "asset": {"version": "2.0"},
@@ -92,26 +79,15 @@ impl Glb {
         Ok(ModelSource::File(stage.write(name, &bytes)?))
     }
 
-    fn view(&mut self, bytes: &[u8]) -> usize {
+    /// Appends numbers, which are little-endian on every machine that this runs on.
+    fn accessor<T: bytemuck::Pod>(&mut self, items: &[T], mut accessor: Value) -> usize {
+        let bytes: &[u8] = bytemuck::cast_slice(items);
+        accessor["bufferView"] = json!(self.views.len());
+        accessor["count"] = json!(items.len());
+        self.accessors.push(accessor);
         self.views
             .push(json!({"buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len()}));
         self.bytes.extend(bytes);
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        self.views.len() - 1
-    }
-
-    fn vectors(&mut self, vectors: &[Vec3]) -> usize {
-        let bytes: Vec<u8> = vectors
-            .iter()
-            .flat_map(|v| v.to_array())
-            .flat_map(f32::to_le_bytes)
-            .collect();
-        let view = self.view(&bytes);
-        let [low, high] = [Vec3::min, Vec3::max].map(|pick| vectors.iter().copied().reduce(pick).unwrap_or_default());
-        self.accessors.push(json!({
-            "bufferView": view, "componentType": 5126, "count": vectors.len(), "type": "VEC3",
-            "min": low.to_array(), "max": high.to_array(),
-        }));
         self.accessors.len() - 1
     }
 }

@@ -1,14 +1,13 @@
 //! Hard cases of lobes: extremes of roughness, random numbers, curves, anisotropy, horizon, and densities with vanishing
 //! terms.
 
-use super::{HardError, Stage};
+use super::{Stage, StudyError};
 use crate::document::CustomCurve;
 use crate::job::probe::{LobeAnswer, LobeQuestion, ProbeScene};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_middle};
 use crate::optics::vector::{Vec3, vec3};
-use crate::optics::warp::uniform_sphere;
 use crate::scene::surface::bent_normal;
 use crate::study::check::shapes;
 
@@ -41,24 +40,13 @@ cases! {
         "R → 0: the density goes to infinity; R → 1: k → 0 is divided by"
         "R = 0, 1e-7, 1e-4, 1e-3 … 1 − 1e-4, 1 − 1e-7, 1, every lobe, curve and horizon, five views"
         "unit directions, finite weights and densities, none negative; answers that are not are counted"
-        || {
-            let naive = |r: f32| naive_density(r, vec3(0.0, 0.0, 1.0), vec3(0.0, 0.0, 1.0));
-            let bad = ROUGHNESS.iter().filter(|&&r| !naive(r).is_finite()).count();
-            format!("{bad} of {} densities at r are not finite", ROUGHNESS.len())
-        },
+        "12 of 12 densities at r are not finite",
         "count" 0.0, |stage| count_broken(stage, &grid(&shapes(), &ROUGHNESS, &VIEW_ANGLES_DEG, &[ANY_XI]));
     "random-numbers-at-their-ends"
         "ξ = 0 and 1 − 2⁻²⁴ come up sixty times a second: √ of −0, ln 0, 0/0"
         "each of three numbers 0, 2⁻²⁴, 2⁻³² or 1 − 2⁻²⁴, every lobe and curve, R at 0.03, 0.3, 0.97, 1"
         "unit directions, finite weights and densities, none negative; answers that are not are counted"
-        || {
-            let all = xi_ends();
-            let bad = all
-                .iter()
-                .filter(|&&xi| !naive_sample(1.0, xi).length().is_finite())
-                .count();
-            format!("{bad} of {} directions are NaN at R = 1", all.len())
-        },
+        "40 of 64 directions are NaN at R = 1",
         "count" 0.0, |stage| {
             count_broken(
                 stage,
@@ -69,12 +57,7 @@ cases! {
         "R = 1 with D = 0 or V = −n: w = 0, and 0/0 is NaN in the image for ever"
         "R = 1 and 1 − 1e-7, D = 0, V = n and V = −n to the bit (n along the axis of the sphere's map)"
         "unit directions with finite weight; others are counted"
-        || {
-            let bad = degenerate_xi()
-                .filter(|&xi| !naive_sample(1.0, xi).length().is_finite())
-                .count();
-            format!("{bad} of {} directions are NaN", degenerate_xi().count())
-        },
+        "8 of 12 directions are NaN",
         "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for &curve in Curve::ALL {
@@ -98,10 +81,7 @@ cases! {
         "−ln(1 − √ξ) at ξ → 1: √ξ rounds to 1, the distance to infinity, the direction to NaN"
         "the long tail at the last 64 numbers below 1, five roughnesses, four views"
         "unit directions with finite weight and density; others are counted"
-        || {
-            let bad = last_numbers().filter(|&xi| !naive_long_tail(xi).is_finite()).count();
-            format!("{bad} of 64 distances are infinite")
-        },
+        "0 of 64 distances are infinite",
         "count" 0.0, |stage| {
             let ends: Vec<_> = last_numbers().map(|xi| [0.37, 0.61, xi]).collect();
             let tail = [
@@ -117,7 +97,7 @@ cases! {
         "a flat curve has infinite density, a steep one next to none: x/0 in the density, no interval to find"
         "curves drawn by hand: flat then steep, nearly steps, a late jump, the shortest and the longest"
         "unit directions, finite weights and densities, none negative; answers that are not are counted"
-        || "1/0 in the flat interval".to_owned(),
+        "1/0 in the flat interval",
         "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for which in 0..custom_curves().len() as u32 {
@@ -138,7 +118,7 @@ cases! {
         "the full stretch makes one width 19 times the other: squares of their ratio cancel in f32"
         "anisotropy −1, −0.999, 0.999 and 1, every lobe that stretches, R at its ends, five views"
         "unit directions, finite weights and densities, none negative; answers that are not are counted"
-        || "√((1 + 1)/(1 − 1)) is infinite".to_owned(),
+        "√((1 + 1)/(1 − 1)) is infinite",
         "count" 0.0, |stage| {
             let stretched: Vec<_> = shapes()
                 .into_iter()
@@ -154,7 +134,7 @@ cases! {
         "r·n → 0: half of the lobe is below the surface, 1/cosθ is infinite"
         "views 0, 1e-20, 1e-7 and 1e-4 above the horizon, lit from there too; every lobe, R at its ends"
         "unit directions on the side they belong to, finite weights and densities; others are counted"
-        || format!("1/cosθ is {} at the horizon", 1.0 / 0.0_f32),
+        "1/cosθ is inf at the horizon",
         "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for height in [0.0, 1e-20, 1e-7, 1e-4_f32] {
@@ -174,11 +154,7 @@ cases! {
         "a smooth mesh's normal leans away from the viewer: negative cosines, energy out of nothing"
         "interpolated normals 90° to 180° from the view, bent back as for images; every lobe, R at its ends"
         "unit directions above the true surface, finite weights and densities; others are counted"
-        || {
-            let wo = vec3(-0.995, 0.0, 0.1_f32).normalize();
-            let leaning = vec3(0.5, 0.0, 0.87_f32).normalize();
-            format!("cosine {:.2} of the view", leaning.dot(wo))
-        },
+        "cosine -0.41 of the view",
         "count" 0.0, |stage| {
             let wo = vec3(-0.995, 0.0, 0.1_f32).normalize();
             let mut questions = Vec::new();
@@ -203,12 +179,7 @@ cases! {
         "directions at r and 1e-7 … 1e-3 beside it, on the silhouette (found by halving) and 3e-7 beside it, at \
                the horizon, along ±n and ±view; every lobe, curve and roughness"
         "finite values and densities, none negative; others are counted"
-        || {
-            let r = vec3(0.6, 0.0, 0.8_f32);
-            let values = [0.3, 0.7, 1.0].map(|roughness| naive_density(roughness, r, r));
-            let bad = values.into_iter().filter(|value| !value.is_finite()).count();
-            format!("{bad} of 3 densities at r are not finite")
-        },
+        "3 of 3 densities at r are not finite",
         "count" 0.0, |stage| {
             let mut questions = Vec::new();
             for question in grid(&shapes(), &ROUGHNESS, &[0.0, 45.0, 80.0, 89.99], &[ANY_XI]) {
@@ -311,7 +282,7 @@ fn custom_curves() -> Vec<Vec<f32>> {
 }
 
 /// Counts invalid answers.
-fn count_broken(stage: &Stage, questions: &[LobeQuestion]) -> Result<f64, HardError> {
+fn count_broken(stage: &Stage, questions: &[LobeQuestion]) -> Result<f64, StudyError> {
     let tables = custom_curves().concat();
     let scene = ProbeScene {
         tables: &tables,
@@ -383,37 +354,4 @@ fn singular_directions(question: &LobeQuestion) -> Vec<Vec3<f32>> {
         directions.extend([-3e-7, -1e-7, 0.0, 1e-7, 3e-7].map(|by| at(inside + by)));
     }
     directions.into_iter().map(|v| Vec3::from_f32(v.to_f32())).collect()
-}
-
-/// The paper's sample as it is written, seen along +x: no guard.
-fn naive_sample(roughness: f32, xi: [f32; 3]) -> Vec3<f32> {
-    let normal = vec3(1.0, 0.0, 0.0);
-    let w = normal * (1.0 - roughness) + (uniform_sphere([xi[0], xi[1]]) + normal * roughness) * (roughness * xi[2]);
-    w.normalize()
-}
-
-fn naive_long_tail(xi: f32) -> f32 {
-    -(1.0 - xi.sqrt()).ln()
-}
-
-/// The density of the square root's lobe (D = √ξ, h = 2) by quadrature over D with the second form of its roots, which
-/// divides by k and by √Δ: as in the paper, head-on, without guards.
-fn naive_density(roughness: f32, mirror: Vec3<f32>, light: Vec3<f32>) -> f32 {
-    let normal = vec3(0.0, 0.0, 1.0);
-    let a = mirror * ((1.0 - roughness) / roughness);
-    let k = 1.0 - roughness * roughness;
-    let cosine = roughness * normal.dot(light);
-    let t = a.dot(light);
-    let root = (cosine * cosine + k).sqrt();
-    let least = (a - light * t).length() / root;
-    // ∫ t²/(D² − least²)^½ over D from the tangent sphere.
-    let steps = 64;
-    let sum: f32 = (0..steps)
-        .map(|i| {
-            let distance = least + (1.0 - least) * i as f32 / steps as f32;
-            let t = t + cosine * distance;
-            t * t / (distance * distance - least * least).sqrt()
-        })
-        .sum();
-    sum * (1.0 - least) / (steps as f32 * k)
 }

@@ -4,7 +4,7 @@
 /// The cases of a group, each by name, danger, how it is made, what must hold, the naive form, measure, limit, and what finds
 /// the value; see [`HardCase`].
 macro_rules! cases {
-    ($group:literal $($name:literal $danger:literal $made:literal $must:literal $naive:expr, $measure:literal $limit:expr, $find:expr;)*) => {
+    ($group:literal $($name:literal $danger:literal $made:literal $must:literal $naive:literal, $measure:literal $limit:expr, $find:expr;)*) => {
         pub(super) const CASES: &[$crate::study::hard::HardCase] = &[$($crate::study::hard::HardCase {
             name: $name,
             group: $group,
@@ -20,11 +20,9 @@ macro_rules! cases {
 }
 
 mod against_f64;
-mod film;
 mod fresnel;
 mod geometry;
 mod glb;
-mod layer;
 mod light;
 mod lobe;
 mod meshes;
@@ -33,13 +31,15 @@ mod stage;
 mod sums;
 
 use std::fmt::Write as _;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::check::Check;
 use crate::job::film::Image;
 use crate::render::{EngineChoice, EngineInfo};
-pub use fresnel::naive_conductor;
-pub use stage::{HardError, Stage};
+pub use stage::Stage;
+
+use super::StudyError;
 
 /// A situation where naive code fails.
 #[derive(Clone, Copy)]
@@ -54,21 +54,20 @@ pub struct HardCase {
     pub made: &'static str,
     pub must: &'static str,
     /// Result of the naive form, computed if cheap.
-    pub naive: fn() -> String,
+    pub naive: &'static str,
     /// Measure, as in [`Check::measure`].
     pub measure: &'static str,
     /// Limit of the measure.
     pub limit: f64,
-    pub find: fn(&mut Stage) -> Result<f64, HardError>,
+    pub find: fn(&mut Stage) -> Result<f64, StudyError>,
 }
 
 /// Every case, group by group.
 pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
     [
         lobe::CASES,
-        layer::CASES,
+        against_f64::COAT,
         against_f64::CASES,
-        film::CASES,
         fresnel::CASES,
         geometry::CASES,
         light::CASES,
@@ -80,16 +79,16 @@ pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
 
 impl HardCase {
     /// Runs the case on an engine.
-    pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
+    pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, StudyError> {
         let begun = Instant::now();
         stage.check_stop()?;
-        stage.take_picture();
+        stage.picture = None;
         let value = (self.find)(stage)?;
         Ok(HardRow {
             case: self,
             check: Check::new(self.group, self.name, self.measure, value, self.limit),
             seconds: begun.elapsed().as_secs_f64(),
-            picture: stage.take_picture(),
+            picture: stage.picture.take(),
         })
     }
 }
@@ -118,8 +117,8 @@ pub struct HardOptions {
 }
 
 /// Runs all cases; `progress` receives each case's name before it starts.
-pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), HardError> {
-    let mut stage = Stage::open(options.engine, options.thorough)?;
+pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), StudyError> {
+    let mut stage = Stage::open(options.engine, options.thorough, Arc::default())?;
     let mut rows = Vec::new();
     for case in catalogue().filter(|case| case.name.contains(&options.only)) {
         progress(case.name);
@@ -147,13 +146,7 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
         let _ = write!(
             text,
             "| {}: {} | {} | {}: {} | {} | {} {limit} |",
-            case.group,
-            case.name,
-            case.danger,
-            case.made,
-            case.must,
-            (case.naive)(),
-            case.measure
+            case.group, case.name, case.danger, case.made, case.must, case.naive, case.measure
         );
         for check in engines
             .iter()
@@ -166,9 +159,4 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
         text.push('\n');
     }
     text
-}
-
-/// A division by zero as naive code makes it, in words.
-fn over_zero(numerator: f32) -> String {
-    (numerator / 0.0).to_string().to_lowercase()
 }

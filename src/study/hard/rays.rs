@@ -3,10 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use super::meshes::{add_square, cube, model};
-use super::{HardError, Stage};
+use super::{Stage, StudyError};
 use crate::job::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
 use crate::optics::random::hash_bits;
-use crate::scene::mesh::Mesh;
 use crate::scene::surface::surface_at;
 use crate::scene::texture::Textures;
 use crate::scene::{Geometry, Hit, shapes};
@@ -41,10 +40,6 @@ pub(super) fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
 pub(super) fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
     let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangle_count();
     let corners = geometry.corners(triangle).map(Vec3::from_array);
-    aim_at(corners, i)
-}
-
-fn aim_at(corners: [Vec3; 3], i: u32) -> Vec3 {
     match i % 3 {
         0 => corners[0],
         1 => corners[0].lerp(corners[1], unit(hash_bits(i ^ 0x777))),
@@ -53,13 +48,13 @@ fn aim_at(corners: [Vec3; 3], i: u32) -> Vec3 {
 }
 
 /// Number of rays that miss, or miss before `t_max`.
-pub(super) fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, HardError> {
+pub(super) fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, StudyError> {
     let answers = trace(stage, geometry, rays)?;
     let is_lost = |answer: &&RayAnswer| answer.triangle == NO_HIT || answer.t.is_nan() || answer.t > t_max;
     Ok(answers.iter().filter(is_lost).count() as f64)
 }
 
-fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec<RayAnswer>, HardError> {
+fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec<RayAnswer>, StudyError> {
     let scene = ProbeScene {
         geometry: Some(geometry),
         ..ProbeScene::default()
@@ -68,7 +63,7 @@ fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec
 }
 
 /// Rays from grid points of a cube along axes and in planes: number of wrong exits.
-pub(super) fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
+pub(super) fn axis_rays(stage: &Stage) -> Result<f64, StudyError> {
     let geometry = Geometry::build(&model(cube(DVec3::ONE, 8)), false);
     let wall = (1.0 / geometry.world_units_per_unit) as f32;
     let mut rays = Vec::new();
@@ -103,7 +98,7 @@ pub(super) fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
 }
 
 /// Rays that leave a convex mesh outwards and inwards: number of wrong hits and misses.
-pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
+pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, StudyError> {
     let mut wrong = 0.0;
     for radius in [1.0, 1e-3] {
         let mut mesh = shapes::sphere(48, 24);
@@ -155,42 +150,4 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
         wrong += answers.iter().zip(&is_outward).filter(bad).count() as f64;
     }
     Ok(wrong)
-}
-
-/// Places on the edges of a mesh.
-pub(super) fn edge_aims(mesh: &Mesh, count: u32) -> Vec<Vec3> {
-    let aim = |i: u32| {
-        let triangle = hash_bits(i ^ 0x1234) as usize % mesh.triangles.len();
-        aim_at(mesh.corners(triangle).map(|corner| corner.as_vec3()), i)
-    };
-    (0..count).map(aim).collect()
-}
-
-/// Number of rays from inside a closed mesh that leak with the textbook test of Möller and Trumbore in f32.
-pub(super) fn naive_leaks(mesh: &Mesh, origin: DVec3, count: u32) -> usize {
-    let aims: Vec<Vec3> = (0..count).map(|i| origin.as_vec3() + direction(i)).collect();
-    naive_misses(mesh, origin, &aims)
-}
-
-pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
-    let origin = origin.as_vec3();
-    let triangles: Vec<_> = (0..mesh.triangles.len())
-        .map(|triangle| mesh.corners(triangle).map(|corner| corner.as_vec3()))
-        .collect();
-    let is_hit = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
-        let (to_b, to_c) = (b - a, c - a);
-        let across = direction.cross(to_c);
-        let determinant = to_b.dot(across);
-        // The guard against parallel planes as it is usually copied.
-        if determinant.abs() < 1e-7 {
-            return false;
-        }
-        let from_a = origin - a;
-        let u = from_a.dot(across) / determinant;
-        let other = from_a.cross(to_b);
-        let v = direction.dot(other) / determinant;
-        u >= 0.0 && v >= 0.0 && u + v <= 1.0 && to_c.dot(other) / determinant > 0.0
-    };
-    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_hit(**aim - origin, *corners));
-    aims.iter().filter(misses).count()
 }

@@ -1,48 +1,22 @@
-//! Test bench of the cases: an engine for renders and single functions, and a folder for files.
+//! What hard cases are run on.
 
+use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::time::Duration;
-use std::{fs, io};
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use tempfile::TempDir;
+
+use crate::document::Document;
 use crate::document::effect::EffectSwitches;
-use crate::document::{Document, PixelFilter};
-use crate::gpu::GpuError;
 use crate::import::environment;
 use crate::job::film::{Film, Image};
-use crate::optics::random::Sequence;
-use crate::render::output::{self, OutputError, Rendered};
+use crate::render::output::{self, Rendered};
 use crate::render::{EngineChoice, EngineInfo, Session, SessionError};
-use crate::scene::ModelSource;
 use crate::scene::environment::{Environment, EnvironmentSource};
+use crate::study::StudyError;
+use crate::study::check::STEP;
 use crate::study::probe::Prober;
-
-/// Time between two checks for a stop.
-pub(super) const SLICE: Duration = Duration::from_millis(100);
-
-/// Why a case can't be run.
-#[derive(Debug, thiserror::Error)]
-pub enum HardError {
-    /// Error of the engine or its input.
-    #[error(transparent)]
-    Session(#[from] SessionError),
-    /// An image for a case could not be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A file or folder for a case could not be written.
-    #[error("{}: cannot be written: {source}; make room in the system's temporary folder", path.display())]
-    Folder { path: PathBuf, source: io::Error },
-    /// The run was stopped.
-    #[error("stopped")]
-    Stopped,
-}
-
-impl From<GpuError> for HardError {
-    fn from(error: GpuError) -> Self {
-        Self::Session(error.into())
-    }
-}
 
 /// An engine, and a folder that goes with it.
 pub struct Stage {
@@ -50,67 +24,50 @@ pub struct Stage {
     pub thorough: bool,
     /// Single functions of the engine.
     pub prober: Prober,
-    /// The engine's choice, for clouds of samples.
-    pub choice: EngineChoice,
+    choice: EngineChoice,
     session: Session,
-    folder: Folder,
+    folder: TempDir,
     /// The last rendered image.
-    picture: Option<Image>,
-    stop: Arc<AtomicBool>,
+    pub(super) picture: Option<Image>,
+    pub(super) stop: Arc<AtomicBool>,
 }
 
 impl Stage {
-    /// Opens an engine. If that is the CPU engine, single functions run on the CPU, too.
-    pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
+    /// Opens an engine. If that is the CPU engine, single functions run on the CPU, too. Cases end as soon as `stop` is
+    /// set.
+    pub fn open(choice: EngineChoice, thorough: bool, stop: Arc<AtomicBool>) -> Result<Self, StudyError> {
         let session = Session::open(choice)?;
         let choice = session.engine().kind.into();
+        let (prober, folder) = (Prober::open(choice)?, TempDir::new()?);
         Ok(Self {
             thorough,
-            prober: Prober::open(choice)?,
+            prober,
             choice,
             session,
-            folder: Folder::new()?,
+            folder,
             picture: None,
-            stop: Arc::default(),
+            stop,
         })
     }
 
-    /// The same stage, whose cases end as soon as `stop` is set.
-    #[must_use]
-    pub fn until(self, stop: Arc<AtomicBool>) -> Self {
-        Self { stop, ..self }
-    }
-
-    /// Checks for a stop; call it within long work.
-    pub fn check_stop(&self) -> Result<(), HardError> {
+    pub(super) fn check_stop(&self) -> Result<(), StudyError> {
         match self.stop.load(Ordering::Relaxed) {
-            true => Err(HardError::Stopped),
+            true => Err(StudyError::Stopped),
             false => Ok(()),
         }
     }
 
-    /// The stop flag, for other threads.
-    pub(super) fn stop(&self) -> &AtomicBool {
-        &self.stop
-    }
-
-    /// Takes the last rendered image.
-    pub fn take_picture(&mut self) -> Option<Image> {
-        self.picture.take()
-    }
-
-    /// The engine that runs the cases.
     pub fn engine(&self) -> &EngineInfo {
         self.session.engine()
     }
 
     /// The session, for details beyond the film.
-    pub fn session(&mut self) -> &mut Session {
+    pub(super) fn session(&mut self) -> &mut Session {
         &mut self.session
     }
 
     /// Renders a document to its end.
-    pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
+    pub(super) fn film(&mut self, document: &Document) -> Result<Film, StudyError> {
         let mut document = document.clone();
         if self.choice == EngineChoice::Gpu {
             // One kernel for all renders: compiling one each would take longer than rendering.
@@ -119,7 +76,7 @@ impl Stage {
         self.check_stop()?;
         self.session.reset();
         self.session.submit(&document)?;
-        while !self.session.step(SLICE)?.is_done {
+        while !self.session.step(STEP)?.is_done {
             self.check_stop()?;
         }
         let film = self.session.film()?.clone();
@@ -127,27 +84,20 @@ impl Stage {
         Ok(film)
     }
 
-    /// Path of a case's file.
-    pub fn path(&self, name: &str) -> PathBuf {
-        self.folder.0.join(name)
-    }
-
     /// Writes a file for a case.
-    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, HardError> {
-        let path = self.path(name);
-        match fs::write(&path, bytes) {
-            Ok(()) => Ok(path),
-            Err(source) => Err(HardError::Folder { path, source }),
-        }
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, StudyError> {
+        let path = self.folder.path().join(name);
+        fs::write(&path, bytes)?;
+        Ok(path)
     }
 
     /// A latitude-longitude map of linear radiances, written as .exr in f32 and to be read again.
-    pub fn environment(
+    pub(super) fn environment(
         &self,
         name: &str,
         [width, height]: [u32; 2],
         radiance: impl Fn(u32, u32) -> [f32; 3],
-    ) -> Result<EnvironmentSource, HardError> {
+    ) -> Result<EnvironmentSource, StudyError> {
         let pixels = (0..width * height).map(|i| {
             let [red, green, blue] = radiance(i % width, i / width);
             [red, green, blue, 1.0]
@@ -157,49 +107,23 @@ impl Stage {
             height,
             pixels: pixels.collect(),
         };
-        let path = self.path(name);
+        let path = self.folder.path().join(name);
         output::write(&path, Rendered::from(&image), &Document::default())?;
         Ok(EnvironmentSource::File(path))
     }
 
     /// The map of a source, loaded as the engines load it.
-    pub fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, HardError> {
+    pub(super) fn load_environment(&self, source: &EnvironmentSource) -> Result<Environment, StudyError> {
         Ok(environment::load(source).map_err(|error| SessionError::Asset(error.into()))?)
     }
 }
 
-/// A small document with honest variances: box filter, independent samples.
-pub fn document(model: ModelSource, light: EnvironmentSource, side: u32, samples: u32) -> Document {
-    let mut document = Document {
-        model,
-        ..Document::default()
-    };
-    document.lighting.environment = light;
-    (document.render.width, document.render.height) = (side, side);
-    document.render.samples = samples;
-    document.render.filter = PixelFilter::Box;
-    document.render.sequence = Sequence::Independent;
-    document
+/// How far the worst pixel is from what all pixels should be, relative to it, and how many samples were dropped.
+pub(super) fn worst_pixel(film: &Film, color: [f32; 3]) -> f64 {
+    let off = |pixel: &[f32; 4]| [0, 1, 2].map(|i| f64::from((pixel[i] / color[i] - 1.0).abs()));
+    film.image().pixels.iter().flat_map(off).fold(0.0, f64::max) + film.dropped() as f64
 }
 
-/// A folder that is removed with this value.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Result<Self, HardError> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("glossmith-hard-{}-{number}", std::process::id()));
-        match fs::create_dir_all(&path) {
-            Ok(()) => Ok(Self(path)),
-            Err(source) => Err(HardError::Folder { path, source }),
-        }
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // Leftovers in the temporary folder are harmless.
-        let _ = fs::remove_dir_all(&self.0);
-    }
+pub(super) fn mean_luminance(film: &Film) -> f64 {
+    film.luminance().iter().sum::<f64>() / film.pixel_count() as f64
 }

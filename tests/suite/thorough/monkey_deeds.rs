@@ -60,17 +60,6 @@ pub(super) struct Surroundings {
     pub(super) before: HashSet<(Role, String)>,
     /// What it has had its hands on.
     pub(super) touched: HashSet<(Role, String)>,
-    /// What there was at all, and what was done with it.
-    pub(super) seen: HashSet<(Role, String)>,
-    pub(super) done: HashSet<(Gesture, Role, String)>,
-}
-
-/// What hands do with a control.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) enum Gesture {
-    Click,
-    Drag,
-    Type,
 }
 
 /// Something that can be clicked, dragged or typed into.
@@ -168,7 +157,6 @@ impl Deed {
         };
         let chosen = pick(some, random);
         around.before = all.iter().map(key).collect();
-        around.seen.extend(all.iter().map(key));
         let Some(control) = chosen else {
             return Self::Rest;
         };
@@ -206,17 +194,6 @@ impl Deed {
             97..99 if !is_path => Self::Choose(control),
             _ => Self::Rest,
         }
-    }
-
-    /// The control that it is done with, and how.
-    pub(super) fn gesture(&self) -> Option<(Gesture, Role, String)> {
-        let (gesture, control) = match self {
-            Self::Click(control, ..) | Self::Choose(control) => (Gesture::Click, control),
-            Self::Drag { of: Some(control), .. } => (Gesture::Drag, control),
-            Self::SetNumber(control, _) | Self::SetText(control, _) => (Gesture::Type, control),
-            _ => return None,
-        };
-        Some((gesture, control.role, control.name.clone()))
     }
 
     fn click(random: &mut Random, window: Rect, control: Control) -> Self {

@@ -17,7 +17,7 @@ use glossmith::store::{material_by_name, save_document};
 
 use super::docs::root;
 use super::ui::{Editor, request, see, see_label, settle, wait, window_of};
-use super::ui_hands::{press, type_path};
+use super::ui_hands::{Hands as _, press, type_path};
 use super::ui_study::race_strategies;
 
 /// What is docked together, and what the page is called.
@@ -56,13 +56,13 @@ fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
     document.render.samples = 12;
     document.view.denoise = Denoise::High;
     let mut harness = window_of(document, folder, size);
-    request(&mut harness, Action::Do(Command::Pin));
+    harness.command(Command::Pin);
     rest(&mut harness, 1.0);
     request(&mut harness, Action::LookFrom(60.0, 15.0));
     settle(&mut harness);
-    request(&mut harness, Action::Do(Command::Pin));
+    harness.command(Command::Pin);
     rest(&mut harness, 1.0);
-    request(&mut harness, Action::Do(Command::Undo));
+    harness.command(Command::Undo);
     settle(&mut harness);
     let oak = folder.join("oak_rough.png");
     image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([120 + ((x / 4 + y / 16) % 8 * 12) as u8; 3]))
@@ -73,7 +73,7 @@ fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
     settle(&mut harness);
     race_strategies(&mut harness, 0.5);
     see_label(&mut harness, "Run the race");
-    request(&mut harness, Action::Do(Command::Measure));
+    harness.command(Command::Measure);
     see(&mut harness, "the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")
@@ -85,16 +85,16 @@ fn worked_in(folder: &Path, size: [u32; 2]) -> Editor {
     see(&mut harness, "the checks", |harness| {
         harness.query_by_label_contains("checks passed").is_some()
     });
-    request(&mut harness, Action::Do(Command::QueuePicture));
+    harness.command(Command::QueuePicture);
     type_path(&mut harness, &folder.join("teapot.exr"), "Save");
-    request(&mut harness, Action::Do(Command::Turntable));
+    harness.command(Command::Turntable);
     harness.run_steps(3);
     press(&mut harness, "Add to the queue");
     harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
     let viewport = harness.get_by_label("Viewport").rect();
     harness.hover_at(viewport.center() + Vec2::new(-0.04 * viewport.width(), 0.0));
     harness.run_steps(3);
-    request(&mut harness, Action::Do(Command::Inspect));
+    harness.command(Command::Inspect);
     settle(&mut harness);
     harness
 }
@@ -131,7 +131,7 @@ fn panels() {
                 rest(&mut harness, 3.0);
                 write(&mut harness, &root().join("docs").join(path(page, size, theme)));
             }
-            request(&mut harness, Action::Do(Command::ToggleTheme));
+            harness.command(Command::ToggleTheme);
         }
     }
 }
@@ -169,7 +169,7 @@ fn take(harness: &mut Editor, name: &str) {
         .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
     let size = [window.width(), window.height()];
     let text = tempfile::NamedTempFile::new().expect("a temporary file");
-    save_document(text.path(), harness.state().document()).expect("saved");
+    save_document(text.path(), harness.document()).expect("saved");
     let text = std::fs::read_to_string(text.path()).expect("the text");
     let bytes = png_bytes(size, &window.into_raw(), Some(&text)).expect("an image");
     std::fs::write(root().join(format!("docs/pictures/{name}.png")), bytes).expect("written");
@@ -188,11 +188,11 @@ fn windows() {
         &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve],
     );
     take(&mut harness, "window");
-    request(&mut harness, Action::Do(Command::ToggleTheme));
+    harness.command(Command::ToggleTheme);
     reveal(&mut harness, &[Pane::Samples, Pane::Camera]);
     take(&mut harness, "window-light");
-    request(&mut harness, Action::Do(Command::ToggleTheme));
-    request(&mut harness, Action::Do(Command::Measure));
+    harness.command(Command::ToggleTheme);
+    harness.command(Command::Measure);
     see(&mut harness, "the ledger", |harness| {
         harness
             .query_by_label_contains("ms for one sample of every pixel")
@@ -200,13 +200,13 @@ fn windows() {
     });
     reveal(&mut harness, &[Pane::Effects, Pane::Curve]);
     take(&mut harness, "window-effects");
-    request(&mut harness, Action::Do(Command::Compare));
+    harness.command(Command::Compare);
     wait(&mut harness, "B", |app| app.rms_difference().is_some());
     reveal(&mut harness, &[Pane::Lobe, Pane::Lighting]);
     take(&mut harness, "window-compare");
-    request(&mut harness, Action::Do(Command::Compare));
+    harness.command(Command::Compare);
     settle(&mut harness);
-    request(&mut harness, Action::Do(Command::Export));
+    harness.command(Command::Export);
     type_path(&mut harness, &folder.join("car-paint.mtlx"), "Save");
     see_label(&mut harness, "Write the file");
     take(&mut harness, "window-export");

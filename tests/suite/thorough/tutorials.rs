@@ -4,55 +4,19 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, Vec2};
-use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::Action;
-use glossmith::app::layout::Pane;
-use glossmith::app::workspaces::LOOK;
-use glossmith::app::{App, Options};
-use glossmith::document::{Denoise, Document};
-use glossmith::optics::lobe::Lobe;
+use glossmith::document::Denoise;
 use glossmith::render::shown::Shown;
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::store::examples::still_life;
 use serde_json::Value;
 
 use super::cli_support::{Workplace, write_hdr};
 use super::docs::{pages, text_of};
 use super::docs_commands::{arguments, commands};
 use super::gltf_builder::{glb, square};
-use super::ui::{Editor, drag, editor, editor_of, options, request, see, settle, wait};
-use super::ui_files::{drop_on, wait_for_words};
-use super::ui_hands::{press, type_path};
-use super::worker::small_document;
+use super::ui::{editor, request, see};
 
 fn tutorial(name: &str) -> String {
     text_of(&Path::new("docs/tutorials").join(name))
-}
-
-fn window_with(options: Options) -> (Editor, tempfile::TempDir) {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = editor_of(Options {
-        typed_paths: Some(folder.path().to_owned()),
-        ..options
-    });
-    settle(&mut harness);
-    (harness, folder)
-}
-
-/// Brings a panel to the front by its tab.
-fn tab(harness: &mut Editor, pane: Pane) {
-    let tab = harness.query_all_by_role_and_label(Role::Button, pane.title()).next();
-    let at = tab.expect("the panel's tab").rect().center();
-    super::ui_scene::click_at(harness, at);
-    harness.run_steps(3);
-}
-
-/// Presses a button, wherever it is scrolled to.
-fn tap(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
-    harness.run_steps(3);
 }
 
 /// The names of the window that a page gives in italics, such as *File › Export…*, in their parts.
@@ -117,99 +81,6 @@ fn names_of_the_window_that_the_pages_give_exist() {
         }
     }
     assert!(count > 60, "{count} names");
-}
-
-#[test]
-fn your_first_material() {
-    // What a newcomer gets: the still life in the workspace Look.
-    let still_life = Document {
-        render: small_document().render,
-        ..still_life()
-    };
-    let (mut harness, folder) = window_with(Options {
-        document: Some(still_life),
-        workspace: Some(LOOK.to_owned()),
-        ..options()
-    });
-    let document = |harness: &Editor| harness.state().document().clone();
-    // 1. Choose a preset: it goes to the teapot.
-    tab(&mut harness, Pane::Presets);
-    harness.get_by_role_and_label(Role::TextInput, "Search presets").click();
-    harness.run_steps(2);
-    harness.event(Event::Text("gold".to_owned()));
-    harness.run_steps(3);
-    tap(&mut harness, "Gold");
-    settle(&mut harness);
-    assert_eq!(document(&harness).materials[0].name, "Gold");
-    assert_eq!(document(&harness).materials.len(), 4);
-    // 2. Change the roughness: by the bar, by its label, and by a search.
-    tab(&mut harness, Pane::Material);
-    let gold = document(&harness).materials[0].roughness;
-    let bar = harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .rect();
-    drag(
-        &mut harness,
-        bar.left_center() + Vec2::new(8.0, 0.0),
-        Vec2::new(60.0, 0.0),
-    );
-    assert_ne!(document(&harness).materials[0].roughness, gold);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
-    harness.run_steps(2);
-    for words in ["spec rough", "0.4"] {
-        harness.event(Event::Text(words.to_owned()));
-        harness.run_steps(2);
-        harness.key_press(Key::Enter);
-        harness.run_steps(4);
-    }
-    settle(&mut harness);
-    assert_eq!(document(&harness).materials[0].roughness, 0.4);
-    // 3. Turn the light.
-    tap(&mut harness, "Sky");
-    wait(&mut harness, "the sky", |app| {
-        app.document().lighting.environment == EnvironmentSource::Sky
-    });
-    settle(&mut harness);
-    let before = document(&harness);
-    let center = harness.get_by_label("Viewport").rect().center();
-    harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
-    drag(&mut harness, center, Vec2::new(50.0, 0.0));
-    harness.event(Event::ModifiersChanged(Modifiers::NONE));
-    assert_ne!(document(&harness).lighting.rotation_deg, before.lighting.rotation_deg);
-    drag(&mut harness, center, Vec2::new(50.0, 0.0));
-    assert_ne!(document(&harness).camera.yaw_deg, before.camera.yaw_deg);
-    // 4. Compare with GGX.
-    harness.key_press(Key::C);
-    harness.run_steps(3);
-    harness.get_by_role_and_label(Role::ComboBox, "Compare with").click();
-    harness.run_steps(3);
-    tap(&mut harness, Lobe::Ggx.label());
-    wait(&mut harness, "GGX as B", |app| {
-        let rival = app.rival_snapshot().and_then(|rival| rival.picture.clone());
-        rival.is_some_and(|picture| picture.document.materials[0].lobe == Lobe::Ggx)
-    });
-    harness.key_press(Key::C);
-    settle(&mut harness);
-    // 5. Save: the image has the document inside, and opens as one.
-    let saved = document(&harness);
-    let path = folder.path().join("gold.png");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::E);
-    type_path(&mut harness, &path, "Save");
-    wait_for_words(&mut harness, "saved");
-    tap(&mut harness, "Satin gold");
-    settle(&mut harness);
-    drop_on(&mut harness, &[path]);
-    let is_back = |app: &App| app.document().materials == saved.materials;
-    see(&mut harness, "the image or a question", |harness| {
-        is_back(harness.state()) || harness.query_by_label("Discard").is_some()
-    });
-    if !is_back(harness.state()) {
-        press(&mut harness, "Discard");
-    }
-    wait(&mut harness, "the document of the image", is_back);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    type_path(&mut harness, &folder.path().join("gold.json"), "Save");
-    wait_for_words(&mut harness, "gold.json");
 }
 
 #[test]

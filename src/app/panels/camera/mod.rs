@@ -4,15 +4,10 @@ mod photographic;
 mod reference;
 mod region;
 
-use egui::Ui;
-
 use photographic::Photographic;
 
-use super::Panel;
-use crate::app::actions::{Action, Command};
-use crate::app::desk::{Desk, PICTURE_SIZE};
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::widgets::{self, Name, NumberStyle};
+use super::*;
+use crate::app::desk::PICTURE_SIZE;
 use crate::app::services::viewing::{Pick, Resolution};
 use crate::document::{Bookmark, range};
 
@@ -23,7 +18,7 @@ pub struct CameraPanel {
 }
 
 impl Panel for CameraPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         widgets::group(ui, "Camera", |ui| camera(ui, desk));
         widgets::group(ui, "Lens", |ui| self.photographic.show(ui, desk));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
@@ -35,11 +30,11 @@ impl Panel for CameraPanel {
 }
 
 /// How radiance becomes an image, and the table of colours that it goes through last.
-fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn view(ui: &mut Ui, desk: &mut Desk) {
     desk.settings(ui, "View");
     let help = "A look-up table of colours (.cube), applied last. Linear images (.exr, .hdr) stay as they are.";
     let file = desk.document.view.lut.clone();
-    let name = Name::new("Table of colours", "LUT", help);
+    let name = ["Table of colours", "LUT", help];
     let remove = ("Remove the table of colours", "Shows the image without it");
     if desk.file_row(ui, name, file.as_deref(), Action::ChooseLut, remove) {
         desk.document.view.lut = None;
@@ -48,27 +43,22 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::comes_and_goes(ui, |ui| reference::show(ui, desk));
 }
 
-fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn camera(ui: &mut Ui, desk: &mut Desk) {
     desk.settings(ui, "Camera");
     widgets::comes_and_goes(ui, |ui| focus(ui, desk));
     ui.horizontal_wrapped(|ui| {
-        if widgets::pressed(ui, "Frame all", Command::FrameAll.help()) {
-            desk.act(Command::FrameAll);
-        }
+        desk.button(ui, Command::FrameAll);
         for (label, yaw_deg, pitch_deg) in [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 90.0)] {
             if ui.button(label).clicked() {
                 desk.actions.push(Action::LookFrom(yaw_deg, pitch_deg));
             }
         }
-        let help = Command::FrameSelected.help();
-        if widgets::pressed(ui, "Frame selected", help) {
-            desk.act(Command::FrameSelected);
-        }
+        desk.button(ui, Command::FrameSelected);
     });
 }
 
 /// The focus distance: until it is given, that of the target, which only the scene knows.
-fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn focus(ui: &mut Ui, desk: &mut Desk) {
     if desk.document.camera.aperture == 0.0 {
         desk.shared.viewing.picks.take_if(|pick| *pick == Pick::Focus);
         return;
@@ -78,40 +68,31 @@ fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
         (camera.focus_distance - camera.parallel_from) * scene.job.geometry.world_units_per_unit
     });
     let style = NumberStyle::plain(range::DISTANCE, "", 0.005 * at_target, 4);
-    let mut distance = desk.document.camera.focus_distance.unwrap_or(at_target);
-    let name = Name::new(
+    let name = [
         "Focus distance",
         "Focus",
         "How far away things are sharp, in the model's units; at first at the camera's target. In the viewport: \
          click with ctrl.",
-    );
-    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut distance, &style));
-    if response.changed {
-        desk.document.camera.focus_distance = Some(distance);
-    }
-    desk.edited(response, "Focus distance", |document| {
-        &mut document.camera.focus_distance
-    });
-    desk.pick_toggle(
+    ];
+    desk.row(
         ui,
-        Pick::Focus,
-        "Pick focus",
-        "The next click in the viewport says what is sharp.",
+        name,
+        |document| &mut document.camera.focus_distance,
+        |ui, distance| widgets::number_following(ui, distance, at_target, &style),
     );
+    let help = "The next click in the viewport says what is sharp.";
+    desk.pick_toggle(ui, Pick::Focus, "Pick focus", help);
 }
 
-fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn bookmarks(ui: &mut Ui, desk: &mut Desk) {
     let mut bookmarks = desk.document.bookmarks.clone();
     let mut removed = None;
     for (index, bookmark) in bookmarks.iter_mut().enumerate() {
         ui.horizontal(|ui| {
             let is_here = bookmark.camera == desk.document.camera;
             let name = format!("Camera bookmark {}", index + 1);
-            if ui
-                .selectable_label(is_here, "Apply")
-                .on_hover_text("Looks from there.")
-                .clicked()
-            {
+            let apply = ui.selectable_label(is_here, "Apply");
+            if apply.on_hover_text("Looks from there.").clicked() {
                 desk.actions.push(Action::UseBookmark(index));
             }
             // From the right, so that the name has what the buttons leave and none is pushed out of the panel.
@@ -119,21 +100,20 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
                 let remove = format!("Remove {}", name.to_lowercase());
                 if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
                     removed = Some(index);
+                    desk.edits.note("Remove bookmark", "");
                 }
                 if widgets::pressed(ui, "Update", "Replaces it by the present camera.") {
                     bookmark.camera = desk.document.camera;
                     desk.edits.note("Update bookmark", "");
                 }
-                let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(f32::INFINITY);
-                if ui.add(field).accessible_name(name.as_str()).changed() {
-                    desk.edits.note("Rename bookmark", name.clone());
+                if widgets::wide_field(ui, &mut bookmark.name, &name).changed() {
+                    desk.edits.note("Rename bookmark", name);
                 }
             });
         });
     }
     if let Some(index) = removed {
         bookmarks.remove(index);
-        desk.edits.note("Remove bookmark", "");
     }
     if widgets::pressed(ui, "Add bookmark", "Remembers the camera with the project.") {
         bookmarks.push(Bookmark {
@@ -146,14 +126,9 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 /// What the viewport renders and what is saved, and when rendering ends.
-fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let name = Name::new("Image size", "Size", "What the viewport renders, and what is saved.");
-    let response = widgets::row(ui, name, |ui| {
-        widgets::choice(ui, "size", &mut desk.shared.viewing.resolution, &widgets::choices())
-    });
-    if response.reset {
-        desk.shared.viewing.resolution = Resolution::default();
-    }
+fn picture(ui: &mut Ui, desk: &mut Desk) {
+    let name = ["Image size", "Size", "What the viewport renders, and what is saved."];
+    widgets::choice_row(ui, name, &mut desk.shared.viewing.resolution);
     widgets::comes_and_goes(ui, |ui| {
         if desk.shared.viewing.resolution == Resolution::Document {
             desk.settings(ui, PICTURE_SIZE);

@@ -1,9 +1,6 @@
 //! The benchmark: what `glossmith benchmark` does, as a table, and its result for the clipboard.
 
-use egui::Ui;
-
-use crate::app::desk::Desk;
-use crate::app::kit::widgets;
+use super::*;
 use crate::app::study::StudyWorker;
 use crate::render::EngineChoice;
 use crate::study::benchmark::report::{EngineReport, Report, number};
@@ -12,18 +9,11 @@ use crate::study::benchmark::{BenchmarkOptions, SECONDS, benchmark};
 /// State of the section.
 #[derive(Default)]
 pub struct BenchmarkState {
-    worker: StudyWorker<Report>,
+    pub worker: StudyWorker<Report>,
     quick: bool,
 }
 
-impl BenchmarkState {
-    /// As [`StudyWorker::tick`].
-    pub fn tick(&mut self, desk: &mut Desk<'_>) {
-        self.worker.tick(desk);
-    }
-}
-
-pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
+pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk) {
     widgets::note(
         ui,
         "Measures every engine and adapter: rates and time to a clean image.",
@@ -44,11 +34,9 @@ pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
             Box::new(move |watch| benchmark(&options, watch))
         });
     let Some(report) = state.worker.found() else { return };
-    if widgets::pressed(
-        ui,
-        "Copy the result",
-        "Copies the result as JSON, to hand on and to compare.",
-    ) && let Ok(text) = serde_json::to_string_pretty(&*report)
+    let help = "Copies the result as JSON, to hand on and to compare.";
+    if widgets::pressed(ui, "Copy the result", help)
+        && let Ok(text) = serde_json::to_string_pretty(&*report)
     {
         ui.ctx().copy_text(text);
     }
@@ -58,10 +46,8 @@ pub fn show(ui: &mut Ui, state: &mut BenchmarkState, desk: &mut Desk<'_>) {
 fn table(ui: &mut Ui, engine: &EngineReport) {
     ui.add_space(4.0);
     ui.strong(engine.name());
-    let grid = egui::Grid::new(("benchmark", engine.name()))
-        .num_columns(3)
-        .striped(true);
-    grid.show(ui, |ui| {
+    let grid = Grid::new(("benchmark", engine.name()));
+    grid.striped(true).show(ui, |ui| {
         for row in &engine.rows {
             ui.label(format!("{}, {}", row.step, row.case));
             let [low, high] = row.value.quartiles.map(number);

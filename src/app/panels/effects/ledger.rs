@@ -1,15 +1,11 @@
 //! The ledger: what each effect and each setting in force costs, in plain words.
 
-use std::sync::Arc;
 use std::time::Duration;
 
-use egui::{RichText, Ui};
-
-use crate::app::desk::Desk;
-use crate::app::kit::widgets;
+use super::*;
 use crate::app::kit::words::about;
 use crate::app::study::{StudyWorker, engine, small_document};
-use crate::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+use crate::study::ledger::{Ledger, LedgerOptions, ledger};
 
 /// Longest side of the image that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;
@@ -17,34 +13,17 @@ const SIDE_MAX: u32 = 256;
 /// What the panel remembers.
 #[derive(Default)]
 pub struct LedgerState {
-    worker: StudyWorker<Ledger>,
+    pub worker: StudyWorker<Ledger>,
     /// How long a turn lasts, where it is not the usual time.
     pub slice: Option<Duration>,
 }
 
-impl LedgerState {
-    /// Measures when the panel is shown next.
-    pub fn request(&mut self) {
-        self.worker.request();
-    }
-
-    /// See [`StudyWorker::tick`].
-    pub fn tick(&mut self, desk: &mut Desk<'_>) {
-        self.worker.tick(desk);
-    }
-
-    /// What was measured last.
-    pub fn found(&self) -> Option<Arc<Ledger>> {
-        self.worker.found()
-    }
-}
-
 /// The button that measures, and how far it is.
-pub fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState) {
+pub fn controls(ui: &mut Ui, desk: &mut Desk, state: &mut LedgerState) {
     let help = "What each effect and setting costs in time, and does to noise and image: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, slice } = state;
-    let options = |desk: &Desk<'_>| {
+    let options = |desk: &Desk| {
         let mut options = LedgerOptions::new(engine(desk));
         options.slice = slice.unwrap_or(options.slice);
         options
@@ -82,6 +61,5 @@ fn line(ui: &mut Ui, entry: &Entry) {
         100.0 * entry.picture_change.low,
         100.0 * entry.picture_change.high,
     );
-    ui.add(egui::Label::new(RichText::new(&entry.words)).wrap())
-        .on_hover_text(help);
+    ui.label(&entry.words).on_hover_text(help);
 }

@@ -2,15 +2,10 @@
 
 mod ledger;
 
-use egui::{Align, Color32, Layout, RichText, Sense, Ui, vec2};
-
 use ledger::LedgerState;
 
-use super::Panel;
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
+use super::*;
 use crate::app::kit::words::duration;
-use crate::app::kit::{theme, widgets};
 use crate::document::effect::{Effect, EffectSwitches, Switch};
 use crate::job::effect::Decision;
 use crate::study::ledger::Entry;
@@ -25,22 +20,20 @@ pub struct EffectsPanel {
 }
 
 impl Panel for EffectsPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let Some(job) = desk.snapshot.scene.as_ref().map(|scene| scene.job.clone()) else {
             widgets::note(ui, "Nothing is rendered yet.");
             return;
         };
         let plan = &job.plan;
         let count = plan.table().count();
-        let found = self.ledger.found();
+        let found = self.ledger.worker.found();
         let gain = found.as_ref().and_then(|ledger| ledger.kernel_gain());
         let gain = gain.map_or_else(String::new, |gain| format!(" Specialised kernel: {gain:.1} × as fast."));
         let mut help = "Unused features are compiled out and cost nothing.".to_owned();
         if let Some(seconds) = desk.snapshot.progress.kernel_seconds {
-            help += &format!(
-                "\nThe last kernel took {} to compile, while the CPU engine rendered.",
-                duration(seconds)
-            );
+            let time = duration(seconds);
+            help += &format!("\nThe last kernel took {time} to compile, while the CPU engine rendered.");
         }
         ui.label(format!(
             "{} of {count} features active; {} of {} compile-time switches off or fixed.{gain}",
@@ -66,35 +59,32 @@ impl Panel for EffectsPanel {
         }
     }
 
-    fn tick(&mut self, desk: &mut Desk<'_>) {
-        self.ledger.tick(desk);
+    fn tick(&mut self, desk: &mut Desk) {
+        self.ledger.worker.tick(desk);
     }
 
     fn on_command(&mut self, command: Command) {
         if command == Command::Measure {
-            self.ledger.request();
+            self.ledger.worker.request();
         }
     }
 }
 
 /// An effect with what the ledger says of it.
-fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
+fn row(ui: &mut Ui, desk: &mut Desk, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
     ui.horizontal(|ui| {
         mark(ui, decision.is_on);
         widgets::at_right(ui, |ui| {
             switch(ui, desk, effect);
-            let label = egui::Label::new(effect.label).wrap();
-            let rest = ui.available_size();
-            let layout = Layout::left_to_right(Align::Center);
-            let shown = ui.allocate_ui_with_layout(rest, layout, |ui| ui.add(label));
-            shown.inner.on_hover_text(effect.help);
+            let label = Label::new(effect.label).wrap();
+            widgets::sized(ui, ui.available_width(), |ui| ui.add(label).on_hover_text(effect.help));
         });
     });
     ui.horizontal(|ui| {
         ui.add_space(4.0 * MARK_RADIUS);
         let cost = entry.map_or_else(String::new, |entry| format!(" · {}", entry.time_words()));
         let text = RichText::new(format!("{}{cost}", decision.reason)).weak().small();
-        ui.add(egui::Label::new(text).wrap());
+        ui.add(Label::new(text).wrap());
     });
 }
 
@@ -107,15 +97,15 @@ fn mark(ui: &mut Ui, is_on: bool) {
     } else {
         Color32::TRANSPARENT
     };
-    let stroke = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
+    let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
     ui.painter().circle(place.center(), MARK_RADIUS, color, stroke);
     response.on_hover_text(if is_on { "Active" } else { "Compiled out" });
 }
 
-fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
+fn switch(ui: &mut Ui, desk: &mut Desk, effect: &Effect) {
     let current = desk.document.render.effects.get(effect.id);
     let mut chosen = current;
-    let menu = egui::ComboBox::from_id_salt(effect.name())
+    let menu = ComboBox::from_id_salt(effect.name())
         .width(64.0)
         .selected_text(current.label());
     let shown = menu.show_ui(ui, |ui| {
@@ -133,9 +123,8 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
             });
         }
     });
-    shown
-        .response
-        .accessible_name(format!("{}: auto, on or off", effect.label));
+    let name = format!("{}: auto, on or off", effect.label);
+    shown.response.accessible_name(name);
     if chosen != current {
         desk.document.render.effects.set(effect.id, chosen);
         desk.edits.note(format!("Switch {}", effect.label.to_lowercase()), "");

@@ -2,16 +2,9 @@
 
 mod histogram;
 
-use std::sync::Arc;
-
-use egui::{Color32, Sense, Ui, vec2};
-
 use histogram::Brightness;
 
-use super::Panel;
-use crate::app::actions::Command;
-use crate::app::desk::Desk;
-use crate::app::kit::widgets;
+use super::*;
 use crate::app::kit::words::percent;
 use crate::app::services::look::middle;
 use crate::render::display::exposure;
@@ -24,7 +17,7 @@ pub struct InspectorPanel {
 }
 
 impl Panel for InspectorPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         desk.shared.look.is_shown = true;
         let Some(picture) = desk.snapshot.picture.clone() else {
             widgets::note(ui, "Nothing has been rendered yet.");
@@ -40,48 +33,32 @@ impl Panel for InspectorPanel {
 }
 
 /// Pins the pixel, or goes to one that stands out.
-fn choose(ui: &mut Ui, desk: &mut Desk<'_>, picture: &Picture) {
+fn choose(ui: &mut Ui, desk: &mut Desk, picture: &Picture) {
     ui.horizontal_wrapped(|ui| {
-        let mut is_pinned = desk.shared.look.is_pinned;
-        if ui
-            .checkbox(&mut is_pinned, "Pinned")
-            .on_hover_text(Command::Inspect.help())
-            .changed()
-        {
-            desk.shared.look.is_pinned = is_pinned;
-        }
-        let size = [picture.width, picture.height];
-        let mut go_to = |index: Option<usize>| {
-            if let Some(index) = index {
-                let width = size[0] as usize;
-                let pixel = [(index % width) as u32, (index / width) as u32];
-                desk.shared.look.pin(middle(pixel, size));
+        let look = &mut desk.shared.look;
+        ui.checkbox(&mut look.is_pinned, "Pinned")
+            .on_hover_text(Command::Inspect.help());
+        let mut found = None;
+        let mut button = |ui: &mut Ui, text: &str, help: &str, is_known: bool, index: &dyn Fn() -> Option<usize>| {
+            let button = ui.add_enabled(is_known, Button::new(text).small());
+            if button.on_hover_text(help).clicked() {
+                found = index();
             }
         };
-        let noisiest = ui.add_enabled(picture.facts.is_some(), egui::Button::new("Noisiest pixel").small());
-        if noisiest
-            .on_hover_text("Goes to the pixel with the largest error.")
-            .clicked()
-        {
-            go_to(
-                picture
-                    .facts
-                    .as_ref()
-                    .and_then(|facts| largest(facts.errors.iter().copied())),
-            );
-        }
-        let brightest = ui.add(egui::Button::new("Brightest pixel").small());
-        if brightest
-            .on_hover_text("Goes to the pixel with the most light.")
-            .clicked()
-        {
-            go_to(largest(
-                picture
-                    .image
-                    .pixels
-                    .iter()
-                    .map(|[r, g, b, _]| luminance([*r, *g, *b]) as f32),
-            ));
+        let facts = picture.facts.as_ref();
+        let help = "Goes to the pixel with the largest error.";
+        button(ui, "Noisiest pixel", help, facts.is_some(), &|| {
+            largest(facts?.errors.iter().copied())
+        });
+        let help = "Goes to the pixel with the most light.";
+        button(ui, "Brightest pixel", help, true, &|| {
+            let pixels = picture.image.pixels.iter();
+            largest(pixels.map(|[r, g, b, _]| luminance([*r, *g, *b]) as f32))
+        });
+        if let Some(index) = found {
+            let index = index as u32;
+            let pixel = [index % picture.width, index / picture.width];
+            look.pin(middle(pixel, [picture.width, picture.height]));
         }
     });
 }
@@ -93,16 +70,16 @@ fn largest(values: impl Iterator<Item = f32>) -> Option<usize> {
 }
 
 /// The table of what is known of a pixel.
-fn values(ui: &mut Ui, desk: &Desk<'_>, picture: &Picture, [x, y]: [u32; 2]) {
+fn values(ui: &mut Ui, desk: &Desk, picture: &Picture, [x, y]: [u32; 2]) {
     let index = (y * picture.width + x) as usize;
     let Some([r, g, b, alpha]) = picture.image.pixels.get(index).copied() else {
         return;
     };
     let shown = [r, g, b];
-    egui::Grid::new("pixel").num_columns(2).striped(true).show(ui, |ui| {
+    Grid::new("pixel").striped(true).show(ui, |ui| {
         let mut line = |name: &str, text: String| {
             ui.weak(name);
-            ui.add(egui::Label::new(text).truncate());
+            widgets::line(ui, text);
             ui.end_row();
         };
         line("Pixel", format!("{x}, {y} of {} × {}", picture.width, picture.height));
@@ -132,7 +109,7 @@ fn values(ui: &mut Ui, desk: &Desk<'_>, picture: &Picture, [x, y]: [u32; 2]) {
 /// Samples, error and what is seen first.
 fn of_facts(line: &mut impl FnMut(&str, String), facts: Option<&Arc<PixelFacts>>, index: usize) {
     let Some(facts) = facts else { return };
-    if let Some(samples) = facts.samples.get(index) {
+    if let Some(samples) = facts.features.samples.get(index) {
         line("Samples", samples.to_string());
     }
     let error = facts.errors.get(index).map(|error| f64::from(*error));
@@ -152,22 +129,20 @@ fn of_facts(line: &mut impl FnMut(&str, String), facts: Option<&Arc<PixelFacts>>
 }
 
 /// What the ray through the pixel meets.
-fn of_surface(line: &mut impl FnMut(&str, String), desk: &Desk<'_>) {
-    let material = match desk.shared.look.seen {
-        None => "none: the background".to_owned(),
-        Some(seen) => match seen.slot {
-            Some(slot) => desk.document.material(slot).name,
-            None => "ground or area light".to_owned(),
-        },
+fn of_surface(line: &mut impl FnMut(&str, String), desk: &Desk) {
+    let Some(seen) = desk.shared.look.seen else {
+        return line("Material", "none: the background".to_owned());
     };
-    line("Material", material);
-    if let Some(name) = desk.shared.look.seen.and_then(|seen| desk.object_name(seen.object?)) {
+    let material = seen.slot.map(|slot| desk.document.material(slot).name);
+    line(
+        "Material",
+        material.unwrap_or_else(|| "ground or area light".to_owned()),
+    );
+    if let Some(name) = seen.object.and_then(|object| desk.object_name(object)) {
         line("Object", name);
     }
-    if let Some(seen) = desk.shared.look.seen {
-        line("Distance", format!("{:.4} scene units", seen.depth));
-        line("View angle", format!("{:.1}°", seen.view_angle_deg));
-    }
+    line("Distance", format!("{:.4} scene units", seen.depth));
+    line("View angle", format!("{:.1}°", seen.view_angle_deg));
 }
 
 fn triple(values: [f32; 3]) -> String {
@@ -177,18 +152,10 @@ fn triple(values: [f32; 3]) -> String {
 
 /// The pixel as the screen shows it.
 fn displayed(ui: &mut Ui, picture: &Picture, index: usize) {
-    let Some([r, g, b]) = picture
-        .rgba
-        .get(4 * index..4 * index + 3)
-        .and_then(|bytes| <[u8; 3]>::try_from(bytes).ok())
-    else {
-        return;
-    };
-    ui.horizontal(|ui| {
-        let (swatch, _) = ui.allocate_exact_size(vec2(34.0, 16.0), Sense::hover());
-        let line = ui.visuals().widgets.noninteractive.bg_stroke;
-        let color = Color32::from_rgb(r, g, b);
-        ui.painter().rect(swatch, 3.0, color, line, egui::StrokeKind::Inside);
-        ui.label(format!("Displayed #{r:02x}{g:02x}{b:02x} · {r} {g} {b}"));
-    });
+    if let Some(&[r, g, b, _]) = picture.rgba.as_chunks().0.get(index) {
+        ui.horizontal(|ui| {
+            widgets::swatch(ui, vec2(34.0, 16.0), Color32::from_rgb(r, g, b));
+            ui.label(format!("Displayed #{r:02x}{g:02x}{b:02x} · {r} {g} {b}"));
+        });
+    }
 }

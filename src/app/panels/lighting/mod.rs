@@ -4,20 +4,15 @@ mod area_lights;
 mod groups;
 mod preview;
 
-use egui::{Ui, vec2};
-
 use self::preview::Preview;
-use super::Panel;
-use crate::app::actions::{Action, Command};
-use crate::app::desk::Desk;
-use crate::app::kit::theme;
-use crate::app::kit::widgets::{self, Name, PictureRow};
-use crate::app::services::environments::environment_label;
+use super::*;
+use crate::app::kit::tile::Tile;
+use crate::app::services::pictures::Part;
+use crate::app::services::shelves::{environment_key, environment_label};
 use crate::document::{Background, GroundKind};
-use crate::scene::environment::{BUILT_IN, EnvironmentSource};
+use crate::render::thumbnails::Subject;
+use crate::scene::environment::EnvironmentSource;
 
-/// Size of an environment's image in the list, points.
-const PICTURE: egui::Vec2 = vec2(48.0, 24.0);
 /// Most files in the list.
 const FILES_MAX: usize = 6;
 
@@ -28,7 +23,7 @@ pub struct LightingPanel {
 }
 
 impl Panel for LightingPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         widgets::group(ui, "Environment", |ui| {
             widgets::comes_and_goes(ui, |ui| self.preview.show(ui, desk));
             sources(ui, desk);
@@ -41,31 +36,21 @@ impl Panel for LightingPanel {
     }
 }
 
-fn ground(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn ground(ui: &mut Ui, desk: &mut Desk) {
     desk.settings(ui, "Ground");
-    if !desk.document.ground || desk.document.lighting.ground.kind != GroundKind::Cyclorama {
-        return;
-    }
-    if widgets::pressed(
-        ui,
-        "Turn the wall away from the camera",
-        "The camera looks straight at the wall.",
-    ) {
+    let has_wall = desk.document.ground && desk.document.lighting.ground.kind == GroundKind::Cyclorama;
+    let help = "The camera looks straight at the wall.";
+    if has_wall && widgets::pressed(ui, "Turn the wall away from the camera", help) {
         desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
         desk.edits.note("Cyclorama turned", "");
     }
 }
 
 /// All there are to choose from: those that come with the program, and files, the one in use and those opened last.
-fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let current = desk.document.lighting.environment.clone();
-    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
-    for source in std::iter::once(current).chain(desk.shared.recent.environments()) {
-        if !sources.contains(&source) && sources.len() < BUILT_IN.len() + FILES_MAX {
-            sources.push(source);
-        }
-    }
-    desk.make_environment_pictures(ui.ctx(), "light", &sources);
+fn sources(ui: &mut Ui, desk: &mut Desk) {
+    let sources = desk.environments(FILES_MAX);
+    let subject = |source: &EnvironmentSource| (environment_key(source), Subject::Environment(source.clone()));
+    desk.shared.pictures.want(Part::Light, sources.iter().map(subject));
     ui.add_space(2.0);
     widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
     ui.add_space(2.0);
@@ -75,80 +60,57 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add_space(0.5 * theme::GAP);
 }
 
-fn rows(ui: &mut Ui, desk: &mut Desk<'_>, sources: &[EnvironmentSource]) {
+fn rows(ui: &mut Ui, desk: &mut Desk, sources: &[EnvironmentSource]) {
     let current = desk.document.lighting.environment.clone();
     for source in sources {
         let is_current = *source == current;
-        let environments = &desk.shared.environments;
-        let row = PictureRow {
-            name: &environment_label(source),
-            full_name: &environment_label(source),
-            picture: environments.picture(source),
-            size: PICTURE,
+        let (pictures, key) = (&desk.shared.pictures, environment_key(source));
+        let label = environment_label(source);
+        let row = Tile {
+            name: &label,
+            full_name: &label,
+            picture: pictures.texture(&key),
+            size: vec2(48.0, 24.0),
             color: ui.visuals().extreme_bg_color,
             is_current,
         };
         let help = match source {
-            EnvironmentSource::File(path) if environments.is_missing(source) => {
+            EnvironmentSource::File(path) if pictures.is_missing(&key) => {
                 format!("{}: not there any more, or not to be read", path.display())
             }
             EnvironmentSource::File(path) => path.display().to_string(),
             other => other.built_in().map_or("", |built_in| built_in.help).to_owned(),
         };
-        if row.show(ui).on_hover_text(help).clicked() && !is_current {
+        if row.row(ui).on_hover_text(help).clicked() && !is_current {
             desk.actions.push(Action::UseEnvironment(source.clone()));
         }
     }
 }
 
-fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
-    #[derive(Clone, Copy, PartialEq)]
-    enum Kind {
-        Environment,
-        Transparent,
-        Color,
+fn background(ui: &mut Ui, desk: &mut Desk) {
+    // What it begins with; else it is the one there is.
+    let mut of_color = Background::Color([0.18; 3]);
+    if let Background::Color(_) = desk.document.lighting.background {
+        of_color = desk.document.lighting.background;
     }
+    #[rustfmt::skip]
     let choices = [
-        (Kind::Environment, "Environment", "The environment itself."),
-        (
-            Kind::Transparent,
-            "Transparent",
-            "Nothing: the image's opacity is 0 there.",
-        ),
-        (
-            Kind::Color,
-            "Colour",
-            "One colour, in any light; reflections still show the environment.",
-        ),
+        (Background::Environment, "Environment", "The environment itself."),
+        (Background::Transparent, "Transparent", "Nothing: the image's opacity is 0 there."),
+        (of_color, "Colour", "One colour, in any light; reflections still show the environment."),
     ];
-    let mut kind = match desk.document.lighting.background {
-        Background::Environment => Kind::Environment,
-        Background::Transparent => Kind::Transparent,
-        Background::Color(_) => Kind::Color,
-    };
-    let name = Name::new("Background", "Background", "What is seen beside the model.");
-    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "background", &mut kind, &choices));
-    if response.changed {
-        desk.document.lighting.background = match kind {
-            Kind::Environment => Background::Environment,
-            Kind::Transparent => Background::Transparent,
-            Kind::Color => Background::Color([0.18; 3]),
-        };
-    }
-    desk.edited(response, "Background", |document| &mut document.lighting.background);
+    desk.row(
+        ui,
+        ["Background", "Background", "What is seen beside the model."],
+        |document| &mut document.lighting.background,
+        |ui, background| widgets::choice(ui, "background", background, &choices),
+    );
     desk.settings(ui, "Background");
     if let Background::Color(color) = &mut desk.document.lighting.background {
-        let name = Name::new(
-            "Background colour",
-            "Colour",
-            "Linear: exposure and tone map apply to it, too.",
-        );
-        let response = widgets::row(ui, name, |ui| widgets::color(ui, "Background colour", color));
-        if response.reset {
-            *color = [0.18; 3];
-        }
-        if response.changed || response.reset {
-            desk.edits.note("Background colour", "Background colour");
+        let full = "Background colour";
+        let name = [full, "Colour", "Linear: exposure and tone map apply to it, too."];
+        if widgets::value_row(ui, name, color, [0.18; 3], |ui, color| widgets::color(ui, full, color)) {
+            desk.edits.note(full, full);
         }
     }
 }

@@ -1,11 +1,10 @@
 //! Line plots of lobes in the window: the data that the command line writes as files.
 
-use egui::{Color32, Ui};
-use egui_plot::{Line, LineStyle, Plot, PlotPoints};
+use egui_plot::{LineStyle, Plot};
 
-use crate::app::kit::charts::{powers, short, still};
-use crate::app::kit::widgets::{self, Name, NumberStyle};
-use crate::plot::lobe_view::{Axis, LinePlot, Series};
+use super::*;
+use crate::app::kit::charts::{line, powers, short, still};
+use crate::plot::lobe_view::{Axis, Series};
 use crate::plot::series_color;
 
 /// Powers of ten that a logarithmic polar plot shows, at least.
@@ -50,29 +49,21 @@ impl Radii {
     /// The rows that change it.
     pub fn rows(&mut self, ui: &mut Ui, plot: &LinePlot) {
         let help = "Radii count powers of ten: the foot of a narrow lobe is seen beside its peak.";
-        let name = Name::new("Logarithmic radius", "Logarithmic", help);
-        let response = widgets::row(ui, name, |ui| ui.checkbox(&mut self.is_logarithmic, ""));
-        if response.reset {
-            self.is_logarithmic = false;
-        }
+        let name = ["Logarithmic radius", "Logarithmic", help];
+        widgets::value_row(ui, name, &mut self.is_logarithmic, false, |ui, is_on| {
+            ui.checkbox(is_on, "")
+        });
         let top = plot.y.range[1].clamp(CUTS[0], CUTS[1]);
-        let mut cut = self.cut.unwrap_or(top);
-        let style = NumberStyle::plain(CUTS[0]..=CUTS[1], " 1/sr", 0.01 * cut, 3);
+        let style = NumberStyle::plain(CUTS[0]..=CUTS[1], " 1/sr", 0.01 * self.cut.unwrap_or(top), 3);
         let help = "What is larger is cut off there. Follows the lobes' peak until it is changed.";
-        let name = Name::new("Radius up to", "Shown up to", help);
-        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut cut, &style));
-        if response.changed {
-            self.cut = Some(cut);
-        }
-        if response.reset {
-            self.cut = None;
-        }
+        let name = ["Radius up to", "Shown up to", help];
+        widgets::value_row(ui, name, &mut self.cut, None, |ui, cut| {
+            widgets::number_following(ui, cut, top, &style)
+        });
         widgets::comes_and_goes(ui, |ui| {
             if self.cut.is_some_and(|cut| cut < plot.highest()) {
-                widgets::note(
-                    ui,
-                    format!("The peak is {} 1/sr; the rest is cut off.", short(plot.highest())),
-                );
+                let peak = short(plot.highest());
+                widgets::note(ui, format!("The peak is {peak} 1/sr; the rest is cut off."));
             }
         });
     }
@@ -81,21 +72,33 @@ impl Radii {
 /// Shows a line plot over the width there is; radii of a polar one as `radii` says.
 pub fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot, radii: &Radii) {
     let height = plot_height(ui.available_width());
-    if plot.is_polar {
+    let (shown, caption, lines): (_, _, Vec<Vec<[f64; 2]>>) = if plot.is_polar {
         let axis = radii.axis(plot);
-        let lines = plot.series.iter().map(|series| series.polar_points(&axis).collect());
-        draw(ui, polar(id, height, &axis), plot, lines.collect());
         let [low, high] = axis.range.map(short);
-        ui.weak(format!("{}: {low} to {high}", axis.label));
+        let lines = plot.series.iter().map(|series| series.polar_points(&axis).collect());
+        let caption = format!("{}: {low} to {high}", axis.label);
+        (polar(id, height, &axis), caption, lines.collect())
     } else {
         let on_axes = |[x, y]: &[f64; 2]| [place(&plot.x, *x), place(&plot.y, *y)];
         let lines = plot
             .series
             .iter()
             .map(|series| series.points.iter().map(on_axes).collect());
-        draw(ui, cartesian(id, height, plot), plot, lines.collect());
-        ui.weak(&plot.y.label);
-    }
+        (cartesian(id, height, plot), plot.y.label.clone(), lines.collect())
+    };
+    let response = shown.show(ui, |plot_ui| {
+        for ((is_first, series), points) in series(plot).zip(lines) {
+            let style = if is_first {
+                LineStyle::Solid
+            } else {
+                LineStyle::dashed_dense()
+            };
+            let color = widgets::rgb(series_color(series.group));
+            plot_ui.line(line(plot.label(series), points, color, 2.0).style(style));
+        }
+    });
+    response.response.accessible_name(plot.title.clone());
+    ui.weak(caption);
     key(ui, plot);
 }
 
@@ -107,56 +110,41 @@ fn polar<'a>(id: &str, height: f32, axis: &Axis) -> Plot<'a> {
         false => short(radius.abs()),
     };
     let top = axis.radius(axis.range[1]);
-    let shown = still(id, height, [in_words, in_words])
+    let shown = over(id, height, [in_words, in_words], [-top, top], [0.0, top])
         .x_axis_label(axis.label.clone())
-        .data_aspect(1.0)
-        .include_y(0.0)
-        .include_y(top)
-        .include_x(-top)
-        .include_x(top);
-    if axis.is_logarithmic {
-        shown.x_grid_spacer(powers).y_grid_spacer(powers)
-    } else {
-        shown
+        .data_aspect(1.0);
+    match is_logarithmic {
+        true => shown.x_grid_spacer(powers).y_grid_spacer(powers),
+        false => shown,
     }
 }
 
 /// An empty plot over two axes.
 fn cartesian<'a>(id: &str, height: f32, plot: &LinePlot) -> Plot<'a> {
-    let upwards: fn(f64) -> String = if plot.y.is_logarithmic {
-        |y| short(10.0_f64.powf(y))
-    } else {
-        short
-    };
-    let across: fn(f64) -> String = short;
-    let [bottom, top] = plot.y.range.map(|value| place(&plot.y, value));
-    let [first, last] = plot.x.range;
-    still(id, height, [across, upwards])
-        .x_axis_label(plot.x.label.clone())
-        .include_y(bottom)
-        .include_y(top)
-        .include_x(first)
-        .include_x(last)
-}
-
-/// Draws the series, whose points are `lines`.
-fn draw(ui: &mut Ui, shown: Plot<'_>, plot: &LinePlot, lines: Vec<Vec<[f64; 2]>>) {
-    let response = shown.show(ui, |plot_ui| {
-        for ((is_first, series), points) in series(plot).zip(lines) {
-            let style = if is_first {
-                LineStyle::Solid
-            } else {
-                LineStyle::dashed_dense()
-            };
-            plot_ui.line(
-                Line::new(plot.label(series), PlotPoints::from(points))
-                    .color(color(series.group))
-                    .width(2.0)
-                    .style(style),
-            );
+    let is_logarithmic = [false, plot.y.is_logarithmic];
+    let in_words = is_logarithmic.map(|is_logarithmic| {
+        move |value: f64| match is_logarithmic {
+            true => short(10.0_f64.powf(value)),
+            false => short(value),
         }
     });
-    response.response.accessible_name(plot.title.clone());
+    let upwards = plot.y.range.map(|value| place(&plot.y, value));
+    over(id, height, in_words, plot.x.range, upwards).x_axis_label(plot.x.label.clone())
+}
+
+/// A plot that spans two ranges at least.
+fn over<'a>(
+    id: &str,
+    height: f32,
+    in_words: [impl Fn(f64) -> String + Clone + 'a; 2],
+    [left, right]: [f64; 2],
+    [bottom, top]: [f64; 2],
+) -> Plot<'a> {
+    still(id, height, in_words)
+        .include_x(left)
+        .include_x(right)
+        .include_y(bottom)
+        .include_y(top)
 }
 
 /// The series, and whether each is the first of its group, which is solid; the others are dashed.
@@ -170,20 +158,15 @@ fn series(plot: &LinePlot) -> impl Iterator<Item = (bool, &Series)> {
 fn key(ui: &mut Ui, plot: &LinePlot) {
     for (is_first, series) in series(plot) {
         ui.horizontal(|ui| {
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 12.0), egui::Sense::hover());
-            let stroke = egui::Stroke::new(2.5, color(series.group));
+            let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
+            let stroke = Stroke::new(2.5, widgets::rgb(series_color(series.group)));
             let ends = [rect.left_center(), rect.right_center()];
             if is_first {
                 ui.painter().line_segment(ends, stroke);
             } else {
-                ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+                ui.painter().extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
             }
-            ui.add(egui::Label::new(plot.label(series)).truncate());
+            widgets::line(ui, plot.label(series));
         });
     }
-}
-
-fn color(group: usize) -> Color32 {
-    let [r, g, b] = series_color(group);
-    Color32::from_rgb(r, g, b)
 }

@@ -1,23 +1,13 @@
 //! "Match look": gives the material the lobe that comes closest to another one's or to a measured material's.
 
 use std::path::PathBuf;
-use std::sync::Arc;
-
-use egui::Ui;
 
 use super::line_plot::{Radii, line_plot};
+use super::*;
 use crate::analysis::fit::Merl;
-use crate::app::actions::{Action, Command};
-use crate::app::desk::Desk;
-use crate::app::kit::widgets;
-use crate::app::services::beside::started;
 use crate::matching::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
-use crate::optics::lobe::Lobe;
-use crate::optics::lobe::model::LobeModel;
-use crate::plot::lobe_view::LinePlot;
-use crate::render::background::Background;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub enum Source {
     Lobe(LobeModel),
     File(PathBuf),
@@ -46,7 +36,7 @@ pub struct MatchState {
 }
 
 /// The button, and what came of it.
-pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Option<Source>) {
+pub fn show(ui: &mut Ui, desk: &mut Desk, state: &mut MatchState, source: Option<Source>) {
     let Some(source) = source else {
         if ui.button("Choose a measured material…").clicked() {
             desk.act(Command::OpenMeasured);
@@ -59,12 +49,10 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Op
     let material = desk.material();
     let query = Query {
         source,
-        lobe: if material.lobe.has_roughness() {
-            material.lobe
-        } else {
-            Lobe::Geometric
-        },
-        view_angle_deg: f64::from(desk.shared.lobe_plots.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
+        lobe: Some(material.lobe)
+            .filter(|lobe| lobe.has_roughness())
+            .unwrap_or(Lobe::Geometric),
+        view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
     };
     let worker = started(&mut state.worker, ui.ctx(), |repaint| {
         Background::spawn("match look", repaint, |query, responder| responder.publish(find(query)))
@@ -77,27 +65,24 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Op
     ui.horizontal(|ui| {
         let help = "Looks for the roughness, and for the geometric lobe also the curve, that come closest to it at \
                     this view angle.";
-        let button = ui.add_enabled(!is_busy, egui::Button::new("Match look"));
-        if button.on_hover_text(help).clicked() {
+        if widgets::pressed_if(ui, !is_busy, "Match look", help, "") {
             worker.ask(query.clone());
         }
         if is_busy {
-            ui.add(egui::Spinner::new().size(12.0));
+            ui.add(Spinner::new().size(12.0));
         }
     });
     widgets::failure(ui, worker.failure());
     match worker.latest() {
         None => {}
-        Some(Err(why)) => {
-            ui.colored_label(ui.visuals().error_fg_color, why);
-        }
+        Some(Err(why)) => widgets::failure(ui, why),
         Some(Ok(matched)) => result(ui, desk, &matched, matched.query == query),
     }
 }
 
-fn result(ui: &mut Ui, desk: &mut Desk<'_>, matched: &Matched, is_current: bool) {
+fn result(ui: &mut Ui, desk: &mut Desk, matched: &Matched, is_current: bool) {
     let found = &matched.found;
-    egui::Grid::new("residuals").num_columns(3).show(ui, |ui| {
+    Grid::new("residuals").show(ui, |ui| {
         let rows = [
             ("Before", &found.before),
             ("Roughness matched", &found.nearest),

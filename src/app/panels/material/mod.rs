@@ -4,15 +4,10 @@
 mod textures;
 
 use std::cell::Cell;
-use std::sync::Arc;
 
-use egui::Ui;
-
-use super::Panel;
-use crate::app::actions::{Action, Command};
-use crate::app::desk::Desk;
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::{keys, parameter_row, theme, widgets};
+use super::*;
+use crate::app::kit::tile::Tile;
+use crate::app::kit::{keys, parameter_row};
 use crate::document::material::Conductor;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
 use crate::optics::fresnel::Fresnel;
@@ -26,8 +21,6 @@ const SLOTS_SHOWN: f32 = 6.0;
 
 /// From how many parameters on a change is not one by hand, but another material.
 const ANOTHER_FROM: usize = 3;
-/// The parameter after which a metal's two ways stand: by colours, or as measured.
-const METAL_KEY: &str = "specular.conductor";
 /// The groups that are always open.
 const ALWAYS_OPEN: [&str; 2] = ["Base", "Specular"];
 
@@ -42,7 +35,7 @@ pub struct MaterialPanel {
 
 impl MaterialPanel {
     /// Whether another material is shown than in the last frame.
-    fn is_another(&mut self, desk: &Desk<'_>, material: &MaterialSettings) -> bool {
+    fn is_another(&mut self, desk: &Desk, material: &MaterialSettings) -> bool {
         let model = desk.scene().map_or(0, |scene| Arc::as_ptr(&scene.model) as usize);
         let slot = (desk.shared.selection.slot, model);
         let is_another = match &self.shown {
@@ -60,17 +53,15 @@ impl MaterialPanel {
 }
 
 /// Whether a group says nothing of the material: all of it is as it is at first.
-fn is_at_default(desk: &Desk<'_>, group: &str, material: &MaterialSettings) -> bool {
+fn is_at_default(desk: &Desk, group: &str, material: &MaterialSettings) -> bool {
     let is_other = |parameter: &Parameter| parameter.get(material) != parameter.default_value();
     let has_texture = textures::of_group(group).any(|target| textures::is_there(desk, target));
-    !has_texture
-        && !PARAMETERS
-            .iter()
-            .any(|parameter| parameter.group == group && is_other(parameter))
+    let mut of_group = PARAMETERS.iter().filter(|parameter| parameter.group == group);
+    !has_texture && !of_group.any(is_other)
 }
 
 impl Panel for MaterialPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let search = &mut self.search;
         widgets::comes_and_goes(ui, |ui| slots(ui, desk, search));
         let before = desk.material();
@@ -78,14 +69,10 @@ impl Panel for MaterialPanel {
         let mut material = before.clone();
         name(ui, desk, &mut material);
         ui.add_space(theme::GAP);
-        let mut groups: Vec<&'static str> = Vec::new();
+        let mut groups: Vec<&'static str> = PARAMETERS.iter().map(|parameter| parameter.group).collect();
+        groups.dedup();
         // The switches of textures stand beside their images.
         let is_shown = |parameter: &&Parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(&before);
-        for parameter in PARAMETERS.iter() {
-            if !groups.contains(&parameter.group) {
-                groups.push(parameter.group);
-            }
-        }
         for group in groups {
             let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
             // What says nothing is folded whenever another material is shown; the user opens it for as long.
@@ -97,7 +84,7 @@ impl Panel for MaterialPanel {
                             show_parameter(ui, desk, parameter, &mut material);
                         }
                     });
-                    if parameter.key == METAL_KEY {
+                    if parameter.key == "specular.conductor" {
                         widgets::comes_and_goes(ui, |ui| metal(ui, desk, &mut material));
                     }
                     if let Some(target) = textures::target_of(parameter.key) {
@@ -118,11 +105,12 @@ impl Panel for MaterialPanel {
 }
 
 /// The model's slots, where there is a choice.
-fn slots(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
-    // Their number is not known while the model is being loaded.
-    let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
+fn slots(ui: &mut Ui, desk: &mut Desk, search: &mut String) {
+    // They are not known while the model is being loaded.
+    let Some(model) = desk.scene().map(|scene| scene.model.clone()) else {
         return;
     };
+    let count = model.slots.len();
     if desk.shared.selection.slot >= count.max(1) {
         desk.shared.selection.slot = 0;
     }
@@ -130,21 +118,17 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
         return;
     }
     widgets::group(ui, "Materials of the model", |ui| {
-        let names: Vec<String> = desk
-            .scene()
-            .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
-            .unwrap_or_default();
         let materials: Vec<MaterialSettings> = (0..count).map(|slot| desk.document.material(slot)).collect();
         let is_in_flow = desk.edits.is_in_flow();
-        let balls = desk.shared.library.pictures_of(ui.ctx(), &materials, is_in_flow);
+        let balls = desk.shared.pictures.of_document(&materials, is_in_flow);
         if count >= SEARCHED_FROM {
             keys::search_field(ui, search, "Search", "Search materials of the model");
         }
         let wanted = search.to_lowercase();
         let height = SLOTS_SHOWN * (BALL + 4.0 + ui.spacing().item_spacing.y);
-        egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        ScrollArea::vertical().max_height(height).show(ui, |ui| {
             for (slot, (material, ball)) in materials.iter().zip(&balls).enumerate() {
-                let name = &names[slot];
+                let name = &model.slots[slot].name;
                 let is_wanted = |text: &str| text.to_lowercase().contains(&wanted);
                 if is_wanted(name) || is_wanted(&material.name) {
                     ui.push_id(slot, |ui| slot_entry(ui, desk, (slot, name), material, ball.as_ref()));
@@ -157,29 +141,28 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>, search: &mut String) {
 /// A material by its ball and name; behind it what its surface is called in the model, where that is something else.
 fn slot_entry(
     ui: &mut Ui,
-    desk: &mut Desk<'_>,
+    desk: &mut Desk,
     (slot, name): (usize, &str),
     material: &MaterialSettings,
-    ball: Option<&egui::TextureHandle>,
+    ball: Option<&TextureHandle>,
 ) {
     let label = match (material.name.as_str(), name) {
         (own, of_model) if own == of_model || of_model.is_empty() => own.to_owned(),
         ("", of_model) => of_model.to_owned(),
         (own, of_model) => format!("{own}  ({of_model})"),
     };
-    let [r, g, b] = widgets::srgb_of(material.base_color);
     let is_selected = slot == desk.shared.selection.slot;
-    let row = widgets::PictureRow {
+    let row = Tile {
         name: &label,
         full_name: &format!("Slot {}: {label}", slot + 1),
         picture: ball,
-        size: egui::Vec2::splat(BALL),
-        color: egui::Color32::from_rgb(r, g, b),
+        size: Vec2::splat(BALL),
+        color: widgets::shown(material.base_color),
         is_current: is_selected,
     };
-    let item = row.show(ui);
+    let item = row.row(ui);
     // Where a click in the viewport selected it.
-    let shown = egui::Id::unique("slot in sight");
+    let shown = Id::unique("slot in sight");
     if is_selected && ui.memory(|memory| memory.data.get_temp::<usize>(shown)) != Some(slot) {
         item.scroll_to_me(None);
         ui.memory_mut(|memory| memory.data.insert_temp(shown, slot));
@@ -190,7 +173,7 @@ fn slot_entry(
 }
 
 /// The other way to say which metal it is: two colours in place of η and k, or those of a measured metal.
-fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+fn metal(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
     if material.metalness < 1.0 {
         return;
     }
@@ -204,10 +187,9 @@ fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     }
     let menu = ui.menu_button("Measured metal…", |ui| {
         for conductor in Conductor::all().filter(|conductor| *conductor != Conductor::Custom) {
-            if ui.button(conductor.name()).clicked() {
+            if widgets::entry(ui, conductor.name(), "") {
                 *material = material.by_measured(conductor);
                 desk.edits.note(format!("Use measured {}", conductor.name()), "");
-                ui.close();
             }
         }
     });
@@ -215,17 +197,17 @@ fn metal(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
         .on_hover_text("Replaces the colours by a metal's measured η and k.");
 }
 
-fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+fn name(ui: &mut Ui, desk: &mut Desk, material: &mut MaterialSettings) {
     ui.horizontal(|ui| {
         let width = ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x;
-        let field = egui::TextEdit::singleline(&mut material.name)
+        let field = TextEdit::singleline(&mut material.name)
             .desired_width(width)
-            .margin(egui::vec2(6.0, 3.0));
+            .margin(vec2(6.0, 3.0));
         if ui.add(field).accessible_name("Material name").changed() {
             desk.edits.note("Rename material", "material name");
         }
         let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
-        egui::Popup::menu(&more).show(|ui| {
+        Popup::menu(&more).show(|ui| {
             for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
                 desk.button(ui, command);
             }
@@ -234,16 +216,14 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
 }
 
 /// The row of a parameter.
-fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
-    let mut value = parameter.get(material);
+fn show_parameter(ui: &mut Ui, desk: &mut Desk, parameter: &Parameter, material: &mut MaterialSettings) {
     let idle = (parameter.idle)(material);
-    let pressed = Cell::new(false);
-    let pointed = Cell::new(false);
+    let [pressed, pointed] = [Cell::new(false), Cell::new(false)];
     let target = textures::target_of(parameter.key);
     // A texture that is there has a row of its own; its parameter's control stays the one that it is.
-    let is_empty = target.is_some_and(|target| !textures::is_there(desk, target));
+    let empty = target.filter(|target| !textures::is_there(desk, *target));
     let mut slot = |ui: &mut Ui| {
-        if let Some(target) = target.filter(|_| is_empty) {
+        if let Some(target) = empty {
             let response = textures::empty_slot(ui, target);
             pressed.set(response.clicked());
             pointed.set(response.contains_pointer());
@@ -251,19 +231,16 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
     };
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
         let beside = target.is_some().then_some(&mut slot as &mut dyn FnMut(&mut Ui));
-        parameter_row::show_beside(ui, parameter, &parameter.full_name(), &mut value, beside)
+        parameter_row::edit(ui, parameter, &parameter.full_name(), material, beside)
     });
-    if let Some(target) = target.filter(|_| pressed.get()) {
-        desk.actions.push(Action::ChooseTexture(target));
+    if pressed.get() {
+        desk.actions.extend(empty.map(Action::ChooseTexture));
     }
-    if let Some(target) = target.filter(|_| pointed.get()) {
-        desk.shared.selection.texture = Some(target);
+    if pointed.get() {
+        desk.shared.selection.texture = empty;
     }
-    if let Some(why) = idle {
-        row.response.on_hover_text(why);
-    }
-    let is_other = row.inner;
-    if is_other && parameter.set(material, value).is_ok() {
+    widgets::explained(row.response, idle.unwrap_or_default());
+    if row.inner {
         let key = format!("{}/{}", desk.shared.selection.slot, parameter.key);
         desk.edits.note(parameter.full_name(), key);
     }

@@ -1,16 +1,9 @@
 //! The textures of the selected material, each at its parameter: the model's, and those of the user's own in their place.
 
-use std::path::Path;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
-use egui::Ui;
-
-use crate::app::actions::Action;
-use crate::app::desk::Desk;
-use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::widgets::{self, Name};
-use crate::app::kit::{parameter_row, theme};
-use crate::document::{MaterialSettings, PARAMETERS, Parameter, TEXTURE_PARAMETERS, map_key};
+use super::*;
+use crate::document::TEXTURE_PARAMETERS;
 use crate::scene::texture::TextureTarget;
 use crate::scene::{Model, Texture};
 
@@ -23,12 +16,6 @@ enum Picture {
     OfModel(Arc<Model>, usize),
     /// One of the user's own: `None` until it is loaded, or why it can't be.
     Own(String, Option<Result<Arc<Texture>, String>>),
-}
-
-/// What a row's buttons ask for.
-enum Asked {
-    Choose,
-    Remove,
 }
 
 /// The parameters of a target's texture.
@@ -44,7 +31,7 @@ struct Place {
 static PLACES: LazyLock<Vec<Place>> = LazyLock::new(|| {
     let of_key = |key: &str| PARAMETERS.iter().find(|parameter| parameter.key == key);
     let place = |target: &TextureTarget| {
-        let key = map_key(*target).trim_end_matches("_map");
+        let key = target.map_key().trim_end_matches("_map");
         let switch = of_key(&format!("{key}_texture"));
         let at = of_key(key).or(switch);
         Place { at, switch }
@@ -54,10 +41,8 @@ static PLACES: LazyLock<Vec<Place>> = LazyLock::new(|| {
 
 /// The targets whose textures stand at parameters of a kind.
 fn targets(is_it: impl Fn(&Parameter) -> bool) -> impl Iterator<Item = TextureTarget> {
-    let there = TextureTarget::ALL.iter().zip(PLACES.iter());
-    there
-        .filter(move |(_, place)| place.at.is_some_and(&is_it))
-        .map(|(target, _)| *target)
+    let is_it = move |target: &TextureTarget| PLACES[*target as usize].at.is_some_and(&is_it);
+    TextureTarget::ALL.iter().copied().filter(is_it)
 }
 
 /// The target whose texture stands at a parameter.
@@ -71,27 +56,32 @@ pub fn of_group(group: &str) -> impl Iterator<Item = TextureTarget> {
 }
 
 /// Whether the selected slot has a texture there.
-pub fn is_there(desk: &Desk<'_>, target: TextureTarget) -> bool {
+pub fn is_there(desk: &Desk, target: TextureTarget) -> bool {
     picture(desk, target).is_some()
 }
 
 /// The square beside a parameter that has no texture: pressed to choose one, and a place to drop one.
-pub fn empty_slot(ui: &mut Ui, target: TextureTarget) -> egui::Response {
-    let name = format!("Texture of the {}", target.label().to_lowercase());
-    let help = format!(
-        "{}\nChoose an image of your own, or drop one on the window.",
-        target.help()
-    );
-    icons::button(ui, Icon::Texture, &name, &help)
+pub fn empty_slot(ui: &mut Ui, target: TextureTarget) -> Response {
+    let choose = "Choose an image of your own, or drop one on the window.";
+    icons::button(
+        ui,
+        Icon::Texture,
+        &name(target),
+        &format!("{}\n{choose}", target.help()),
+    )
+}
+
+fn name(target: TextureTarget) -> String {
+    format!("Texture of the {}", target.label().to_lowercase())
 }
 
 /// The texture's row, with how a user's own one is mapped. One that is not there has its place beside the parameter, but
 /// for that of the normal, which has a row.
-pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
+pub fn show(ui: &mut Ui, desk: &mut Desk, target: TextureTarget, material: &mut MaterialSettings) {
     let picture = picture(desk, target);
     if picture.is_some() || target.is_normal() {
         let top = ui.cursor().min;
-        let place = egui::Rect::from_min_size(top, egui::vec2(ui.available_width(), theme::ROW_HEIGHT));
+        let place = Rect::from_min_size(top, vec2(ui.available_width(), theme::ROW_HEIGHT));
         if ui.rect_contains_pointer(place) {
             desk.shared.selection.texture = Some(target);
         }
@@ -102,90 +92,60 @@ pub fn show(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &
 
 fn row(
     ui: &mut Ui,
-    desk: &mut Desk<'_>,
+    desk: &mut Desk,
     target: TextureTarget,
     picture: Option<&Picture>,
     material: &mut MaterialSettings,
 ) {
     let switch = PLACES[target as usize].switch.filter(|_| picture.is_some());
-    let of_target = target.label().to_lowercase();
-    let full = switch.map_or_else(|| format!("Texture of the {of_target}"), Parameter::full_name);
-    let help = match switch {
-        Some(parameter) => parameter.help,
-        None => target.help(),
-    };
-    let name = Name::new(&full, target.label(), help);
-    let is_own = material.user_textures.get(target).is_some();
-    let mut asked = None;
-    let response = widgets::row(ui, name, |ui| {
-        let mut is_on = material.textures[target];
-        let response = match (switch, picture) {
-            (Some(_), Some(picture)) => {
-                let response = ui.checkbox(&mut is_on, "");
-                // Its small copy comes later, and the button behind stays the one that it is.
-                widgets::comes_and_goes(ui, |ui| picture.show(ui));
-                response
+    let full = switch.map_or_else(|| name(target), Parameter::full_name);
+    let help = switch.map_or(target.help(), |parameter| parameter.help);
+    let is_switched = widgets::row(ui, [&full, target.label(), help], |ui| {
+        let Some(picture) = picture else {
+            let help = "Assigns a texture of your own; or drop one on the window";
+            let response = ui.button("Choose…").on_hover_text(help);
+            if response.clicked() {
+                desk.actions.push(Action::ChooseTexture(target));
             }
-            (None, Some(picture)) => widgets::comes_and_goes(ui, |ui| picture.show(ui)),
-            (_, None) => {
-                let response = ui
-                    .button("Choose…")
-                    .on_hover_text("Assigns a texture of your own; or drop one on the window");
-                if response.clicked() {
-                    asked = Some(Asked::Choose);
-                }
-                return response;
-            }
+            return response;
         };
-        if response.changed() {
-            material.textures[target] = is_on;
-        }
-        menu(ui, &of_target, is_own, &mut asked);
-        response
+        let switch = switch.map(|_| ui.checkbox(&mut material.textures[target], ""));
+        // Its small copy comes later, and the button behind stays the one that it is.
+        let shown = widgets::comes_and_goes(ui, |ui| picture.show(ui));
+        menu(ui, desk, target, material);
+        switch.unwrap_or(shown)
     });
-    if response.changed
-        && let Some(parameter) = switch
-    {
-        desk.edits.note(
-            parameter.full_name(),
-            format!("{}/{}", desk.shared.selection.slot, parameter.key),
-        );
-    }
-    match asked {
-        Some(Asked::Remove) => {
-            material.user_textures.set(target, None);
-            desk.edits.note(format!("Remove the {of_target} texture"), "");
-        }
-        Some(Asked::Choose) => desk.actions.push(Action::ChooseTexture(target)),
-        None => {}
+    if let Some(parameter) = switch.filter(|_| is_switched) {
+        let key = format!("{}/{}", desk.shared.selection.slot, parameter.key);
+        desk.edits.note(parameter.full_name(), key);
     }
 }
 
-fn menu(ui: &mut Ui, of_target: &str, is_own: bool, asked: &mut Option<Asked>) {
+fn menu(ui: &mut Ui, desk: &mut Desk, target: TextureTarget, material: &mut MaterialSettings) {
+    let of_target = target.label().to_lowercase();
     let name = format!("Menu of the {of_target} texture");
     let more = icons::button(ui, Icon::More, &name, "Replace, remove");
-    egui::Popup::menu(&more).show(|ui| {
+    Popup::menu(&more).show(|ui| {
         if widgets::pressed(ui, "Replace…", "Another texture of your own") {
-            *asked = Some(Asked::Choose);
+            desk.actions.push(Action::ChooseTexture(target));
         }
-        let remove = ui.add_enabled(is_own, egui::Button::new("Remove"));
-        let remove = remove.on_hover_text("The model's texture comes back, where it has one");
-        if remove
-            .on_disabled_hover_text("It is the model's; its switch leaves it out")
-            .clicked()
-        {
-            *asked = Some(Asked::Remove);
+        let is_own = material.user_textures.get(target).is_some();
+        let help = "The model's texture comes back, where it has one";
+        let why_not = "It is the model's; its switch leaves it out";
+        if widgets::pressed_if(ui, is_own, "Remove", help, why_not) {
+            material.user_textures.set(target, None);
+            desk.edits.note(format!("Remove the {of_target} texture"), "");
         }
     });
 }
 
 /// How an image of the user's own lies on the material.
-fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
+fn placement(ui: &mut Ui, desk: &mut Desk, target: TextureTarget, material: &mut MaterialSettings) {
     let Some(mut texture) = material.user_textures.get(target).cloned() else {
         return;
     };
     let title = format!("Placement of the {} texture", target.label().to_lowercase());
-    egui::CollapsingHeader::new(egui::RichText::new("Placement").weak())
+    CollapsingHeader::new(RichText::new("Placement").weak())
         .id_salt(&title)
         .show(ui, |ui| {
             for parameter in TEXTURE_PARAMETERS.iter() {
@@ -195,13 +155,8 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
                     "strength" | "color_space" => !target.is_normal(),
                     _ => true,
                 };
-                if !has_effect {
-                    continue;
-                }
                 let full = format!("{} texture {}", target.label(), parameter.label.to_lowercase());
-                let mut value = parameter.get(&texture);
-                let is_other = parameter_row::show_as(ui, parameter, &full, &mut value);
-                if is_other && parameter.set(&mut texture, value).is_ok() {
+                if has_effect && parameter_row::edit(ui, parameter, &full, &mut texture, None) {
                     let key = format!("{}/{}/{}", desk.shared.selection.slot, target.name(), parameter.key);
                     desk.edits.note(full, key);
                     material.user_textures.set(target, Some(texture.clone()));
@@ -213,19 +168,14 @@ fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: 
 }
 
 /// What a target of the selected slot looks up.
-fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
+fn picture(desk: &Desk, target: TextureTarget) -> Option<Picture> {
     let scene = desk.scene();
     if let Some(own) = desk.material().user_textures.get(target) {
-        let known = scene.and_then(|scene| {
-            scene
-                .job
-                .textures
-                .user_textures
-                .iter()
-                .find(|known| known.file == own.file)
-        });
+        let name = own.file.file_name().unwrap_or(own.file.as_os_str()).to_string_lossy();
+        let mut known = scene.iter().flat_map(|scene| &scene.job.textures.user_textures);
+        let known = known.find(|known| known.file == own.file);
         return Some(Picture::Own(
-            name_of(&own.file),
+            name.into_owned(),
             known.map(|known| known.picture.clone()),
         ));
     }
@@ -235,16 +185,9 @@ fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
     Some(Picture::OfModel(scene.model.clone(), reference.texture))
 }
 
-fn name_of(file: &Path) -> String {
-    file.file_name()
-        .unwrap_or(file.as_os_str())
-        .to_string_lossy()
-        .into_owned()
-}
-
 impl Picture {
     /// Its name, size and a small copy, which is made once.
-    fn show(&self, ui: &mut Ui) -> egui::Response {
+    fn show(&self, ui: &mut Ui) -> Response {
         let (name, about) = match self {
             Self::OfModel(model, texture) => {
                 let picture = &model.textures[*texture];
@@ -253,41 +196,38 @@ impl Picture {
             Self::Own(name, Some(Ok(picture))) => (name.as_str(), about(picture)),
             Self::Own(name, None) => (name.as_str(), "loading".to_owned()),
             Self::Own(name, Some(Err(why))) => {
-                let text = egui::RichText::new(format!("{name}: missing")).color(ui.visuals().warn_fg_color);
+                let text = RichText::new(format!("{name}: missing")).color(ui.visuals().warn_fg_color);
                 let help = format!("{why}\nPut the file there, or choose another.");
-                return ui.add(egui::Label::new(text).truncate()).on_hover_text(help);
+                return widgets::line(ui, text).on_hover_text(help);
             }
         };
         if let Some((picture, id)) = self.texels() {
-            let known = ui.memory(|memory| memory.data.get_temp::<egui::TextureHandle>(id));
+            let known = ui.memory(|memory| memory.data.get_temp::<TextureHandle>(id));
             let handle = known.unwrap_or_else(|| {
-                let options = egui::TextureOptions::LINEAR;
+                let options = TextureOptions::LINEAR;
                 let handle = ui.ctx().load_texture(name, small_copy(picture), options);
                 ui.memory_mut(|memory| memory.data.insert_temp(id, handle.clone()));
                 handle
             });
-            let side = egui::Vec2::splat(theme::ROW_HEIGHT - 2.0);
-            ui.add(egui::Image::new((handle.id(), side)).alt_text(name))
+            let side = Vec2::splat(theme::ROW_HEIGHT - 2.0);
+            ui.add(Image::new((handle.id(), side)).alt_text(name))
                 .on_hover_text(&about);
         }
         let width = (ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x).max(0.0);
-        let label = egui::Label::new(name).truncate();
-        let size = egui::vec2(width, theme::ROW_HEIGHT);
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let shown = ui.allocate_ui_with_layout(size, layout, |ui| ui.add(label).on_hover_text(about));
-        shown.inner
+        let label = Label::new(name).truncate();
+        widgets::sized(ui, width, |ui| ui.add(label).on_hover_text(about))
     }
 
     /// The image, where it is there, and what its small copy is remembered by.
-    fn texels(&self) -> Option<(&Texture, egui::Id)> {
+    fn texels(&self) -> Option<(&Texture, Id)> {
         match self {
             Self::OfModel(model, texture) => {
                 let id = ("texture", Arc::as_ptr(model) as usize, *texture);
-                Some((&model.textures[*texture], egui::Id::unique(id)))
+                Some((&model.textures[*texture], Id::unique(id)))
             }
             Self::Own(_, Some(Ok(picture))) => {
                 let id = ("own texture", Arc::as_ptr(picture) as usize);
-                Some((picture, egui::Id::unique(id)))
+                Some((picture, Id::unique(id)))
             }
             Self::Own(..) => None,
         }
@@ -299,15 +239,15 @@ fn about(picture: &Texture) -> String {
 }
 
 /// An image reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
-fn small_copy(picture: &Texture) -> egui::ColorImage {
+fn small_copy(picture: &Texture) -> ColorImage {
     let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
     let pixels = (0..width * height).map(|i| {
         let (x, y) = (i % width * picture.width / width, i / width * picture.height / height);
         let place = 4 * (y * picture.width + x) as usize;
         match picture.rgba8.get(place..place + 3) {
-            Some(&[r, g, b]) => egui::Color32::from_rgb(r, g, b),
-            _ => egui::Color32::BLACK,
+            Some(&[r, g, b]) => Color32::from_rgb(r, g, b),
+            _ => Color32::BLACK,
         }
     });
-    egui::ColorImage::new([width as usize, height as usize], pixels.collect())
+    ColorImage::new([width as usize, height as usize], pixels.collect())
 }

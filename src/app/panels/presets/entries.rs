@@ -2,23 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{TextureHandle, Ui};
-
-use crate::app::actions::{Action, Command};
-use crate::app::desk::Desk;
-use crate::app::kit::tile::{self, Layout, Tile};
-use crate::app::kit::widgets;
-use crate::app::pane::Pane;
+use super::*;
+use crate::app::kit::tile::Tile;
 use crate::app::services::compare::Rival;
-use crate::app::services::environments::environment_label;
-use crate::app::services::library::Change;
-use crate::app::services::shelves::{KeptShelves, environment_key, preset_key};
+use crate::app::services::pictures::Part;
+use crate::app::services::shelves::{KeptShelves, environment_key, environment_label, preset_key};
 use crate::document::MaterialSettings;
-use crate::scene::environment::{BUILT_IN, EnvironmentSource};
+use crate::render::thumbnails::Subject;
+use crate::scene::environment::EnvironmentSource;
 use crate::store::PRESETS;
 use crate::store::exchange::FORMATS;
 use crate::store::preset::{SHIPPED, source_of_values};
-use crate::store::shelf::{Contents, Item, ItemKind};
+use crate::store::shelf::{Item, ItemKind};
 
 /// Things that stand together.
 pub struct Group {
@@ -62,39 +57,38 @@ enum EntryKind {
 }
 
 impl Entry {
-    fn material(key: String, material: &MaterialSettings, picture: Option<&TextureHandle>) -> Self {
+    fn new(desk: &Desk, key: String, name: String, kind: EntryKind) -> Self {
         Self {
+            picture: desk.shared.pictures.texture(&key).cloned(),
             key,
-            name: material.name.clone(),
-            full_name: material.name.clone(),
-            own: None,
-            kind: EntryKind::Material(Box::new(material.clone())),
-            picture: picture.cloned(),
-        }
-    }
-
-    fn environment(source: EnvironmentSource, picture: Option<&TextureHandle>) -> Self {
-        let label = environment_label(&source);
-        Self {
-            key: environment_key(&source),
-            // The panel of the light calls it by its name alone.
-            full_name: format!("Environment {label}"),
-            name: label,
-            own: None,
-            kind: EntryKind::Environment(source),
-            picture: picture.cloned(),
-        }
-    }
-
-    fn broken(path: &Path, why: &str) -> Self {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        Self {
-            key: path.display().to_string(),
             full_name: name.clone(),
             name,
             own: None,
-            kind: EntryKind::Broken(why.to_owned()),
-            picture: None,
+            kind,
+        }
+    }
+
+    /// A file, or why it can't be used.
+    fn file(desk: &Desk, path: &Path, material: Result<&MaterialSettings, &String>) -> Self {
+        let key = path.display().to_string();
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        match material {
+            Ok(material) => Self::material(desk, key, material),
+            Err(why) => Self::new(desk, key, name, EntryKind::Broken(why.clone())),
+        }
+    }
+
+    fn material(desk: &Desk, key: String, material: &MaterialSettings) -> Self {
+        let kind = EntryKind::Material(Box::new(material.clone()));
+        Self::new(desk, key, material.name.clone(), kind)
+    }
+
+    fn environment(desk: &Desk, source: EnvironmentSource) -> Self {
+        let (key, label) = (environment_key(&source), environment_label(&source));
+        Self {
+            // The panel of the light calls it by its name alone.
+            full_name: format!("Environment {label}"),
+            ..Self::new(desk, key, label, EntryKind::Environment(source))
         }
     }
 
@@ -105,7 +99,7 @@ impl Entry {
         }
         let look = match &self.kind {
             EntryKind::Material(material) => material.look_words().join(" "),
-            EntryKind::Environment(_) | EntryKind::Broken(_) => String::new(),
+            _ => String::new(),
         };
         let texts = [&self.name, group, &kept.tags_of(&self.key), &look].map(str::to_lowercase);
         search
@@ -117,23 +111,20 @@ impl Entry {
     pub fn aspect(&self) -> f32 {
         match self.kind {
             EntryKind::Environment(_) => 2.0,
-            EntryKind::Material(_) | EntryKind::Broken(_) => 1.0,
+            _ => 1.0,
         }
     }
 
     /// Shows it, and takes what the user does with it.
-    pub fn show(&self, ui: &mut Ui, desk: &mut Desk<'_>, layout: Layout, tagging: &mut Option<(String, String)>) {
+    pub fn show(&self, ui: &mut Ui, desk: &mut Desk, layout: Layout, tagging: &mut Option<(String, String)>) {
         let (color, is_current) = match &self.kind {
-            EntryKind::Material(material) => {
-                let [r, g, b] = widgets::srgb_of(material.base_color);
-                (egui::Color32::from_rgb(r, g, b), **material == desk.material())
-            }
+            EntryKind::Material(material) => (widgets::shown(material.base_color), **material == desk.material()),
             EntryKind::Environment(source) => {
                 let is_current = *source == desk.document.lighting.environment;
                 (ui.visuals().extreme_bg_color, is_current)
             }
             EntryKind::Broken(why) => {
-                let label = egui::Label::new(&self.name).truncate();
+                let label = Label::new(&self.name).truncate();
                 ui.add_enabled(false, label).on_disabled_hover_text(why);
                 return;
             }
@@ -142,22 +133,19 @@ impl Entry {
             Some(_) => format!("Rename, export or delete {}", self.full_name),
             None => format!("More of {}", self.full_name),
         };
+        let (Layout::List(height) | Layout::Grid(height)) = layout;
         let tile = Tile {
             name: &self.name,
             full_name: &self.full_name,
-            menu_name: &menu_name,
             picture: self.picture.as_ref(),
-            aspect: self.aspect(),
+            size: vec2(height * self.aspect(), height),
             color,
             is_current,
-            is_favourite: desk.shared.shelves.kept.favourites.contains(&self.key),
         };
-        let mut response = tile.show(ui, layout, |ui| self.menu(ui, desk, tagging));
-        if let (EntryKind::Material(_), None) = (&self.kind, &self.own)
-            && let Some(source) = source_of_values(&self.full_name)
-        {
-            response = response.on_hover_text(source);
-        }
+        let is_favourite = desk.shared.shelves.kept.favourites.contains(&self.key);
+        let response = tile.show(ui, layout, (&menu_name, is_favourite), |ui| {
+            self.menu(ui, desk, tagging)
+        });
         match &self.kind {
             EntryKind::Material(material) => {
                 if response.clicked() {
@@ -166,8 +154,10 @@ impl Entry {
                 // Onto an object in the viewport, or a material in the tree of the scene.
                 response.dnd_set_drag_payload((**material).clone());
                 if response.dragged() {
-                    tile::at_pointer(ui, self.picture.as_ref(), color);
+                    tile.at_pointer(ui);
                 }
+                let source = source_of_values(&self.full_name).filter(|_| self.own.is_none());
+                widgets::explained(response, source.unwrap_or_default());
             }
             EntryKind::Environment(source) if response.clicked() && !is_current => {
                 desk.actions.push(Action::UseEnvironment(source.clone()));
@@ -177,7 +167,7 @@ impl Entry {
     }
 
     /// What else can be done with it.
-    fn menu(&self, ui: &mut Ui, desk: &mut Desk<'_>, tagging: &mut Option<(String, String)>) {
+    fn menu(&self, ui: &mut Ui, desk: &mut Desk, tagging: &mut Option<(String, String)>) {
         let kept = &mut desk.shared.shelves.kept;
         let is_favourite = kept.favourites.contains(&self.key);
         let label = if is_favourite {
@@ -194,8 +184,8 @@ impl Entry {
         if let EntryKind::Material(material) = &self.kind {
             let help = "Shows it beside the material that is edited.";
             if widgets::pressed(ui, "Compare as B", help) {
-                desk.actions
-                    .push(Action::CompareWith(Rival::Material(material.clone())));
+                let rival = Rival::Material(material.clone());
+                desk.actions.push(Action::CompareWith(rival));
             }
             usage(ui, desk, material);
             ui.separator();
@@ -204,43 +194,37 @@ impl Entry {
         let Some(path) = &self.own else { return };
         ui.separator();
         let is_material = matches!(self.kind, EntryKind::Material(_));
-        if ui.add_enabled(is_material, egui::Button::new("Rename")).clicked() {
+        if widgets::pressed_if(ui, is_material, "Rename", "", "") {
             desk.shared.library.renaming = Some((path.clone(), self.name.clone()));
         }
-        if ui.add_enabled(is_material, egui::Button::new("Duplicate")).clicked() {
-            desk.actions
-                .push(Action::ChangeLibrary(Change::Duplicate(path.clone())));
+        let mut change = None;
+        if widgets::pressed_if(ui, is_material, "Duplicate", "", "") {
+            change = Some(Change::Duplicate(path.clone()));
         }
         if ui.button("Delete").clicked() {
-            desk.actions.push(Action::ChangeLibrary(Change::Remove(path.clone())));
+            change = Some(Change::Remove(path.clone()));
         }
+        desk.actions.extend(change.map(Action::ChangeLibrary));
     }
 }
 
 /// Where a material is used in the scene, and using it everywhere in place of the one that is edited.
-fn usage(ui: &mut Ui, desk: &mut Desk<'_>, material: &MaterialSettings) {
+fn usage(ui: &mut Ui, desk: &mut Desk, material: &MaterialSettings) {
     let users = desk.slots_where(|used| used.name == material.name);
-    let show = egui::Button::new(format!("Show where it is used ({})", users.len()));
-    let show = ui.add_enabled(!users.is_empty(), show);
-    let show =
-        show.on_hover_text("Chooses the materials of the scene that have its name, and outlines their surfaces.");
-    if show
-        .on_disabled_hover_text("No material of the scene has its name.")
-        .clicked()
-    {
+    let text = format!("Show where it is used ({})", users.len());
+    let help = "Chooses the materials of the scene that have its name, and outlines their surfaces.";
+    let why_not = "No material of the scene has its name.";
+    if widgets::pressed_if(ui, !users.is_empty(), text, help, why_not) {
         desk.actions.push(Action::SelectSlots(users));
         desk.actions.push(Action::Reveal(Pane::Scene));
         ui.close();
     }
     let edited = desk.material();
     let alike = desk.slots_where(|used| *used == edited);
-    let replace = egui::Button::new(format!("Replace on all that use {} ({})", edited.name, alike.len()));
-    let replace = ui.add_enabled(alike.len() > 1, replace);
-    let replace = replace.on_hover_text("Gives this material to all slots that have the one that is edited.");
-    if replace
-        .on_disabled_hover_text("No other slot has the material that is edited.")
-        .clicked()
-    {
+    let text = format!("Replace on all that use {} ({})", edited.name, alike.len());
+    let help = "Gives this material to all slots that have the one that is edited.";
+    let why_not = "No other slot has the material that is edited.";
+    if widgets::pressed_if(ui, alike.len() > 1, text, help, why_not) {
         desk.actions.push(Action::SelectSlots(alike));
         desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
         ui.close();
@@ -253,10 +237,7 @@ fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Acti
         actions.push(Action::Export(Box::new(material.clone())));
     }
     ui.menu_button("Copy as", |ui| {
-        for format in FORMATS
-            .iter()
-            .filter(|format| format.is_written && format.format.is_text())
-        {
+        for format in FORMATS.iter().filter(|format| format.is_text()) {
             if widgets::pressed(ui, format.label, format.help) {
                 actions.push(Action::CopyAs(Box::new(material.clone()), format.name));
             }
@@ -265,20 +246,21 @@ fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Acti
 }
 
 /// Everything, in groups: favourites, shipped materials by kind, the user's own, watched folders, environments.
-pub fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
+pub fn groups(desk: &mut Desk) -> Vec<Group> {
     let mut groups: Vec<Group> = shipped(desk);
     groups.push(Group::new("Mine", own(desk)));
     groups.extend(watched(desk));
     groups.push(Group::new("Environments", environments(desk)));
-    let sources: Vec<EnvironmentSource> = groups
-        .iter()
-        .flat_map(|group| &group.entries)
-        .filter_map(|entry| match &entry.kind {
-            EntryKind::Environment(source) => Some(source.clone()),
-            _ => None,
-        })
-        .collect();
-    desk.make_environment_pictures(ctx, "browser", &sources);
+    let entries = groups.iter().flat_map(|group| &group.entries);
+    let subject = |entry: &Entry| {
+        let subject = match &entry.kind {
+            EntryKind::Material(material) => Subject::Material(material.clone()),
+            EntryKind::Environment(source) => Subject::Environment(source.clone()),
+            EntryKind::Broken(_) => return None,
+        };
+        Some((entry.key.clone(), subject))
+    };
+    desk.shared.pictures.want(Part::Browser, entries.filter_map(subject));
     let favourites = &desk.shared.shelves.kept.favourites;
     let mut first = Vec::new();
     for group in &mut groups {
@@ -289,75 +271,54 @@ pub fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
     groups
 }
 
-fn shipped(desk: &Desk<'_>) -> Vec<Group> {
-    let mut entries = PRESETS.iter().enumerate().map(|(index, material)| {
-        let picture = desk.shared.library.shipped_picture(index);
-        Entry::material(preset_key(material), material, picture)
-    });
+fn shipped(desk: &Desk) -> Vec<Group> {
+    let entry = |material| Entry::material(desk, preset_key(material), material);
+    let mut entries = PRESETS.iter().map(entry);
     let group = |(title, files): &(&str, &[&str])| Group::new(*title, entries.by_ref().take(files.len()).collect());
     SHIPPED.iter().map(group).collect()
 }
 
-fn own(desk: &Desk<'_>) -> Vec<Entry> {
-    let library = &desk.shared.library;
-    let entry = |shown: &crate::app::services::library::MaterialCard| {
-        let path = &shown.entry.path;
-        let entry = match &shown.entry.material {
-            Ok(material) => Entry::material(path.display().to_string(), material, library.picture(shown.key)),
-            Err(why) => Entry::broken(path, why),
-        };
-        Entry {
-            own: Some(path.clone()),
-            ..entry
-        }
-    };
-    library.own.iter().map(entry).collect()
+fn own(desk: &Desk) -> Vec<Entry> {
+    let own = desk.shared.library.entries.iter().map(|own| Entry {
+        own: Some(own.path.clone()),
+        ..Entry::file(desk, &own.path, own.material.as_ref())
+    });
+    own.collect()
 }
 
-fn watched(desk: &Desk<'_>) -> Vec<Group> {
-    let (contents, keys) = desk.shared.shelves.contents();
-    let group = |(contents, keys): (&Contents, &Vec<u64>)| {
-        let folder = contents.folder.file_name().unwrap_or(contents.folder.as_os_str());
-        let mut group = Group::new(folder.to_string_lossy(), Vec::new());
-        group.folder = Some(contents.folder.clone());
+fn watched(desk: &Desk) -> Vec<Group> {
+    let folders = &desk.shared.shelves.kept.folders;
+    let mut groups = Vec::new();
+    for contents in desk.shared.shelves.contents.iter() {
+        let folder = &contents.folder;
+        if !folders.contains(folder) {
+            continue;
+        }
+        let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy();
+        let mut group = Group::new(name, Vec::new());
+        group.folder = Some(folder.clone());
         match &contents.items {
-            Ok(items) => {
-                let items = items.iter().zip(keys);
-                group.entries = items
-                    .map(|(item, key)| found(desk, &contents.folder, item, *key))
-                    .collect();
-                if group.entries.is_empty() {
-                    group
-                        .notes
-                        .push("No materials (.json, .mtlx) and no environments (.hdr, .exr).".to_owned());
-                }
+            Ok(items) if items.is_empty() => {
+                let note = "No materials (.json, .mtlx) and no environments (.hdr, .exr).";
+                group.notes.push(note.to_owned());
             }
+            Ok(items) => group.entries = items.iter().map(|item| found(desk, folder, item)).collect(),
             Err(why) => group.notes.push(why.clone()),
         }
         if contents.has_more {
             group.notes.push(format!("The first {} files.", group.entries.len()));
         }
-        group
-    };
-    let folders = &desk.shared.shelves.kept.folders;
-    let is_watched = |(contents, _): &(&Contents, &Vec<u64>)| folders.contains(&contents.folder);
-    contents.iter().zip(&keys).filter(is_watched).map(group).collect()
+        groups.push(group);
+    }
+    groups
 }
 
 /// A file in a watched folder, which others may share their name with.
-fn found(desk: &Desk<'_>, folder: &Path, item: &Item, picture_key: u64) -> Entry {
+fn found(desk: &Desk, folder: &Path, item: &Item) -> Entry {
     let path = &item.path;
     let mut entry = match &item.kind {
-        ItemKind::Material(Ok(material)) => {
-            let picture = desk.shared.library.picture(picture_key);
-            Entry::material(path.display().to_string(), material, picture)
-        }
-        ItemKind::Material(Err(why)) => Entry::broken(path, why),
-        ItemKind::Environment => {
-            let source = EnvironmentSource::File(path.clone());
-            let picture = desk.shared.environments.picture(&source);
-            Entry::environment(source.clone(), picture)
-        }
+        ItemKind::Material(material) => Entry::file(desk, path, material.as_deref()),
+        ItemKind::Environment => Entry::environment(desk, EnvironmentSource::File(path.clone())),
     };
     let within = path.strip_prefix(folder.parent().unwrap_or(folder)).unwrap_or(path);
     entry.full_name = format!("{} ({})", entry.name, within.display());
@@ -365,22 +326,12 @@ fn found(desk: &Desk<'_>, folder: &Path, item: &Item, picture_key: u64) -> Entry
 }
 
 /// Those that come with the program, the one in use, and those opened last, but for what lies in watched folders.
-fn environments(desk: &Desk<'_>) -> Vec<Entry> {
+fn environments(desk: &Desk) -> Vec<Entry> {
     let folders = &desk.shared.shelves.kept.folders;
     let is_shown = |source: &EnvironmentSource| match source {
         EnvironmentSource::File(path) => !folders.iter().any(|folder| path.starts_with(folder)),
         _ => true,
     };
-    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
-    let current = std::iter::once(desk.document.lighting.environment.clone());
-    for source in current.chain(desk.shared.recent.environments()).filter(is_shown) {
-        if !sources.contains(&source) {
-            sources.push(source);
-        }
-    }
-    let entry = |source: EnvironmentSource| {
-        let picture = desk.shared.environments.picture(&source);
-        Entry::environment(source.clone(), picture)
-    };
-    sources.into_iter().map(entry).collect()
+    let sources = desk.environments(usize::MAX).into_iter().filter(is_shown);
+    sources.map(|source| Entry::environment(desk, source)).collect()
 }

@@ -2,16 +2,13 @@
 
 mod entries;
 
-use egui::Ui;
+use entries::{Entry, groups};
 
-use super::Panel;
-use crate::app::actions::{Action, Command};
-use crate::app::desk::Desk;
+use super::*;
+use crate::app::kit::keys;
 use crate::app::kit::tile::{self, Layout};
-use crate::app::kit::{keys, theme, widgets};
 use crate::app::services::library::Change;
 use crate::app::services::shelves::{LIST, SIDE_MAX};
-use entries::{Entry, groups};
 
 /// The materials and environments to start from.
 #[derive(Default)]
@@ -25,12 +22,10 @@ pub struct PresetsPanel {
 }
 
 impl Panel for PresetsPanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         self.header(ui, desk);
         ui.add_space(0.5 * theme::GAP);
-        let shared = &mut *desk.shared;
-        shared.shelves.look(ui.ctx(), &mut shared.library);
-        shared.library.make_pictures(ui.ctx());
+        desk.shared.shelves.look(ui.ctx());
         widgets::comes_and_goes(ui, |ui| self.groups(ui, desk));
         ui.add_space(theme::GAP);
         widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
@@ -44,11 +39,11 @@ impl Panel for PresetsPanel {
 
 impl PresetsPanel {
     /// Search, tags, and the size of the images.
-    fn header(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn header(&mut self, ui: &mut Ui, desk: &mut Desk) {
         keys::search_field(ui, &mut self.search, "Search", "Search presets");
         ui.horizontal(|ui| {
             let kept = &mut desk.shared.shelves.kept;
-            let slider = egui::Slider::new(&mut kept.picture_side, LIST..=SIDE_MAX)
+            let slider = Slider::new(&mut kept.picture_side, LIST..=SIDE_MAX)
                 .show_value(false)
                 .step_by(4.0);
             ui.add(slider)
@@ -61,15 +56,11 @@ impl PresetsPanel {
             if tags.is_empty() {
                 return;
             }
-            let label = self.tag.clone().unwrap_or_else(|| "All tags".to_owned());
-            let button = ui.menu_button(label, |ui| {
-                if ui.selectable_label(self.tag.is_none(), "All tags").clicked() {
-                    self.tag = None;
-                }
-                for tag in &tags {
-                    if ui.selectable_label(self.tag.as_ref() == Some(tag), tag).clicked() {
-                        self.tag = Some(tag.clone());
-                    }
+            let label = |tag: &Option<String>| tag.clone().unwrap_or_else(|| "All tags".to_owned());
+            let button = ui.menu_button(label(&self.tag), |ui| {
+                for tag in std::iter::once(None).chain(tags.into_iter().map(Some)) {
+                    let text = label(&tag);
+                    ui.selectable_value(&mut self.tag, tag, text);
                 }
             });
             button.response.accessible_name("Only what has a tag");
@@ -77,13 +68,13 @@ impl PresetsPanel {
     }
 
     /// Everything that is looked for, in groups.
-    fn groups(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn groups(&mut self, ui: &mut Ui, desk: &mut Desk) {
         let layout = match desk.shared.shelves.kept.picture_side {
             side if side > LIST => Layout::Grid(side),
             side => Layout::List(side),
         };
         let wanted = self.search.to_lowercase();
-        let groups = groups(ui.ctx(), desk);
+        let groups = groups(desk);
         let mut found = false;
         for mut group in groups {
             let kept = &desk.shared.shelves.kept;
@@ -101,20 +92,15 @@ impl PresetsPanel {
                 {
                     desk.shared.shelves.kept.folders.retain(|watched| watched != folder);
                 }
-                for note in &group.notes {
-                    widgets::note(ui, note);
-                }
+                group.notes.iter().for_each(|note| widgets::note(ui, note));
+                let mut entries = |ui: &mut Ui| {
+                    for entry in &group.entries {
+                        self.entry(ui, desk, entry, layout);
+                    }
+                };
                 match layout {
-                    Layout::List(_) => group
-                        .entries
-                        .iter()
-                        .for_each(|entry| self.entry(ui, desk, entry, layout)),
-                    Layout::Grid(_) => tile::grid(ui, |ui| {
-                        group
-                            .entries
-                            .iter()
-                            .for_each(|entry| self.entry(ui, desk, entry, layout));
-                    }),
+                    Layout::List(_) => entries(ui),
+                    Layout::Grid(_) => tile::grid(ui, entries),
                 }
             });
         }
@@ -124,13 +110,12 @@ impl PresetsPanel {
     }
 
     /// One thing, or the field in which its name or its tags are typed.
-    fn entry(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, entry: &Entry, layout: Layout) {
+    fn entry(&mut self, ui: &mut Ui, desk: &mut Desk, entry: &Entry, layout: Layout) {
         if let Layout::Grid(height) = layout {
             tile::make_room(ui, height * entry.aspect());
         }
         // By what it is, as others may come before it.
-        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("preset", &entry.key)));
-        ui.scope_builder(builder, |ui| {
+        widgets::known_by(ui, ("preset", &entry.key), |ui| {
             if let Some((key, text)) = &mut self.tagging
                 && *key == entry.key
             {
@@ -157,11 +142,8 @@ impl PresetsPanel {
 }
 
 /// The button that brings back what was deleted last.
-fn restoring(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let removed = desk.shared.library.removed.as_ref();
-    if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
-        && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
-    {
+fn restoring(ui: &mut Ui, desk: &mut Desk) {
+    if widgets::restores(ui, desk.shared.library.removed.as_ref().map(|removed| &*removed.path)) {
         desk.actions.push(Action::ChangeLibrary(Change::Restore));
     }
 }

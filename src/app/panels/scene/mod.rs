@@ -3,37 +3,28 @@
 mod materials;
 mod objects;
 
-use egui::{Response, RichText, Sense, Ui, vec2};
-
-use super::Panel;
-use crate::app::actions::Action;
-use crate::app::desk::Desk;
-use crate::app::kit::{keys, theme, widgets};
-use crate::app::pane::Pane;
-use crate::app::services::environments::environment_label;
+use super::*;
+use crate::app::kit::keys;
 use crate::app::services::selection::Thing;
+use crate::app::services::shelves::environment_label;
 
 /// The tree.
 #[derive(Default)]
 pub struct ScenePanel {
     search: String,
-    renaming: Option<Renaming>,
+    /// What is being given another name, and what was typed so far.
+    renaming: Option<(Renamed, String)>,
 }
 
-/// What is being given another name.
-#[derive(Clone, Debug, PartialEq)]
+/// What may be given another name.
+#[derive(PartialEq)]
 enum Renamed {
     Thing(Thing),
     Camera(usize),
 }
 
-struct Renaming {
-    what: Renamed,
-    name: String,
-}
-
 impl Panel for ScenePanel {
-    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk) {
         desk.shared.selection.is_shown = true;
         keys::search_field(ui, &mut self.search, "Search the scene", "Search the scene");
         ui.add_space(0.5 * theme::GAP);
@@ -50,39 +41,28 @@ impl ScenePanel {
         name.to_lowercase().contains(&self.search.to_lowercase())
     }
 
-    /// The field for the new name of something, where it is being renamed: a new name that was typed, and whether it is.
-    fn new_name(&mut self, ui: &mut Ui, what: &Renamed) -> (Option<String>, bool) {
-        let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.what == *what) else {
-            return (None, false);
-        };
-        let done = widgets::name_field(ui, &mut renaming.name);
+    /// The field for the new name of something, where it is being renamed: once a name was typed, that.
+    fn new_name(&mut self, ui: &mut Ui, what: &Renamed) -> Option<Option<String>> {
+        let (_, name) = self.renaming.as_mut().filter(|(of, _)| of == what)?;
+        let done = widgets::name_field(ui, name);
         if done.is_some() {
             self.renaming = None;
         }
-        (done.flatten(), true)
+        Some(done.flatten())
     }
 
     fn rename(&mut self, what: Renamed, name: &str) {
-        self.renaming = Some(Renaming {
-            what,
-            name: name.to_owned(),
-        });
+        self.renaming = Some((what, name.to_owned()));
     }
 
-    fn lights(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let environment = format!(
-            "Environment: {}",
-            environment_label(&desk.document.lighting.environment)
-        );
-        let lights = desk.document.lighting.area_lights.clone();
-        let names = (1..).zip(&lights).map(|(number, light): (u32, _)| {
+    fn lights(&mut self, ui: &mut Ui, desk: &mut Desk) {
+        let environment = environment_label(&desk.document.lighting.environment);
+        let mut names = vec![format!("Environment: {environment}")];
+        for (index, light) in desk.document.lighting.area_lights.iter().enumerate() {
             let muted = if light.is_muted { ", muted" } else { "" };
-            format!("Area light {number}{muted}")
-        });
-        for name in std::iter::once(environment)
-            .chain(names)
-            .filter(|name| self.is_wanted(name))
-        {
+            names.push(format!("Area light {}{muted}", index + 1));
+        }
+        for name in names.into_iter().filter(|name| self.is_wanted(name)) {
             let line = line(ui, "Light", &name, false, false);
             if line.on_hover_text("Shows the light's parameters").clicked() {
                 desk.actions.push(Action::Reveal(Pane::Lighting));
@@ -90,7 +70,7 @@ impl ScenePanel {
         }
     }
 
-    fn cameras(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+    fn cameras(&mut self, ui: &mut Ui, desk: &mut Desk) {
         if self.is_wanted("View") && line(ui, "Camera", "View", false, false).clicked() {
             desk.actions.push(Action::Reveal(Pane::Camera));
         }
@@ -100,12 +80,11 @@ impl ScenePanel {
                 continue;
             }
             let what = Renamed::Camera(number);
-            let (name, is_renaming) = self.new_name(ui, &what);
-            if let Some(name) = name {
-                desk.document.bookmarks[number].name = name;
-                desk.edits.note("Rename a camera", "");
-            }
-            if is_renaming {
+            if let Some(renamed) = self.new_name(ui, &what) {
+                if let Some(name) = renamed {
+                    desk.document.bookmarks[number].name = name;
+                    desk.edits.note("Rename a camera", "");
+                }
                 continue;
             }
             let is_current = bookmark.camera == desk.document.camera;
@@ -115,9 +94,8 @@ impl ScenePanel {
                 desk.edits.note(format!("Look from {}", bookmark.name), "");
             }
             shown.context_menu(|ui| {
-                if ui.button("Rename").clicked() {
+                if widgets::entry(ui, "Rename", "") {
                     self.rename(what, &bookmark.name);
-                    ui.close();
                 }
             });
         }
@@ -131,7 +109,7 @@ fn line(ui: &mut Ui, kind: &str, name: &str, is_selected: bool, is_faint: bool) 
     let text = RichText::new(name);
     let text = if is_faint { text.weak() } else { text };
     // At the left, as lines of a tree are.
-    let button = egui::Button::selectable(is_selected, (text, egui::Atom::grow()))
+    let button = Button::selectable(is_selected, (text, Atom::grow()))
         .truncate()
         .sense(Sense::click_and_drag());
     let shown = ui.add_sized(size, button.min_size(size));
@@ -139,12 +117,15 @@ fn line(ui: &mut Ui, kind: &str, name: &str, is_selected: bool, is_faint: bool) 
 }
 
 /// A frame around a line that the pointer is over in the viewport.
-fn light_up(ui: &Ui, desk: &mut Desk<'_>, response: &Response, thing: Thing) {
+fn light_up(ui: &Ui, desk: &mut Desk, response: &Response, thing: Thing) {
     if response.hovered() {
         desk.shared.selection.hovered = Some(thing);
     } else if desk.shared.selection.lit == Some(thing) {
-        let stroke = egui::Stroke::new(1.0, theme::accent(ui.visuals().dark_mode));
-        ui.painter()
-            .rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
+        widgets::frame(ui, response.rect);
     }
+}
+
+/// Whether a click chooses something beside what is chosen.
+fn is_beside_others(ui: &Ui) -> bool {
+    ui.input(|input| input.modifiers.command || input.modifiers.shift)
 }

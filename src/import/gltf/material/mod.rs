@@ -1,28 +1,20 @@
 //! Conversion of materials to slots.
 
-mod layers;
 mod pictures;
+mod sheen;
 mod table;
 
 use std::collections::HashMap;
 
-use gltf::json;
-use json::extensions::texture::TextureTransform;
-use json::material::Material;
-use json::mesh::Primitive;
-use json::validation::Checked;
 use serde_json::Value as Json;
 
-use self::pictures::{PictureKey, affine, without_missing};
-pub use self::table::GLTF_PARAMETERS;
-use super::anisotropy::convert_widths;
+use self::pictures::{Made, Make, PictureKey, Reference, affine, without_missing};
+pub use self::table::{GLTF_PARAMETERS, kept_keys};
+use super::anisotropy::{convert_widths, widths_from_gltf};
 use super::container::Document;
-use super::material_extensions::{
-    Anisotropy, DiffuseRoughness, Iridescence, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, coat,
-    extension, kept, unreadable,
-};
-use super::sheen;
+use super::json::Primitive;
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
+use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::parallel;
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, TextureTarget, texture_mean};
@@ -46,7 +38,7 @@ impl Default for UvUse {
     fn default() -> Self {
         Self {
             sets: [Some(0), None],
-            normal_texture_from_uv: affine(&TextureTransform::default()),
+            normal_texture_from_uv: affine(&Json::Null),
             has_normal_texture: false,
         }
     }
@@ -63,50 +55,37 @@ struct MeanUse {
 /// Effect of a texture's mean on a slot.
 type Apply = fn(&mut Slot, &TextureMean);
 
-/// A use of a texture's mean, if the texture exists.
-fn mean(info: &Option<TextureInfo>, what: &'static str, apply: Apply) -> Option<(usize, &'static str, Apply)> {
-    Some((info.as_ref()?.index, what, apply))
-}
-
-/// A material of the specular-glossiness workflow that has textures.
-struct Conversion {
-    material: usize,
-    factors: Factors,
-    diffuse: Option<usize>,
-    specular: Option<usize>,
-}
-
-/// Textures of a slot's sheen, which are turned into those of fuzz.
-struct SheenTextures {
-    slot: usize,
-    /// What the colour's texture multiplies, at most 1.
-    tint: [f32; 3],
-    /// What the roughness's texture multiplies.
-    root_of_alpha: f32,
-    /// The images of colour and roughness.
-    images: [Option<usize>; 2],
-}
-
-impl SheenTextures {
-    /// The textures of the fuzz.
-    fn converted(&self, decoded: &HashMap<usize, Texture>) -> Vec<(PictureKey, Texture)> {
-        let [color, root] = self.images.map(|image| decoded.get(&image?));
-        let mut all = Vec::new();
-        if let Some(color) = color {
-            let [weight, color] = sheen::weight_and_color(color, self.tint);
-            all.push((PictureKey::FuzzWeight(self.slot), weight));
-            all.push((PictureKey::FuzzColor(self.slot), color));
-        }
-        if let Some(root) = root {
-            let roughness = sheen::roughness(root, self.root_of_alpha);
-            all.push((PictureKey::FuzzRoughness(self.slot), roughness));
-        }
-        all
-    }
-}
-
-/// A texture with its set of coordinates and its transform.
-type Reference = (usize, u32, Option<TextureTransform>);
+/// Textures of which the mean is taken: where they stand, what the report says, what the mean does.
+const MEANS: [(&str, &str, Apply); 4] = [
+    (
+        "/extensions/KHR_materials_specular/specularTexture",
+        "a specular texture, by its mean",
+        |slot, mean| slot.multiply("specular.weight", [mean.codes[3]; 3]),
+    ),
+    (
+        "/extensions/KHR_materials_specular/specularColorTexture",
+        SPECULAR_COLOR,
+        |slot, mean| slot.multiply("specular.color", mean.linear),
+    ),
+    (
+        "/extensions/KHR_materials_transmission/transmissionTexture",
+        "a transmission texture, by its mean",
+        |slot, mean| slot.multiply("transmission.weight", [mean.codes[0]; 3]),
+    ),
+    (
+        "/extensions/KHR_materials_anisotropy/anisotropyTexture",
+        "an anisotropy texture, by its mean",
+        |slot, mean| {
+            let [x, y] = [0, 1].map(|i| 2.0_f32 * mean.codes[i] - 1.0);
+            slot.multiply("specular.anisotropy", [mean.codes[2] * mean_strength(x.hypot(y)); 3]);
+            let rotation_deg = slot.number("specular.rotation") + y.atan2(x).to_degrees();
+            slot.set("specular.rotation", rotation_deg);
+        },
+    ),
+];
+const SPECULAR_COLOR: &str = "a specular colour texture, by its mean";
+/// The workflow that goes before metalness and roughness.
+const SPECULAR_GLOSSINESS: &str = "/extensions/KHR_materials_pbrSpecularGlossiness";
 
 /// The materials that primitives have asked for so far.
 pub(super) struct Materials<'a> {
@@ -120,23 +99,21 @@ pub(super) struct Materials<'a> {
     /// Images in use; a texture's index is its position here.
     pictures: Vec<PictureKey>,
     means: Vec<MeanUse>,
-    conversions: Vec<Conversion>,
-    sheens: Vec<SheenTextures>,
+    made: Vec<Made>,
     report: ImportReport,
 }
 
 impl<'a> Materials<'a> {
     pub fn new(document: &'a Document, options: &ModelOptions) -> Self {
-        let names = &document.raw["extensions"]["KHR_materials_variants"]["variants"];
         let mut report = ImportReport::default();
-        let variant = options.variant.as_ref().and_then(|wanted| {
-            let names = names.as_array()?.iter();
-            let found = names
-                .clone()
-                .position(|variant| variant["name"].as_str() == Some(wanted.as_str()));
-            found.map(|index| index as u64)
-        });
-        if let (Some(wanted), None) = (&options.variant, variant) {
+        let wanted = options.variant.as_deref();
+        let names = document.root.extensions["KHR_materials_variants"]["variants"].as_array();
+        let variant = names
+            .into_iter()
+            .flatten()
+            .position(|variant| variant["name"].as_str() == wanted);
+        let variant = variant.filter(|_| wanted.is_some()).map(|index| index as u64);
+        if let (Some(wanted), None) = (wanted, variant) {
             report.note(Fate::Missing, format!("the variant \"{wanted}\""), "");
         }
         Self {
@@ -147,24 +124,21 @@ impl<'a> Materials<'a> {
             slots: Vec::new(),
             pictures: Vec::new(),
             means: Vec::new(),
-            conversions: Vec::new(),
-            sheens: Vec::new(),
+            made: Vec::new(),
             report,
         }
     }
 
     /// The material of a primitive in the variant that is shown.
-    pub fn of_primitive(&self, primitive: &Primitive, raw: &Json) -> Option<usize> {
-        let mappings = raw["extensions"]["KHR_materials_variants"]["mappings"].as_array();
-        let mapped = self.variant.zip(mappings).and_then(|(variant, mappings)| {
-            let has_variant = |mapping: &&Json| {
-                let variants = mapping["variants"].as_array();
-                variants.is_some_and(|variants| variants.iter().any(|index| index.as_u64() == Some(variant)))
-            };
-            mappings.iter().find(has_variant)?["material"].as_u64()
+    pub fn of_primitive(&self, primitive: &Primitive) -> Option<usize> {
+        let mappings = primitive.extensions["KHR_materials_variants"]["mappings"].as_array();
+        let mut mappings = mappings.into_iter().flatten();
+        let mapping = mappings.find(|mapping| {
+            let mut variants = mapping["variants"].as_array().into_iter().flatten();
+            variants.any(|index| self.variant.is_some() && index.as_u64() == self.variant)
         });
-        let material = mapped.map(|index| index as usize);
-        material.or(primitive.material.map(|material| material.value()))
+        let mapped = mapping.and_then(|mapping| mapping["material"].as_u64());
+        mapped.map(|index| index as usize).or(primitive.material)
     }
 
     /// The slot of a material, or of the default material.
@@ -213,15 +187,10 @@ impl<'a> Materials<'a> {
     /// The slots with decoded textures; missing ones become grey.
     pub fn finish(mut self, report: &mut ImportReport) -> (Vec<Slot>, Vec<Texture>) {
         let mut images: Vec<usize> = self.means.iter().map(|mean| mean.image).collect();
-        images.extend(
-            self.conversions
-                .iter()
-                .flat_map(|conversion| [conversion.diffuse, conversion.specular])
-                .flatten(),
-        );
+        images.extend(self.made.iter().flat_map(|made| made.images).flatten());
         images.extend(self.pictures.iter().filter_map(|key| match key {
             PictureKey::Image(image) => Some(*image),
-            _ => None,
+            PictureKey::Made(..) => None,
         }));
         images.sort_unstable();
         images.dedup();
@@ -233,33 +202,15 @@ impl<'a> Materials<'a> {
                 self.report.note(Fate::Approximated, mean.what, &slots[mean.slot].name);
             }
         }
-        let converted: HashMap<usize, [Texture; 2]> = parallel::map_each(&self.conversions, |conversion| {
-            let image = |image: Option<usize>| decoded.get(&image?);
-            let name = format!("material {}", conversion.material);
-            let [diffuse, specular] = [conversion.diffuse, conversion.specular].map(image);
-            (
-                conversion.material,
-                convert_textures(&name, conversion.factors, diffuse, specular),
-            )
-        })
-        .into_iter()
-        .collect();
-        let of_sheens = parallel::map_each(&self.sheens, |sheen| sheen.converted(&decoded));
-        let of_sheens: HashMap<PictureKey, Texture> = of_sheens.into_iter().flatten().collect();
-        for sheen in &self.sheens {
-            if of_sheens.contains_key(&PictureKey::FuzzColor(sheen.slot)) {
-                // Its tint is in the texture.
-                slots[sheen.slot].fuzz_color = [1.0; 3];
-            }
-        }
+        let made = parallel::map_each(&self.made, |made| {
+            (made.make)(made.images.map(|image| decoded.get(&image?)))
+        });
         let textures = self.pictures.iter().map(|key| match key {
             PictureKey::Image(image) => decoded.get(image).cloned(),
-            PictureKey::BaseColor(material) => converted.get(material).map(|[color, _]| color.clone()),
-            PictureKey::Surface(material) => converted.get(material).map(|[_, surface]| surface.clone()),
-            of_sheen => of_sheens.get(of_sheen).cloned(),
+            PictureKey::Made(number, part) => made[*number][*part].clone(),
         });
         let mut textures = without_missing(&mut slots, textures.collect());
-        for slot in slots.iter_mut().filter(|slot| slot.anisotropy > 0.0) {
+        for slot in slots.iter_mut().filter(|slot| slot.number("specular.anisotropy") > 0.0) {
             if !convert_widths(slot, &mut textures) {
                 let what = "a highlight stretched more than 19 : 1, taken as 19 : 1";
                 self.report.note(Fate::Approximated, what, &slot.name);
@@ -269,254 +220,291 @@ impl<'a> Materials<'a> {
         (slots, textures)
     }
 
-    /// A material and its texture coordinates. The normal texture's set comes first, since tangents follow it; textures on a
-    /// third set are dropped.
+    /// A material and its texture coordinates; textures on a third set are dropped.
     fn read(&mut self, index: usize, slot: usize) -> (Slot, UvUse) {
         let root = &self.document.root;
-        let material = &root.materials[index];
-        let raw = &self.document.raw["materials"][index];
-        let pbr = &material.pbr_metallic_roughness;
-        let [red, green, blue, opacity] = pbr.base_color_factor.0;
-        let extensions = material.extensions.as_ref();
-        let strength = extensions
-            .and_then(|e| e.emissive_strength.as_ref())
-            .map_or(1.0, |e| e.emissive_strength.0);
-        let name = material.name.clone().filter(|name| !name.is_empty());
+        let raw = &root.materials[index];
+        let name = raw["name"].as_str().filter(|name| !name.is_empty());
         let mut read = Slot {
-            name: name.unwrap_or_else(|| format!("material {index}")),
+            name: name.map_or_else(|| format!("material {index}"), str::to_owned),
             file_material: Some(index),
-            base_color: [red, green, blue].map(unit),
-            metalness: unit(pbr.metallic_factor.0),
-            roughness: unit(pbr.roughness_factor.0),
-            emission: material.emissive_factor.0.map(|factor| not_negative(factor * strength)),
-            opacity: unit(opacity),
-            alpha_mode: alpha_mode(material),
-            alpha_cutoff: material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0),
-            double_sided: material.double_sided,
+            alpha_mode: match raw["alphaMode"].as_str() {
+                Some("MASK") => AlphaMode::Mask,
+                Some("BLEND") => AlphaMode::Blend,
+                _ => AlphaMode::Opaque,
+            },
+            alpha_cutoff: number(&raw["alphaCutoff"]).unwrap_or(0.5),
+            double_sided: raw["doubleSided"] == true,
             ..Slot::default()
         };
-        let mut sets = [None; 2];
-        let info = |info: &Option<json::texture::Info>| {
-            let info = info.as_ref()?;
-            let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-            Some((info.index.value(), info.tex_coord, transform))
-        };
-        let mut uv_use = UvUse::default();
-        if let Some(normal) = &material.normal_texture {
-            let reference = (normal.index.value(), normal.tex_coord, self.normal_transform(index));
-            *read.texture_mut(TextureTarget::Normal) = self.texture(Some(reference), &mut sets, &read.name);
-            read.normal_scale = normal.scale;
-            if let Some(texture) = read.texture(TextureTarget::Normal) {
-                uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
-                uv_use.has_normal_texture = true;
-            }
+        let opacity = number(&raw["pbrMetallicRoughness"]["baseColorFactor"][3]);
+        read.set("geometry.opacity", opacity.unwrap_or(1.0));
+        let mut uvs = Uvs::default();
+        // The normal texture's set of coordinates comes first, since tangents follow it, then that of the base colour.
+        self.read_rows(|place| place == "/normalTexture", raw, &mut read, &mut uvs);
+        let is_base = |place: &str| place.starts_with("/pbrMetallicRoughness");
+        match raw.pointer(SPECULAR_GLOSSINESS) {
+            Some(workflow) => self.read_specular_glossiness((index, slot), workflow, &mut read, &mut uvs),
+            None => self.read_rows(is_base, raw, &mut read, &mut uvs),
         }
-        match extension::<SpecularGlossiness>(raw, "KHR_materials_pbrSpecularGlossiness") {
-            Some(workflow) => self.read_specular_glossiness((index, slot), &workflow, &mut read, &mut sets),
-            None => {
-                *read.texture_mut(TextureTarget::BaseColor) =
-                    self.texture(info(&pbr.base_color_texture), &mut sets, &read.name);
-                *read.texture_mut(TextureTarget::Roughness) =
-                    self.texture(info(&pbr.metallic_roughness_texture), &mut sets, &read.name);
-            }
+        let is_other = |place: &str| place != "/normalTexture" && !is_base(place);
+        self.read_rows(is_other, raw, &mut read, &mut uvs);
+        self.read_layers(raw, &mut read, &mut uvs);
+        self.read_interior(raw, &mut read);
+        for (place, what, apply) in MEANS {
+            self.add_mean(slot, raw.pointer(place).and_then(Reference::of), what, apply);
         }
-        *read.texture_mut(TextureTarget::Emission) =
-            self.texture(info(&material.emissive_texture), &mut sets, &read.name);
-        self.read_layers(raw, slot, &mut read, &mut sets);
-        self.read_interior(material, raw, slot, &mut read);
-        if let Some(base) = extension::<DiffuseRoughness>(raw, "KHR_materials_diffuse_roughness") {
-            read.diffuse_roughness = unit(base.diffuse_roughness_factor);
-        }
-        if raw["extensions"].get("KHR_materials_unlit").is_some() {
+        if raw.pointer("/extensions/KHR_materials_unlit").is_some() {
             make_unlit(&mut read);
             self.report
                 .note(Fate::Approximated, "an unlit material, which shines", &read.name);
         }
         table::report_unread(raw, &root.extensions_used, &read.name, &mut self.report);
-        for extension in unreadable(raw) {
-            let what = format!("{extension}, whose values are not of the kinds that it has");
-            self.report.note(Fate::Ignored, what, &read.name);
-        }
-        let (kept, names) = kept(raw);
-        for what in names {
-            self.report
-                .note(Fate::Ignored, format!("{what}, kept in the material"), &read.name);
-        }
-        read.kept = kept;
-        if let (Some(texture), false) = (read.texture(TextureTarget::CoatNormal), uv_use.has_normal_texture) {
-            // Tangents follow the coat's texture where there is no other.
-            uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
-            uv_use.has_normal_texture = true;
-        }
-        uv_use.sets = [sets[0].or(Some(0)), sets[1]];
+        table::keep(raw, &mut read, &mut self.report);
+        // Tangents follow the coat's texture where there is no other.
+        let of_normals = [TextureTarget::Normal, TextureTarget::CoatNormal];
+        let followed = of_normals.into_iter().find_map(|target| read.texture(target));
+        let uv_use = UvUse {
+            sets: [uvs[0].or(Some(0)), uvs[1]],
+            normal_texture_from_uv: followed.map_or(affine(&Json::Null), |texture| texture.texture_from_mesh_uv),
+            has_normal_texture: followed.is_some(),
+        };
         (read, uv_use)
+    }
+
+    /// What the table has a parameter for, at some of its places.
+    fn read_rows(&mut self, is_asked: impl Fn(&str) -> bool, raw: &Json, read: &mut Slot, uvs: &mut Uvs) {
+        for row in GLTF_PARAMETERS
+            .iter()
+            .filter(|row| is_asked(row.place) && table::is_read(row, raw))
+        {
+            let [key, second] = row.keys();
+            let value = raw.pointer(row.place);
+            if let Some(default) = row.default_value() {
+                let found = value.map(|value| numbers(value).filter(|_| value.is_array() == row.is_list()));
+                if found == Some(None) {
+                    let what = format!("{}, whose value is not of the kind that it has", row.place);
+                    self.report.note(Fate::Ignored, what, &read.name);
+                }
+                let value = found.flatten().unwrap_or(default);
+                read.set_color(key, value.map(|x| x * row.per.recip()));
+            } else if let (Some(value), Some(target)) = (value, TextureTarget::of_key(key, "_texture")) {
+                // A layer without weight looks nothing up.
+                let layer = key.split('.').next();
+                let mut values = read.values.iter();
+                let weight = values.find(|(key, _)| key.strip_suffix(".weight") == layer);
+                let is_seen = row.example.starts_with('{') && weight.is_none_or(|(_, weight)| weight[0] != 0.0);
+                let Some(reference) = Reference::of(value).filter(|_| is_seen) else {
+                    continue;
+                };
+                *read.texture_mut(target) = self.texture(&reference, uvs, &read.name);
+                if target.is_normal() {
+                    read.set(second, reference.scale);
+                }
+            }
+        }
+    }
+
+    /// Textures that are made of others: of what, how, and the targets that each is for.
+    fn put_made(
+        &mut self,
+        made: Made,
+        placed: Option<TextureRef>,
+        targets: &[(TextureTarget, usize)],
+        read: &mut Slot,
+    ) {
+        for (target, part) in targets {
+            self.pictures.push(PictureKey::Made(self.made.len(), *part));
+            let texture = self.pictures.len() - 1;
+            *read.texture_mut(*target) = placed.map(|placed| TextureRef { texture, ..placed });
+        }
+        self.made.push(made);
     }
 
     /// The old workflow of diffuse and specular colours.
     fn read_specular_glossiness(
         &mut self,
         (material, slot): (usize, usize),
-        workflow: &SpecularGlossiness,
+        workflow: &Json,
         read: &mut Slot,
-        sets: &mut [Option<u32>; 2],
+        uvs: &mut Uvs,
     ) {
+        let diffuse = &workflow["diffuseFactor"];
+        let color = |key: &str| numbers(&workflow[key]).unwrap_or([1.0; 3]);
+        let [red, green, blue] = color("diffuseFactor");
+        let opacity = number(&diffuse[3]).unwrap_or(1.0);
         let factors = Factors {
-            diffuse: workflow.diffuse_factor,
-            specular: workflow.specular_factor,
-            glossiness: workflow.glossiness_factor,
+            diffuse: [red, green, blue, opacity],
+            specular: color("specularFactor"),
+            glossiness: number(&workflow["glossinessFactor"]).unwrap_or(1.0),
         };
-        self.report.note(
-            Fate::Approximated,
-            "specular-glossiness, as metalness and roughness",
-            &read.name,
-        );
-        let [red, green, blue, opacity] = factors.diffuse;
-        read.opacity = unit(opacity);
+        let what = "specular-glossiness, as metalness and roughness";
+        self.report.note(Fate::Approximated, what, &read.name);
+        let [of_diffuse, of_specular] = ["diffuseTexture", "specularGlossinessTexture"];
         if factors.specular.iter().all(|x| f64::from(*x) < DIELECTRIC) {
             // All dielectric, and of less reflectance than the other workflow's dielectrics have by themselves.
-            read.specular_color = factors.specular.map(|x| x.max(0.0) / DIELECTRIC as f32);
-            let what = "a specular colour texture, by its mean";
-            let applied = mean(&workflow.specular_glossiness_texture, what, |slot, mean| {
-                slot.specular_color = [0, 1, 2].map(|i| slot.specular_color[i] * mean.linear[i]);
+            read.set_color(
+                "specular.color",
+                factors.specular.map(|x| x.max(0.0) / DIELECTRIC as f32),
+            );
+            let texture = Reference::of(&workflow[of_specular]);
+            self.add_mean(slot, texture, SPECULAR_COLOR, |slot, mean| {
+                slot.multiply("specular.color", mean.linear);
             });
-            self.add_means(slot, applied.into_iter().collect());
         }
-        let textures = [&workflow.diffuse_texture, &workflow.specular_glossiness_texture];
-        let images = textures.map(|info| self.image(info.as_ref()?.index));
-        let Some(placed) = textures.into_iter().flatten().next() else {
+        let textures = [of_diffuse, of_specular].map(|key| Reference::of(&workflow[key]));
+        let images = textures.each_ref().map(|texture| self.image(texture.as_ref()?.texture));
+        let Some(first) = textures.iter().flatten().next() else {
             let converted = convert([red, green, blue], factors.specular, factors.glossiness);
-            read.base_color = converted.base_color;
-            (read.metalness, read.roughness) = (converted.metalness, converted.roughness);
+            read.set_color("base.color", converted.base_color);
+            read.set("base.metalness", converted.metalness);
+            read.set("specular.roughness", converted.roughness);
+            read.set("geometry.opacity", opacity);
             return;
         };
-        (read.base_color, read.metalness, read.roughness, read.opacity) = ([1.0; 3], 1.0, 1.0, 1.0);
-        let placed = self.texture(Some(placed.reference()), sets, &read.name);
-        let place = |key: PictureKey, pictures: &mut Vec<PictureKey>| {
-            pictures.push(key);
-            placed.map(|placed| TextureRef {
-                texture: pictures.len() - 1,
-                ..placed
-            })
+        read.set("geometry.opacity", 1.0);
+        let placed = self.texture(first, uvs, &read.name);
+        let name = format!("material {material}");
+        let make = move |[diffuse, specular]: [Option<&Texture>; 2]| {
+            convert_textures(&name, factors, diffuse, specular).map(Some).into()
         };
-        *read.texture_mut(TextureTarget::BaseColor) = place(PictureKey::BaseColor(material), &mut self.pictures);
-        *read.texture_mut(TextureTarget::Roughness) = place(PictureKey::Surface(material), &mut self.pictures);
-        self.conversions.push(Conversion {
-            material,
-            factors,
-            diffuse: images[0],
-            specular: images[1],
-        });
+        let targets = [(TextureTarget::BaseColor, 0), (TextureTarget::Roughness, 1)];
+        self.put_made(
+            Made {
+                images,
+                make: Box::new(make),
+            },
+            placed,
+            &targets,
+            read,
+        );
     }
 
-    /// Specular reflection, coat and anisotropy.
-    fn read_layers(&mut self, raw: &Json, slot: usize, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
-        let mut means = Vec::new();
-        if let Some(specular) = extension::<Specular>(raw, "KHR_materials_specular") {
-            read.specular = unit(specular.specular_factor);
-            read.specular_color = specular.specular_color_factor.map(not_negative);
-            means.extend(mean(
-                &specular.specular_texture,
-                "a specular texture, by its mean",
-                |slot, mean| {
-                    slot.specular *= mean.codes[3];
-                },
-            ));
-            means.extend(mean(
-                &specular.specular_color_texture,
-                "a specular colour texture, by its mean",
-                |slot, mean| {
-                    slot.specular_color = [0, 1, 2].map(|i| slot.specular_color[i] * mean.linear[i]);
-                },
-            ));
+    /// What of the layers is no number of one parameter.
+    fn read_layers(&mut self, raw: &Json, read: &mut Slot, uvs: &mut Uvs) {
+        let extension = |name: &str| raw.pointer(&format!("/extensions/KHR_materials_{name}"));
+        if extension("coat").is_some() {
+            read.set("coat.on_base", 1.0);
+            let widths = widths_from_gltf(read.number("coat.roughness"), read.number("coat.anisotropy"));
+            read.set("coat.roughness", widths.roughness);
+            read.set("coat.anisotropy", widths.stretch);
+            if read.number("coat.weight") > 0.0 {
+                let what = "a coat of the draft KHR_materials_coat, as OpenPBR has it";
+                self.report.note(Fate::Approximated, what, &read.name);
+            }
         }
-        if let Some(coat) = coat(raw) {
-            self.read_coat(&coat, read, sets);
+        let thickness = read.number("thin_film.thickness");
+        if let (Some(film), true) = (extension("iridescence"), thickness > 0.0) {
+            let thinnest_nm = film["iridescenceThicknessMinimum"]
+                .as_f64()
+                .map_or(100.0, |nm| (nm as f32).min(1e9));
+            read.thinnest = 1e-3 * thinnest_nm.max(0.0) / thickness;
         }
-        if let Some(film) = extension::<Iridescence>(raw, "KHR_materials_iridescence") {
-            self.read_film(&film, read, sets);
+        if let (Some(sheen), None) = (extension("sheen"), extension("fuzz")) {
+            self.read_sheen(sheen, read, uvs);
         }
-        self.read_fuzz(raw, slot, read, sets);
-        if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
-            read.anisotropy = unit(anisotropy.anisotropy_strength);
-            read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;
-            means.extend(mean(
-                &anisotropy.anisotropy_texture,
-                "an anisotropy texture, by its mean",
-                |slot, mean| {
-                    let [x, y] = [0, 1].map(|i| 2.0_f32 * mean.codes[i] - 1.0);
-                    slot.anisotropy *= mean.codes[2] * mean_strength(x.hypot(y));
-                    slot.anisotropy_rotation_rad += y.atan2(x);
-                },
-            ));
+    }
+
+    /// A sheen as fuzz of about its albedo, with textures that are turned into those of fuzz.
+    fn read_sheen(&mut self, sheen: &Json, read: &mut Slot, uvs: &mut Uvs) {
+        let factor = |key: &str| numbers(&sheen[key]).unwrap_or_default().map(|x| x.clamp(0.0, 1.0));
+        let [root_of_alpha, ..] = factor("sheenRoughnessFactor");
+        let (weight, tint, roughness) = fuzz_of_sheen(factor("sheenColorFactor"), root_of_alpha);
+        read.set("fuzz.weight", weight);
+        read.set_color("fuzz.color", tint);
+        read.set("fuzz.roughness", roughness);
+        if weight == 0.0 {
+            return;
         }
-        self.add_means(slot, means);
+        self.report
+            .note(Fate::Approximated, "a sheen, as fuzz of about its albedo", &read.name);
+        let mut put = |part: usize, key: &str, targets: &[(TextureTarget, usize)], make: Make| {
+            let texture = Reference::of(&sheen[key])?;
+            let placed = self.texture(&texture, uvs, &read.name)?;
+            let mut images = [None; 2];
+            images[part] = self.image(texture.texture);
+            self.put_made(Made { images, make }, Some(placed), targets, read);
+            Some(())
+        };
+        let of_color = move |[color, _]: [Option<&Texture>; 2]| match color {
+            Some(color) => sheen::weight_and_color(color, tint).map(Some).into(),
+            None => vec![None; 2],
+        };
+        let of_roughness =
+            move |[_, root]: [Option<&Texture>; 2]| vec![root.map(|root| sheen::roughness(root, root_of_alpha))];
+        let on_color = [(TextureTarget::Fuzz, 0), (TextureTarget::FuzzColor, 1)];
+        let has_color = put(0, "sheenColorTexture", &on_color, Box::new(of_color)).is_some();
+        let on_roughness = [(TextureTarget::FuzzRoughness, 0)];
+        put(1, "sheenRoughnessTexture", &on_roughness, Box::new(of_roughness));
+        if has_color {
+            // Its tint is in the texture.
+            read.set("fuzz.color", 1.0);
+        }
     }
 
     /// Index of refraction, transmission and absorption.
-    fn read_interior(&mut self, material: &Material, raw: &Json, slot: usize, read: &mut Slot) {
-        let extensions = material.extensions.as_ref();
-        let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |e| e.ior.0);
+    fn read_interior(&mut self, raw: &Json, read: &mut Slot) {
+        let ior = read.number("specular.ior");
         // 0 means a mirror.
-        let ior = if ior == 0.0 { f32::INFINITY } else { ior };
-        read.ior = ior.clamp(1.0, IOR_MAX);
-        if read.ior != ior {
-            let what = format!("an index of refraction of {ior}, taken as {}", read.ior);
+        let shown = if ior == 0.0 { IOR_MAX } else { ior.clamp(1.0, IOR_MAX) };
+        if shown != ior {
+            let what = format!("an index of refraction of {ior}, taken as {shown}");
             self.report.note(Fate::Approximated, what, &read.name);
+            read.set("specular.ior", shown);
         }
-        let transmission = extensions.and_then(|e| e.transmission.as_ref());
-        read.transmission = transmission.map_or(0.0, |e| unit(e.transmission_factor.0));
-        let volume = extensions.and_then(|e| e.volume.as_ref());
-        if let Some(volume) = volume {
-            read.attenuation_color = volume.attenuation_color.0.map(unit);
-            let distance = volume.attenuation_distance.0;
-            if distance.is_finite() && distance > 0.0 {
-                read.attenuation_distance = distance;
-            }
-        }
-        if read.transmission == 0.0 {
+        if read.number("transmission.weight") <= 0.0 {
             return;
         }
-        let thickness = extension::<Volume>(raw, "KHR_materials_volume").map_or(0.0, |volume| volume.thickness_factor);
-        if thickness <= 0.0 {
-            let what = if read.coat == 0.0 {
+        let thickness = raw.pointer("/extensions/KHR_materials_volume/thicknessFactor");
+        if thickness
+            .and_then(Json::as_f64)
+            .is_none_or(|thickness| thickness <= 0.0)
+        {
+            let what = if read.number("coat.weight") == 0.0 {
                 "a thin wall, which mirrors as a coat on the outside and bends nothing".to_owned()
             } else {
-                format!(
-                    "a thin wall of index {} under a coat, which alone mirrors; it bends nothing",
-                    read.ior
-                )
+                format!("a thin wall of index {shown} under a coat, which alone mirrors; it bends nothing")
             };
             make_thin(read);
             self.report.note(Fate::Approximated, what, &read.name);
         }
-        let [red, green, blue] = read.base_color;
-        if read.attenuation_distance.is_finite() && [red, green, blue] != [1.0; 3] {
+        if read.number("transmission.depth") > 0.0 && read.color("base.color") != [1.0; 3] {
             let what = "a base colour under a volume, which colours what is seen through instead";
             self.report.note(Fate::Approximated, what, &read.name);
         }
-        if read.specular_color.iter().any(|factor| *factor > 1.0) {
+        if read.color("specular.color").iter().any(|factor| *factor > 1.0) {
             let what = "a specular colour above 1 of what transmits, taken as 1";
             self.report.note(Fate::Approximated, what, &read.name);
         }
-        let transmission = extension::<Transmission>(raw, "KHR_materials_transmission").unwrap_or_default();
-        let what = "a transmission texture, by its mean";
-        let applied = mean(&transmission.transmission_texture, what, |slot, mean| {
-            slot.transmission *= mean.codes[0];
-        });
-        self.add_means(slot, applied.into_iter().collect());
     }
 
-    fn add_means(&mut self, slot: usize, means: Vec<(usize, &'static str, Apply)>) {
-        for (texture, what, apply) in means {
-            if let Some(image) = self.image(texture) {
-                self.means.push(MeanUse {
-                    slot,
-                    image,
-                    what,
-                    apply,
-                });
-            }
+    fn add_mean(&mut self, slot: usize, texture: Option<Reference>, what: &'static str, apply: Apply) {
+        if let Some(image) = texture.and_then(|texture| self.image(texture.texture)) {
+            self.means.push(MeanUse {
+                slot,
+                image,
+                what,
+                apply,
+            });
         }
+    }
+}
+
+/// Sets of texture coordinates that a material looks up.
+type Uvs = [Option<u32>; 2];
+
+fn number(value: &Json) -> Option<f32> {
+    value.as_f64().map(|x| x as f32).filter(|x| x.is_finite())
+}
+
+/// A number, or the first three of a list.
+fn numbers(json: &Json) -> Option<[f32; 3]> {
+    match json {
+        Json::Array(list) => {
+            let list: Option<Vec<f32>> = list.iter().map(number).collect();
+            list?.first_chunk().copied()
+        }
+        json => number(json).map(|x| [x; 3]),
     }
 }
 
@@ -534,38 +522,34 @@ fn mean_strength(length: f32) -> f32 {
 /// An unlit material: it emits its colour and reflects nothing.
 fn make_unlit(slot: &mut Slot) {
     slot.is_unlit = true;
-    slot.emission = slot.base_color;
+    slot.set_color("emission.color", slot.color("base.color"));
     *slot.texture_mut(TextureTarget::Emission) = slot.texture(TextureTarget::BaseColor);
-    slot.base_color = [0.0; 3];
-    (slot.metalness, slot.specular) = (0.0, 0.0);
-    *slot.texture_mut(TextureTarget::Roughness) = None;
-    *slot.texture_mut(TextureTarget::Normal) = None;
-    (slot.coat, slot.transmission) = (0.0, 0.0);
+    for target in [TextureTarget::Roughness, TextureTarget::Normal] {
+        *slot.texture_mut(target) = None;
+    }
+    slot.set("emission.strength", 1.0);
+    for key in [
+        "base.color",
+        "base.metalness",
+        "specular.weight",
+        "coat.weight",
+        "transmission.weight",
+    ] {
+        slot.set(key, 0.0);
+    }
 }
 
 /// A thin-walled material: light passes straight through without absorption. Its reflection is a coat, which does not
 /// refract either; the material's own coat takes precedence.
 fn make_thin(slot: &mut Slot) {
-    if slot.coat == 0.0 {
-        slot.coat = slot.specular * (1.0 - slot.metalness);
-        (slot.coat_ior, slot.coat_roughness) = (slot.ior, slot.roughness);
+    if slot.number("coat.weight") == 0.0 {
+        slot.set(
+            "coat.weight",
+            slot.number("specular.weight") * (1.0 - slot.number("base.metalness")),
+        );
+        slot.set("coat.ior", slot.number("specular.ior"));
+        slot.set("coat.roughness", slot.number("specular.roughness"));
     }
-    slot.ior = 1.0;
-    slot.attenuation_distance = f32::INFINITY;
-}
-
-fn unit(value: f32) -> f32 {
-    value.clamp(0.0, 1.0)
-}
-
-fn not_negative(value: f32) -> f32 {
-    if value.is_finite() { value.max(0.0) } else { 0.0 }
-}
-
-fn alpha_mode(material: &Material) -> AlphaMode {
-    match material.alpha_mode {
-        Checked::Valid(json::material::AlphaMode::Mask) => AlphaMode::Mask,
-        Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
-        _ => AlphaMode::Opaque,
-    }
+    slot.set("specular.ior", 1.0);
+    slot.set("transmission.depth", 0.0);
 }

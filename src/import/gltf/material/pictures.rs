@@ -1,34 +1,57 @@
 //! Textures of slots: images in use, their placement, and replacements of missing ones.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
-use gltf::json;
-use json::extensions::texture::TextureTransform;
-use json::texture::WrappingMode;
-use json::validation::Checked;
+use serde_json::Value as Json;
 
-use super::{Materials, Reference};
+use super::{Materials, Uvs, number};
 use crate::files::Import;
-use crate::gltf::image;
+use crate::gltf::container::Document;
 use crate::parallel;
-use crate::picture::{Encoded, Wanted};
+use crate::picture::Encoded;
 use crate::scene::report::Fate;
 use crate::scene::texture::TextureTarget;
 use crate::scene::{Filter, Slot, Texture, TextureRef, Wrap};
 
 /// An image used by slots.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PictureKey {
     /// An image of the file.
     Image(usize),
-    /// The base colour that a material of the specular-glossiness workflow is turned into.
-    BaseColor(usize),
-    /// Its metalness and roughness channels.
-    Surface(usize),
-    /// The weight of the fuzz that a slot's sheen is turned into.
-    FuzzWeight(usize),
-    FuzzColor(usize),
-    FuzzRoughness(usize),
+    /// The number of what is [`Made`], and the part of it.
+    Made(usize, usize),
+}
+
+/// Makes textures of others, as far as these are there.
+pub(super) type Make = Box<dyn Fn([Option<&Texture>; 2]) -> Vec<Option<Texture>> + Sync>;
+
+/// Textures that are made of images, the first of them a colour.
+pub(super) struct Made {
+    pub images: [Option<usize>; 2],
+    pub make: Make,
+}
+
+/// A material's reference to a texture.
+pub(super) struct Reference {
+    pub texture: usize,
+    set: u32,
+    texture_from_mesh_uv: [f32; 6],
+    /// Of a texture of normals.
+    pub scale: f32,
+}
+
+impl Reference {
+    pub fn of(info: &Json) -> Option<Self> {
+        let transform = &info["extensions"]["KHR_texture_transform"];
+        let set = transform["texCoord"].as_u64().or(info["texCoord"].as_u64());
+        Some(Self {
+            texture: info["index"].as_u64()? as usize,
+            set: set.unwrap_or(0) as u32,
+            texture_from_mesh_uv: affine(transform),
+            scale: number(&info["scale"]).unwrap_or(1.0),
+        })
+    }
 }
 
 impl Materials<'_> {
@@ -43,7 +66,7 @@ impl Materials<'_> {
             if loading.step(format!("texture {} of {count}", place + 1)).is_err() {
                 break;
             }
-            match image::encoded(document, image) {
+            match encoded(document, image) {
                 Ok(encoded) => {
                     let of_this = encoded.cost();
                     if cost + of_this > budget.left() {
@@ -66,9 +89,8 @@ impl Materials<'_> {
         let side_max = self.texture_side_max;
         let decode = |(image, encoded): (usize, Encoded<'_>)| {
             let is_color = self.is_color(image);
-            let wanted = Wanted { is_color, side_max };
             let scaled = loading.check().map_err(|cancelled| cancelled.to_string());
-            (image, scaled.and_then(|()| encoded.texture(wanted, budget)))
+            (image, scaled.and_then(|()| encoded.texture(is_color, side_max, budget)))
         };
         let results: Vec<_> = parallel::map_into(pictures, decode);
         for (image, result) in results {
@@ -95,85 +117,77 @@ impl Materials<'_> {
             of_colors()
                 .filter_map(|target| slot.texture(*target))
                 .any(|place| is_it(&place))
-        }) || self.sheens.iter().any(|sheen| sheen.images[0] == Some(image))
+        }) || self.made.iter().any(|made| made.images[0] == Some(image))
     }
 
     /// Reports an unreadable image.
     fn miss(&mut self, image: usize, reason: &str) {
         let what = format!("a texture, grey instead ({reason})");
-        self.report
-            .note(Fate::Missing, what, &image::name(self.document, image));
+        self.report.note(Fate::Missing, what, &image_name(self.document, image));
     }
 
     /// The image of a texture.
     pub(super) fn image(&mut self, texture: usize) -> Option<usize> {
-        let image = self
-            .document
-            .root
-            .textures
-            .get(texture)
-            .map(|texture| texture.source.value());
-        let found = image.filter(|&image| image < self.document.root.images.len());
+        let found = self.document.root.textures.get(texture);
+        let found = found.and_then(|texture| self.document.image_of(texture));
         if found.is_none() {
-            self.report.note(
-                Fate::Missing,
-                "a texture without an image",
-                &format!("texture {texture}"),
-            );
+            let name = format!("texture {texture}");
+            self.report.note(Fate::Missing, "a texture without an image", &name);
         }
         found
     }
 
     /// A reference to a texture's image; `None` if the texture is missing.
-    pub(super) fn texture(
-        &mut self,
-        reference: Option<Reference>,
-        sets: &mut [Option<u32>; 2],
-        owner: &str,
-    ) -> Option<TextureRef> {
-        let (texture, set, transform) = reference?;
-        let set = transform
-            .as_ref()
-            .and_then(|transform| transform.tex_coord)
-            .unwrap_or(set);
-        let place = sets.iter().position(|known| known.is_none_or(|known| known == set));
-        let Some(uv_set) = place else {
+    pub(super) fn texture(&mut self, reference: &Reference, uvs: &mut Uvs, owner: &str) -> Option<TextureRef> {
+        let set = reference.set;
+        let Some(uv_set) = uvs.iter().position(|known| known.is_none_or(|known| known == set)) else {
             let what = format!("a texture on TEXCOORD_{set}: its material looks up two other sets already");
             self.report.note(Fate::Ignored, what, owner);
             return None;
         };
-        let image = self.image(texture)?;
-        sets[uv_set] = Some(set);
-        let key = PictureKey::Image(image);
+        let key = PictureKey::Image(self.image(reference.texture)?);
+        uvs[uv_set] = Some(set);
         let place = self.pictures.iter().position(|known| *known == key).unwrap_or_else(|| {
             self.pictures.push(key);
             self.pictures.len() - 1
         });
-        let sampler = self.document.root.textures[texture].sampler;
-        let sampler = sampler.and_then(|sampler| self.document.root.samplers.get(sampler.value()));
-        let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
-            [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
-        });
-        let is_nearest = sampler.is_some_and(|sampler| {
-            matches!(
-                sampler.mag_filter,
-                Some(Checked::Valid(json::texture::MagFilter::Nearest))
-            )
-        });
+        let root = &self.document.root;
+        let sampler = root.textures[reference.texture]
+            .sampler
+            .and_then(|sampler| root.samplers.get(sampler));
+        let is_nearest = sampler.is_some_and(|sampler| sampler.mag_filter == NEAREST);
         Some(TextureRef {
             texture: place,
             uv_set,
             filter: if is_nearest { Filter::Nearest } else { Filter::Linear },
-            texture_from_mesh_uv: affine(&transform.unwrap_or_default()),
-            wrap,
+            texture_from_mesh_uv: reference.texture_from_mesh_uv,
+            wrap: sampler.map_or([Wrap::Repeat; 2], |sampler| [sampler.wrap_s, sampler.wrap_t].map(wrap)),
         })
     }
+}
 
-    /// The crate knows no KHR_texture_transform on normal textures.
-    pub(super) fn normal_transform(&self, material: usize) -> Option<TextureTransform> {
-        let extensions = &self.document.raw["materials"][material]["normalTexture"]["extensions"];
-        serde_json::from_value(extensions.get("KHR_texture_transform")?.clone()).ok()
-    }
+/// The format's number of filtering by the nearest texel.
+const NEAREST: u32 = 9728;
+
+/// Name of an image: its name, its file or its index.
+fn image_name(document: &Document, index: usize) -> String {
+    let image = document.root.images.get(index);
+    let name = image.and_then(|image| image.name.as_deref().filter(|name| !name.is_empty()));
+    let file = || image?.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
+    name.or_else(file)
+        .map_or_else(|| format!("image {index}"), str::to_owned)
+}
+
+/// An encoded image.
+fn encoded(document: &Document, index: usize) -> Result<Encoded<'_>, String> {
+    let image = document.root.images.get(index).ok_or("it is out of bounds")?;
+    let name = image_name(document, index);
+    let bytes = match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => Cow::Owned(document.read_uri(uri)?),
+        (None, Some(view)) => document.view(view)?,
+        (None, None) => return Err("it has no data".to_owned()),
+    };
+    Ok(Encoded { name, bytes })
 }
 
 /// The existing textures, with the slots' references to them; missing ones become plain grey.
@@ -201,30 +215,31 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
             if keep(slot.texture_mut(target)) {
                 continue;
             }
-            match target {
-                TextureTarget::BaseColor => slot.base_color = slot.base_color.map(|factor| 0.5 * factor),
-                TextureTarget::Roughness => (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness),
-                TextureTarget::Emission => slot.emission = [0.0; 3],
-                TextureTarget::CoatRoughness => slot.coat_roughness *= 0.5,
-                _ => {}
+            // Dark, where it shone.
+            let by = if target == TextureTarget::Emission { 0.0 } else { 0.5 };
+            slot.multiply(target.map_key().trim_end_matches("_map"), [by; 3]);
+            if target == TextureTarget::Roughness {
+                slot.set("base.metalness", 0.0);
             }
         }
     }
     textures.into_iter().flatten().collect()
 }
 
-fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+/// By the format's number.
+fn wrap(mode: u32) -> Wrap {
     match mode {
-        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
-        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
+        33071 => Wrap::ClampToEdge,
+        33648 => Wrap::MirroredRepeat,
         _ => Wrap::Repeat,
     }
 }
 
 /// Offset · rotation · scale, as KHR_texture_transform defines them.
-pub(super) fn affine(transform: &TextureTransform) -> [f32; 6] {
-    let (sin, cos) = transform.rotation.0.sin_cos();
-    let ([scale_u, scale_v], [offset_u, offset_v]) = (transform.scale.0, transform.offset.0);
+pub(super) fn affine(transform: &Json) -> [f32; 6] {
+    let pair = |key: &str, default: f32| [0, 1].map(|i| number(&transform[key][i]).unwrap_or(default));
+    let (sin, cos) = number(&transform["rotation"]).unwrap_or(0.0).sin_cos();
+    let ([scale_u, scale_v], [offset_u, offset_v]) = (pair("scale", 1.0), pair("offset", 0.0));
     [
         cos * scale_u,
         sin * scale_v,

@@ -11,8 +11,7 @@ use half::f16;
 use ruzstd::StreamingDecoder;
 
 use self::masks::Masks;
-use super::basis;
-use crate::panics::contained;
+use super::{Decoded, Numbers, Refusal, basis};
 
 /// The first bytes of a KTX2 file.
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
@@ -24,24 +23,6 @@ const RXGB: u32 = u32::from_le_bytes(*b"RXGB");
 const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
 /// The most columns or rows.
 const SIDE_MAX: u32 = 1 << 16;
-
-/// One image, or one face of a cube.
-#[derive(Clone, Debug)]
-pub(crate) struct Face {
-    pub width: u32,
-    pub height: u32,
-    /// Row by row from the top.
-    pub texels: Texels,
-}
-
-/// Red, green, blue and opacity of each texel.
-#[derive(Clone, Debug)]
-pub(crate) enum Texels {
-    /// Codes of 8 bits.
-    Codes(Vec<u8>),
-    /// Numbers with a point: linear.
-    Light(Vec<f32>),
-}
 
 /// Layout of texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,36 +123,6 @@ fn of_vulkan(format: u32) -> Option<Layout> {
     })
 }
 
-/// Errors of decoding.
-#[derive(Debug)]
-pub(crate) enum Refusal {
-    /// Valid, but unsupported.
-    NotRead(String),
-    /// Its bytes contradict each other.
-    Damaged(String),
-}
-
-impl From<&str> for Refusal {
-    fn from(reason: &str) -> Self {
-        Self::Damaged(reason.to_owned())
-    }
-}
-
-impl From<String> for Refusal {
-    fn from(reason: String) -> Self {
-        Self::Damaged(reason)
-    }
-}
-
-impl From<Refusal> for String {
-    fn from(refusal: Refusal) -> Self {
-        match refusal {
-            Refusal::NotRead(what) => format!("{what}, which is not read"),
-            Refusal::Damaged(reason) => reason,
-        }
-    }
-}
-
 /// The layout of a DDS file: by DXGI's number of its format, or by that of Direct3D 9.
 fn of_dds(dds: &Dds) -> Option<Layout> {
     if dds.header.spf.fourcc.as_ref().is_some_and(|code| code.0 == RXGB) {
@@ -244,16 +195,11 @@ pub(crate) fn is_container(bytes: &[u8]) -> bool {
 
 /// The image, or the six faces of the cube (+X, −X, +Y, −Y, +Z, −Z), at the largest level within `side_max` (of an image, of
 /// a face), or the smallest level.
-pub(crate) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
-    // Damaged files may fail assertions inside the crates instead of giving errors.
-    let decoded = contained(|| {
-        if bytes.starts_with(&DDS) {
-            decode_dds(bytes, side_max)
-        } else {
-            Ktx2::read(bytes).ok_or("its header is cut short")?.decode(side_max)
-        }
-    });
-    decoded.ok_or("it is damaged")?
+pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
+    if bytes.starts_with(&DDS) {
+        return decode_dds(bytes, side_max);
+    }
+    Ktx2::read(bytes).ok_or("its header is cut short")?.decode(side_max)
 }
 
 /// The level at which both sides are at most so long; else the last.
@@ -288,7 +234,7 @@ impl<'a> Ktx2<'a> {
         })
     }
 
-    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
+    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
         let faces = if self.faces == 6 { 6 } else { 1 };
         let side_max = side_max[usize::from(faces == 6)];
         if self.width == 0 || self.width.max(self.height) > SIDE_MAX {
@@ -296,14 +242,7 @@ impl<'a> Ktx2<'a> {
         }
         if self.format == 0 {
             let level = |[width, height]: [u32; 2], levels| level_within(width, height, levels, side_max);
-            let faces = basis::decode(self.bytes, faces, level)?.into_iter();
-            return Ok(faces
-                .map(|([width, height], codes)| Face {
-                    width,
-                    height,
-                    texels: Texels::Codes(codes),
-                })
-                .collect());
+            return Ok(basis::decode(self.bytes, faces, level)?);
         }
         let Some(layout) = of_vulkan(self.format) else {
             return Err(Refusal::NotRead(format!("number {} of Vulkan's formats", self.format)));
@@ -313,7 +252,7 @@ impl<'a> Ktx2<'a> {
         let size = layout.bytes(width, height).ok_or("it is too large")?;
         let level = self.level(level, size * faces).ok_or("it is damaged")?;
         let faces = level.chunks_exact(size).take(faces);
-        Ok(faces.map(|bytes| layout.face(width, height, bytes)).collect())
+        Ok(faces.map(|bytes| layout.image(width, height, bytes)).collect())
     }
 
     /// The first `size` bytes of a level, decompressed.
@@ -338,7 +277,7 @@ impl<'a> Ktx2<'a> {
     }
 }
 
-fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
+fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Decoded>, Refusal> {
     let dds = Dds::read(bytes).map_err(|error| error.to_string())?;
     let (width, height, levels) = (dds.get_width(), dds.get_height(), dds.get_num_mipmap_levels());
     if width == 0 || height == 0 || width.max(height) > SIDE_MAX {
@@ -368,9 +307,9 @@ fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
     let [width, height] = [width, height].map(|side| (side >> level).max(1));
     let face = |face: usize| {
         let bytes = dds.data.get(face * whole + before..)?.get(..size)?;
-        Some(layout.face(width, height, bytes))
+        Some(layout.image(width, height, bytes))
     };
-    let faces: Option<Vec<Face>> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
+    let faces: Option<Vec<Decoded>> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
     faces.ok_or_else(|| "it is cut short".into())
 }
 
@@ -389,123 +328,123 @@ impl Layout {
     }
 
     /// Decodes an image from exactly the bytes that it needs.
-    fn face(self, width: u32, height: u32, bytes: &[u8]) -> Face {
-        let texels = match self {
+    fn image(self, width: u32, height: u32, bytes: &[u8]) -> Decoded {
+        let (channels, numbers) = match self {
             Self::Bytes(size, places) => {
                 let channel = |texel: &[u8], place: u8| texel.get(usize::from(place)).copied().unwrap_or(255);
                 let rgba = |texel: &[u8]| places.map(|place| channel(texel, place));
-                Texels::Codes(bytes.chunks_exact(size).flat_map(rgba).collect())
+                (4, Numbers::Codes8(bytes.chunks_exact(size).flat_map(rgba).collect()))
             }
-            Self::Masks(masks) => Texels::Codes(masks.codes(bytes)),
+            Self::Masks(masks) => (4, Numbers::Codes8(masks.codes(bytes))),
             Self::Shorts(channels) => {
                 let fraction = |[low, high]: &[u8; 2]| f32::from(u16::from_le_bytes([*low, *high])) / 65535.0;
-                Texels::Light(rgba(bytes.as_chunks().0.iter().map(fraction), channels))
+                light(channels, bytes.as_chunks().0.iter().map(fraction).collect())
             }
             Self::Halves(channels) => {
                 let number = |[low, high]: &[u8; 2]| f16::from_le_bytes([*low, *high]).to_f32();
-                Texels::Light(rgba(bytes.as_chunks().0.iter().map(number), channels))
+                light(channels, bytes.as_chunks().0.iter().map(number).collect())
             }
             Self::Floats(channels) => {
                 let number = |bytes: &[u8; 4]| f32::from_le_bytes(*bytes);
-                Texels::Light(rgba(bytes.as_chunks().0.iter().map(number), channels))
+                light(channels, bytes.as_chunks().0.iter().map(number).collect())
             }
-            Self::SharedExponent => Texels::Light(rgba(words(bytes).flat_map(shared_exponent), 3)),
-            Self::SmallFloats => Texels::Light(rgba(words(bytes).flat_map(small_floats), 3)),
-            Self::Blocks(Block::Bc6h(is_signed), size) => {
-                let mut blocks = Blocks::new(width, height, 3);
-                blocks.fill(bytes.chunks_exact(size), |block, texels, pitch| {
-                    bcdec_rs::bc6h_float(block, texels, pitch, is_signed);
-                });
-                Texels::Light(rgba(blocks.texels.into_iter(), 3))
+            Self::SharedExponent => light(3, words(bytes).flat_map(shared_exponent).collect()),
+            Self::SmallFloats => light(3, words(bytes).flat_map(small_floats).collect()),
+            Self::Blocks(block, size) => {
+                let blocks = Blocks {
+                    width,
+                    height,
+                    bytes: bytes.chunks_exact(size),
+                };
+                block.numbers(blocks)
             }
-            Self::Blocks(block, size) => Texels::Codes(block.codes(width, height, bytes.chunks_exact(size))),
         };
-        Face { width, height, texels }
-    }
-}
-
-impl Block {
-    /// Codes of 8 bits, four a texel.
-    fn codes<'a>(self, width: u32, height: u32, bytes: impl Iterator<Item = &'a [u8]>) -> Vec<u8> {
-        let channels = match self {
-            Self::Bc4(_) => 1,
-            Self::Bc5(_) => 2,
-            _ => 4,
-        };
-        let mut blocks = Blocks::new(width, height, channels);
-        blocks.fill(bytes, |block, texels, pitch| match self {
-            Self::Bc1 => bcdec_rs::bc1(block, texels, pitch),
-            Self::Bc2 => bcdec_rs::bc2(block, texels, pitch),
-            Self::Bc3 | Self::Rxgb => bcdec_rs::bc3(block, texels, pitch),
-            Self::Bc4(is_signed) => bcdec_rs::bc4(block, texels, pitch, is_signed),
-            Self::Bc5(is_signed) => bcdec_rs::bc5(block, texels, pitch, is_signed),
-            Self::Bc6h(_) | Self::Bc7 => bcdec_rs::bc7(block, texels, pitch),
-        });
-        let texels = blocks.texels.chunks_exact(channels);
-        let rgba = |texel: &[u8]| match *texel {
-            [grey] => [grey, grey, grey, 255],
-            [red, green] => [red, green, 255, 255],
-            [_, g, b, red] if self == Self::Rxgb => [red, g, b, 255],
-            [r, g, b, a] => [r, g, b, a],
-            _ => [0; 4],
-        };
-        texels.flat_map(rgba).collect()
-    }
-}
-
-/// Texels that are filled block by block.
-struct Blocks<T> {
-    width: usize,
-    height: usize,
-    channels: usize,
-    /// Row by row, the channels of a texel together.
-    texels: Vec<T>,
-}
-
-impl<T: Copy + Default> Blocks<T> {
-    fn new(width: u32, height: u32, channels: usize) -> Self {
-        let (width, height) = (width as usize, height as usize);
-        Self {
+        Decoded {
             width,
             height,
             channels,
-            texels: vec![T::default(); width * height * channels],
-        }
-    }
-
-    /// Decodes blocks, row by row; texels beyond the image are skipped.
-    fn fill<'a>(&mut self, blocks: impl Iterator<Item = &'a [u8]>, decode: impl Fn(&[u8], &mut [T], usize)) {
-        let (across, pitch) = (self.width.div_ceil(4), 4 * self.channels);
-        let mut decoded = vec![T::default(); 4 * pitch];
-        for (number, block) in blocks.enumerate() {
-            decode(block, &mut decoded, pitch);
-            let (left, top) = (number % across * 4, number / across * 4);
-            let columns = (self.width - left).min(4) * self.channels;
-            for (row, line) in decoded.chunks_exact(pitch).enumerate().take(self.height - top) {
-                let start = ((top + row) * self.width + left) * self.channels;
-                self.texels[start..start + columns].copy_from_slice(&line[..columns]);
-            }
+            numbers,
         }
     }
 }
 
-/// RGBA per texel from `channels` numbers: one is grey, two are red and green; opacity defaults to 1.
-fn rgba(numbers: impl Iterator<Item = f32>, channels: usize) -> Vec<f32> {
-    let mut texels = Vec::new();
-    let mut texel = [0.0; 4];
-    for (place, number) in numbers.enumerate() {
-        texel[place % channels] = number;
-        if place % channels + 1 == channels {
-            let [first, second, third, fourth] = texel;
-            texels.extend(match channels {
-                1 => [first, first, first, 1.0],
-                2 => [first, second, 1.0, 1.0],
-                3 => [first, second, third, 1.0],
-                _ => [first, second, third, fourth],
-            });
+/// Linear numbers: two channels are red and green.
+fn light(channels: usize, numbers: Vec<f32>) -> (usize, Numbers) {
+    match channels {
+        2 => (3, Numbers::Light(with_blue(&numbers, 1.0))),
+        _ => (channels, Numbers::Light(numbers)),
+    }
+}
+
+fn with_blue<T: Copy>(numbers: &[T], blue: T) -> Vec<T> {
+    numbers
+        .as_chunks()
+        .0
+        .iter()
+        .flat_map(|[red, green]| [*red, *green, blue])
+        .collect()
+}
+
+impl Block {
+    /// Channels of a texel, and the numbers of all.
+    fn numbers(self, blocks: Blocks<'_>) -> (usize, Numbers) {
+        match self {
+            Self::Bc1 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc1))),
+            Self::Bc2 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc2))),
+            Self::Bc3 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc3))),
+            Self::Rxgb => {
+                let mut codes = blocks.decoded(4, bcdec_rs::bc3);
+                codes
+                    .as_chunks_mut()
+                    .0
+                    .iter_mut()
+                    .for_each(|[red, _, _, opacity]| *red = std::mem::replace(opacity, 255));
+                (4, Numbers::Codes8(codes))
+            }
+            Self::Bc4(is_signed) => {
+                let codes = blocks.decoded(1, |block, texels, pitch| bcdec_rs::bc4(block, texels, pitch, is_signed));
+                (1, Numbers::Codes8(codes))
+            }
+            Self::Bc5(is_signed) => {
+                let codes = blocks.decoded(2, |block, texels, pitch| bcdec_rs::bc5(block, texels, pitch, is_signed));
+                (3, Numbers::Codes8(with_blue(&codes, 255)))
+            }
+            Self::Bc6h(is_signed) => {
+                let numbers = blocks.decoded(3, |block, texels, pitch| {
+                    bcdec_rs::bc6h_float(block, texels, pitch, is_signed)
+                });
+                (3, Numbers::Light(numbers))
+            }
+            Self::Bc7 => (4, Numbers::Codes8(blocks.decoded(4, bcdec_rs::bc7))),
         }
     }
-    texels
+}
+
+/// Blocks of 4 × 4 texels, row by row.
+struct Blocks<'a> {
+    width: u32,
+    height: u32,
+    bytes: std::slice::ChunksExact<'a, u8>,
+}
+
+impl Blocks<'_> {
+    /// The texels row by row, the channels of each together; those beyond the image are skipped.
+    fn decoded<T: Copy + Default>(self, channels: usize, decode: impl Fn(&[u8], &mut [T], usize)) -> Vec<T> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let (across, pitch) = (width.div_ceil(4), 4 * channels);
+        let mut texels = vec![T::default(); width * height * channels];
+        let mut decoded = vec![T::default(); 4 * pitch];
+        for (number, block) in self.bytes.enumerate() {
+            decode(block, &mut decoded, pitch);
+            let (left, top) = (number % across * 4, number / across * 4);
+            let columns = (width - left).min(4) * channels;
+            for (row, line) in decoded.chunks_exact(pitch).enumerate().take(height - top) {
+                let start = ((top + row) * width + left) * channels;
+                texels[start..start + columns].copy_from_slice(&line[..columns]);
+            }
+        }
+        texels
+    }
 }
 
 fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {

@@ -1,16 +1,16 @@
-//! The worker's thread: executes commands, steps the session, publishes images.
+//! The worker's thread: executes orders, steps the session, publishes images.
 
-mod load;
 mod publish;
-mod waiting;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::sync::mpsc::{Receiver, Sender};
 use std::time::{Duration, Instant};
 
 use super::denoising::Denoising;
 use super::stage::Stage;
-use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission};
+use super::{Activity, Event, Level, Order, Scene, Shared, Snapshot, Submission};
 use crate::compile::Assets;
 use crate::document::{Change, Document, ViewSettings};
 use crate::gpu::GpuError;
@@ -22,8 +22,13 @@ use crate::render::frame::Frame;
 use crate::render::output::Layers;
 use crate::render::session::Session;
 use crate::render::shown::Shown;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource};
 
+/// Longest rendering step between two reads of the orders; and the step before the first image, which must not wait for
+/// later samples.
+const STEP: Duration = Duration::from_millis(20);
+const FIRST_STEP: Duration = Duration::from_millis(6);
 /// Shortest and longest time between two images of a render, and between two progress reports: without a GPU the window
 /// redraws for either, which costs the renderer time.
 const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
@@ -34,35 +39,28 @@ const PUBLISH_COST: u32 = 12;
 /// Weight of the latest measurement in the running mean of the speed.
 const SPEED_WEIGHT: f64 = 0.1;
 
-/// The thread's body.
-pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
-    let mut state = State::new(shared, repaint, assets);
-    state.open(choice);
-    while state.run_once().is_some() {}
-}
-
-struct State<'a> {
+pub struct State<'a> {
     shared: &'a Shared,
     repaint: &'a dyn Fn(),
     assets: Assets,
     /// Files for which layers have been requested.
-    requested_layers: Vec<PathBuf>,
-    session: Option<Session>,
+    pub requested_layers: Vec<PathBuf>,
+    pub session: Option<Session>,
     snapshot: Snapshot,
+    /// The latest submission, while the one before it must still be shown.
+    pub submitted: Option<Submission>,
     stage: Option<Stage>,
-    /// When the stage's submission was taken.
-    taken_at: Instant,
+    pub is_paused: bool,
     /// Mean speed in pixel samples per second, to choose resolutions; 0 before the first measurement.
     samples_per_second: f64,
     published_at: Instant,
     published_samples: u32,
     publish_cost: Duration,
     reported_at: Instant,
-    serial: u64,
     /// The image or a map of it.
-    shown: Shown,
+    pub shown: Shown,
     /// True while the inspector needs per-pixel quantities.
-    is_inspected: bool,
+    pub is_inspected: bool,
     denoising: Denoising,
     /// The latest frame shown of the submission.
     frame: Option<Frame>,
@@ -75,7 +73,7 @@ fn for_window(mut session: Session) -> Session {
 }
 
 impl<'a> State<'a> {
-    fn new(shared: &'a Arc<Shared>, repaint: &'a dyn Fn(), assets: Assets) -> Self {
+    pub fn new(shared: &'a Shared, repaint: &'a dyn Fn(), assets: Assets, to_itself: Sender<Order>) -> Self {
         Self {
             shared,
             repaint,
@@ -86,19 +84,19 @@ impl<'a> State<'a> {
                 ..Snapshot::default()
             },
             assets,
+            submitted: None,
             stage: None,
-            taken_at: Instant::now(),
+            is_paused: false,
             samples_per_second: 0.0,
             published_at: Instant::now(),
             published_samples: 0,
             publish_cost: Duration::ZERO,
             reported_at: Instant::now(),
-            serial: 0,
             shown: Shown::default(),
             is_inspected: false,
-            denoising: Denoising::spawn({
-                let shared = shared.clone();
-                move || shared.commands.change(|_| ())
+            denoising: Denoising::spawn(move || {
+                // Wakes the thread, which may be gone.
+                let _ = to_itself.send(Box::new(|_| ()));
             }),
             frame: None,
         }
@@ -106,61 +104,38 @@ impl<'a> State<'a> {
 }
 
 impl State<'_> {
-    /// Executes commands, then renders a step. Returns `None` to end the thread.
-    fn run_once(&mut self) -> Option<()> {
-        let (commands, is_paused) = self.await_commands();
-        if commands.quit {
-            return None;
-        }
-        if let Some(choice) = commands.engine {
-            self.open(choice);
-            self.restart();
-        }
-        if let Some(session) = &mut self.session {
-            commands.faults.iter().for_each(|fault| fault.inject(session));
-        }
-        (0..commands.reloads).for_each(|_| self.reload());
-        if commands.restart {
-            self.guarded(|state| {
-                state.session()?.reset();
-                Ok(())
-            });
-            self.restart();
-        }
-        if commands.shown.is_some() || commands.is_inspected.is_some() {
-            self.shown = commands.shown.unwrap_or(self.shown);
-            self.is_inspected = commands.is_inspected.unwrap_or(self.is_inspected);
-            if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
-                self.guarded(Self::republish);
+    /// Waits for orders if there is nothing to do, executes them, and renders a step. Returns false to end the thread.
+    pub fn run_once(&mut self, orders: &Receiver<Order>) -> bool {
+        let first = orders.recv_timeout(self.longest_wait()).ok();
+        for order in first.into_iter().chain(orders.try_iter()) {
+            if self.shared.is_over.load(Relaxed) {
+                return false;
             }
+            order(self);
         }
-        commands
-            .models
-            .into_iter()
-            .for_each(|(source, options)| self.load_model(source, options));
-        commands
-            .environments
-            .into_iter()
-            .for_each(|source| self.load_environment(source));
-        self.requested_layers.extend(commands.layers);
         self.collect_denoised();
-        if let Some(submission) = commands.submission {
+        let submitted = if self.keeps_stage() {
+            None
+        } else {
+            self.submitted.take()
+        };
+        if let Some(submission) = submitted {
             self.accept(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
             self.settle();
         }
-        if self.should_render(is_paused) {
+        if self.should_render() {
             self.guarded(Self::step);
         } else {
-            self.report_idle(is_paused);
+            self.report_idle();
         }
         self.make_layers();
-        Some(())
+        true
     }
 
     /// Reports a change of activity while there is nothing to render.
-    fn report_idle(&mut self, is_paused: bool) {
-        let activity = self.activity(is_paused);
+    fn report_idle(&mut self) {
+        let activity = self.activity();
         let is_news = self.snapshot.activity != activity;
         let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
         if activity == Activity::Done && is_unseen && !self.denoising.is_pending() {
@@ -191,8 +166,7 @@ impl State<'_> {
                     ..session.layers()?
                 };
                 let made = Event::LayersMade(path, Box::new(layers), session.progress());
-                lock(&state.shared.events).push(made);
-                (state.repaint)();
+                state.event(made);
                 Ok(())
             });
         }
@@ -207,28 +181,23 @@ impl State<'_> {
     }
 
     /// Opens an engine; if that fails, the CPU engine.
-    fn open(&mut self, choice: EngineChoice) {
+    pub fn open(&mut self, choice: EngineChoice) {
         self.session = None;
         self.snapshot.engine = None;
-        self.samples_per_second = 0.0;
         self.report(Activity::Starting);
         let opened = caught(|| Session::open_fluid(choice, self.assets.clone()));
-        let why = match opened {
-            Ok(Ok(session)) => {
-                self.session = Some(for_window(session));
-                None
+        match opened.and_then(|opened| opened.map_err(crate::in_words)) {
+            Ok(session) => self.session = Some(for_window(session)),
+            Err(why) => {
+                self.message(Level::Error, format!("{why} (going on with the CPU)"));
+                self.guarded(|state| state.session().map(|_| ()));
             }
-            Ok(Err(error)) => Some(error.to_string()),
-            Err(panic) => Some(panic),
-        };
-        if let Some(why) = why {
-            self.message(Level::Error, format!("{why} (going on with the CPU)"));
-            self.guarded(|state| state.session().map(|_| ()));
         }
         self.report_engine();
     }
 
     fn report_engine(&mut self) {
+        self.samples_per_second = 0.0;
         self.snapshot.engine = self.session.as_ref().map(|session| session.engine().clone());
         if let Some(engine) = self.snapshot.engine.clone() {
             self.message(Level::Info, format!("rendering with {engine}: {}", engine.reason));
@@ -247,7 +216,7 @@ impl State<'_> {
             Ok(Err(error)) => {
                 if error.is_cancelled() {
                     self.message(Level::Info, error.to_string());
-                    lock(&self.shared.events).push(Event::Cancelled);
+                    self.event(Event::Cancelled);
                 } else {
                     self.message(Level::Error, error.to_string());
                 }
@@ -255,11 +224,8 @@ impl State<'_> {
             }
             Err(panic) => panic,
         };
-        let was_cpu = self
-            .snapshot
-            .engine
-            .as_ref()
-            .is_some_and(|engine| engine.kind == EngineKind::Cpu);
+        let engine = self.snapshot.engine.as_ref();
+        let was_cpu = engine.is_some_and(|engine| engine.kind == EngineKind::Cpu);
         self.message(Level::Error, format!("the renderer failed: {why}"));
         self.session = None;
         if was_cpu {
@@ -268,20 +234,15 @@ impl State<'_> {
             return false;
         }
         self.message(Level::Warning, "going on with the CPU".to_owned());
-        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone())
-            .map(for_window)
-            .and_then(|mut session| {
-                if let Some(stage) = &self.stage {
-                    session.submit_shared(&stage.document())?;
-                }
-                Ok(session)
-            });
-        match opened {
-            Ok(session) => self.session = Some(session),
-            Err(error) => self.message(Level::Error, error.to_string()),
+        let document = self.stage.as_ref().map(Stage::document);
+        let submitted = self
+            .session()
+            .and_then(|session| document.map_or(Ok(()), |document| session.submit_shared(&document).map(|_| ())));
+        if let Err(error) = submitted {
+            self.session = None;
+            self.message(Level::Error, error.to_string());
         }
         self.begin_film();
-        self.samples_per_second = 0.0;
         self.report_engine();
         false
     }
@@ -303,12 +264,20 @@ impl State<'_> {
             }
         }
         self.begin_film();
-        self.samples_per_second = 0.0;
         self.report_engine();
     }
 
+    /// Discards the render and begins it again.
+    pub fn start_over(&mut self) {
+        self.guarded(|state| {
+            state.session()?.reset();
+            Ok(())
+        });
+        self.restart();
+    }
+
     /// Submits the stage's document again, as after a change of engine.
-    fn restart(&mut self) {
+    pub fn restart(&mut self) {
         self.snapshot.scene = None;
         if let Some(stage) = self.stage.take() {
             self.accept(stage.submission);
@@ -325,7 +294,6 @@ impl State<'_> {
                 return;
             }
         }
-        self.taken_at = Instant::now();
         self.snapshot.first_picture = None;
         let kernel = self.kernel();
         let stage = Stage::first(submission, self.samples_per_second);
@@ -408,31 +376,21 @@ impl State<'_> {
     }
 
     fn submit_stage(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
-        if self.is_new_model(document) {
+        let known = self.snapshot.scene.as_ref().map(|scene| scene.document.clone());
+        let is_new = |is_same: &dyn Fn(&Document) -> bool| !known.as_deref().is_some_and(is_same);
+        if is_new(&|known| (&known.model, &known.import) == (&document.model, &document.import)) {
             self.begin_loading(document.model.to_string());
             self.session()?.assets().model(&document.model, &document.import)?;
             self.report(Activity::Preparing);
         }
         let environment = &document.lighting.environment;
-        if self.is_new_environment(environment) {
+        if is_new(&|known| known.lighting.environment == *environment) {
             self.begin_loading(environment.to_string());
             let encoding = document.lighting.environment_encoding;
             self.session()?.assets().environment(environment, encoding)?;
         }
         self.session()?.submit_shared(document)?;
         Ok(())
-    }
-
-    fn is_new_model(&self, document: &Document) -> bool {
-        let known = self.snapshot.scene.as_ref().map(|scene| &scene.document);
-        known.is_none_or(|known| (&known.model, &known.import) != (&document.model, &document.import))
-    }
-
-    fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
-        self.snapshot
-            .scene
-            .as_ref()
-            .is_none_or(|scene| scene.document.lighting.environment != *source)
     }
 
     fn update_scene(&mut self) -> Result<(), SessionError> {
@@ -472,18 +430,13 @@ impl State<'_> {
         let interval = Duration::from_secs_f64(PUBLISH_SHARE * progress.render_seconds)
             .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
             .max(PUBLISH_COST * self.publish_cost);
-        if self.denoising.shows(&stage.submission.document, &progress) {
-            if self.denoising.is_due(&progress) {
-                self.publish_picture()?;
-            }
-            if self.reported_at.elapsed() >= interval {
-                self.report(Activity::Rendering);
-            }
-            return Ok(());
-        }
-        let is_first = self.published_samples == 0 && progress.samples_per_pixel > 0;
-        let is_fresh = progress.samples_per_pixel > self.published_samples;
-        if is_fresh && (is_first || progress.is_done || age >= interval) {
+        let is_due = if self.denoising.shows(&stage.submission.document, &progress) {
+            self.denoising.is_due(&progress)
+        } else {
+            let is_urgent = self.published_samples == 0 || progress.is_done;
+            progress.samples_per_pixel > self.published_samples && (is_urgent || age >= interval)
+        };
+        if is_due {
             self.publish_picture()?;
         }
         if self.reported_at.elapsed() >= interval || self.snapshot.activity != Activity::Rendering {
@@ -501,7 +454,116 @@ impl State<'_> {
     }
 
     fn message(&self, level: Level, text: String) {
-        lock(&self.shared.events).push(Event::Message(level, text));
+        self.event(Event::Message(level, text));
+    }
+
+    fn event(&self, event: Event) {
+        lock(&self.shared.events).push(event);
         (self.repaint)();
+    }
+
+    /// Whether the stage must be shown before another submission is taken.
+    fn keeps_stage(&self) -> bool {
+        let is_unseen = |stage: &Stage| !stage.may_be_replaced();
+        let is_in_work = self.should_render() || self.denoising.is_pending();
+        self.stage.as_ref().is_some_and(is_unseen) && is_in_work
+    }
+
+    /// Time until there is something to do without an order.
+    fn longest_wait(&self) -> Duration {
+        let has_submission = self.submitted.is_some() && !self.keeps_stage();
+        let has_news = self.activity() != self.snapshot.activity || self.denoising.has_outcome();
+        if self.should_render() || has_submission || has_news {
+            return Duration::ZERO;
+        }
+        self.stage.as_ref().map_or(Duration::MAX, Stage::wait_left)
+    }
+
+    /// Whether to render a step; while paused, only until the first image.
+    fn should_render(&self) -> bool {
+        let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
+            return false;
+        };
+        !session.progress().is_done && (!self.is_paused || !stage.is_shown) && !self.yields_to_denoiser()
+    }
+
+    /// Whether the engine waits for the denoiser. On the same cores each would take as long as both, and the user waits for
+    /// the denoised image.
+    fn yields_to_denoiser(&self) -> bool {
+        let is_on_cores = |session: &Session| session.engine().is_software || session.is_fallback();
+        self.denoising.is_pending() && self.session.as_ref().is_some_and(is_on_cores)
+    }
+
+    /// The current activity.
+    fn activity(&self) -> Activity {
+        match &self.session {
+            Some(_) if self.stage.is_none() => Activity::Idle,
+            Some(_) if self.denoising.is_pending() => Activity::Rendering,
+            Some(session) if session.progress().is_done => Activity::Done,
+            Some(_) if self.is_paused => Activity::Paused,
+            Some(_) => Activity::Rendering,
+            None => Activity::Idle,
+        }
+    }
+
+    pub fn load_model(&mut self, source: ModelSource, options: ModelOptions) {
+        self.loaded(source.to_string(), |state| {
+            let model = state.session()?.assets().model(&source, &options)?;
+            Ok(Event::ModelOpened(source, options, model))
+        });
+    }
+
+    pub fn load_environment(&mut self, source: EnvironmentSource) {
+        self.loaded(source.to_string(), |state| {
+            let environment = state
+                .session()?
+                .assets()
+                .environment(&source, EnvironmentEncoding::default())?;
+            for warning in &environment.warnings {
+                state.message(Level::Warning, warning.clone());
+            }
+            Ok(Event::EnvironmentOpened(source, environment))
+        });
+    }
+
+    /// Reads the scene's files again and restarts the render.
+    pub fn reload(&mut self) {
+        let Some(document) = self.stage.as_ref().map(|stage| stage.submission.document.clone()) else {
+            return self.event(Event::Reloaded(None, None));
+        };
+        let mut is_read = false;
+        self.loaded(document.model.to_string(), |state| {
+            let reloaded = state.session()?.reload(&document)?;
+            if let Some(summary) = reloaded.model.report.summary() {
+                state.message(Level::Warning, summary);
+            }
+            is_read = true;
+            Ok(Event::Reloaded(reloaded.before, Some(reloaded.model)))
+        });
+        if is_read {
+            self.restart();
+        }
+    }
+
+    /// Reports the start of loading and resets its cancellation.
+    fn begin_loading(&mut self, what: String) {
+        self.assets.loading().begin();
+        self.report(Activity::Loading(what));
+    }
+
+    /// Reports the result of loading; a failure does not affect the current render.
+    fn loaded(&mut self, what: String, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
+        let path = PathBuf::from(&what);
+        self.begin_loading(what);
+        let event = match caught(|| work(self)) {
+            Ok(Ok(event)) => event,
+            Ok(Err(error)) if error.is_cancelled() => Event::OpenFailed(path, Level::Info, error.to_string()),
+            Ok(Err(error)) => Event::OpenFailed(path, Level::Error, error.to_string()),
+            Err(panic) => {
+                let why = format!("{}: reading it failed: {panic}", path.display());
+                Event::OpenFailed(path, Level::Error, why)
+            }
+        };
+        self.event(event);
     }
 }

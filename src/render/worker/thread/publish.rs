@@ -8,21 +8,23 @@ use crate::document::Denoise;
 use crate::render::error::SessionError;
 use crate::render::frame::Frame;
 use crate::render::shown::{PixelFacts, map_of_film, map_of_image};
-use crate::render::worker::picture::Picture;
+use crate::render::worker::picture::{Picture, displayed};
 use crate::render::worker::{Activity, Level};
 
 impl State<'_> {
     /// Publishes the current image again, after a change of display.
-    pub(super) fn republish(&mut self) -> Result<(), SessionError> {
-        match self.frame.clone().filter(Frame::is_denoised) {
-            Some(frame) => self.publish(frame),
-            None => self.publish_picture(),
+    pub fn republish(&mut self) {
+        if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
+            self.guarded(|state| match state.frame.clone().filter(Frame::is_denoised) {
+                Some(frame) => state.publish(frame),
+                None => state.publish_picture(),
+            });
         }
     }
 
     /// Publishes the current render, or requests its denoising if it is shown denoised. Before the first sample the image of
     /// the step before stays, if there is one.
-    pub(super) fn publish_picture(&mut self) -> Result<(), SessionError> {
+    pub fn publish_picture(&mut self) -> Result<(), SessionError> {
         let start = Instant::now();
         let progress = self.session()?.progress();
         let Some(stage) = &self.stage else { return Ok(()) };
@@ -37,11 +39,15 @@ impl State<'_> {
                 _ if is_first_image => Denoise::Fast,
                 chosen => chosen,
             };
-            let (noisy, frame) = self.session()?.noisy_frame(reduction)?;
+            let session = self.session()?;
+            let noisy = session.noisy()?;
+            let frame = session.frame_of(noisy.image.clone(), reduction);
             self.denoising.request(noisy, frame, how, &progress);
             return Ok(());
         }
-        let frame = self.session()?.frame(reduction)?;
+        let session = self.session()?;
+        let image = Arc::new(session.image()?);
+        let frame = session.frame_of(image, reduction);
         self.publish(frame)?;
         self.published_samples = progress.samples_per_pixel;
         self.published_at = Instant::now();
@@ -50,20 +56,20 @@ impl State<'_> {
     }
 
     /// Drops the denoiser's work and what is known of it, for another film or another way to denoise.
-    pub(super) fn reset_denoised(&mut self) {
+    pub fn reset_denoised(&mut self) {
         self.denoising.reset();
         self.snapshot.denoised = None;
     }
 
     /// Publishes the denoiser's result, if there is one.
-    pub(super) fn collect_denoised(&mut self) {
+    pub fn collect_denoised(&mut self) {
         let Some(outcome) = self.denoising.collect() else {
             return;
         };
         match outcome.denoised {
             Ok(denoised) => {
                 if let (Some(error), Some(session)) = (denoised.error, &mut self.session) {
-                    session.set_denoised_error(error);
+                    session.denoised = Some(error);
                 }
                 self.snapshot.denoised = denoised.error;
                 self.guarded(|state| state.publish(outcome.frame.denoised(denoised)));
@@ -77,7 +83,7 @@ impl State<'_> {
 
     /// Shows a frame as the image or the map that is wanted. A map of a film that has gone on to another step waits for that
     /// step's frame: what is shown stays.
-    pub(super) fn publish(&mut self, mut frame: Frame) -> Result<(), SessionError> {
+    pub fn publish(&mut self, mut frame: Frame) -> Result<(), SessionError> {
         let (wanted, is_inspected) = (self.shown, self.is_inspected);
         let Some(stage) = &self.stage else { return Ok(()) };
         let mut map = map_of_image(&frame.image, &stage.submission.document.view, wanted);
@@ -96,15 +102,26 @@ impl State<'_> {
         }
         frame.facts = facts;
         let Some(stage) = &mut self.stage else { return Ok(()) };
-        self.serial += 1;
         stage.is_shown = true;
         stage.is_seen |= is_current;
         if self.snapshot.first_picture.is_none() {
             self.snapshot.first_picture = Some(stage.submission.at.elapsed());
         }
-        let map = map.map(|map| (wanted, map));
-        let (document, revision) = (stage.submission.document.clone(), stage.submission.revision);
-        let picture = Picture::of(frame.clone(), map, document, [self.serial, revision]);
+        let document = stage.submission.document.clone();
+        let (rgba, map) = match map {
+            Some(map) => (map.rgba, Some((wanted, map.scale))),
+            None => (displayed(&frame.image, &document.view), None),
+        };
+        let picture = Picture {
+            width: frame.image.width,
+            height: frame.image.height,
+            rgba,
+            serial: self.snapshot.picture.as_ref().map_or(1, |latest| latest.serial + 1),
+            revision: stage.submission.revision,
+            map,
+            document,
+            frame: frame.clone(),
+        };
         (self.frame, self.snapshot.picture) = (Some(frame), Some(Arc::new(picture)));
         self.report(Activity::Rendering);
         Ok(())

@@ -5,7 +5,7 @@ mod sky;
 mod soft_box;
 mod studio;
 
-use super::{Environment, MapError, environment_direction};
+use super::{Environment, MapError, texel_direction};
 use crate::optics::vector::Vec3;
 use crate::parallel;
 
@@ -14,10 +14,6 @@ pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};
 pub use studio::studio;
 
 /// The white furnace: radiance 1 from everywhere, on a tiny map.
-///
-/// # Errors
-///
-/// None in practice; the signature is that of the other environments.
 pub fn furnace() -> Result<Environment, MapError> {
     Environment::from_texels("furnace", 4, 2, vec![[1.0; 4]; 8])
 }
@@ -26,12 +22,9 @@ pub fn furnace() -> Result<Environment, MapError> {
 fn texels_of(width: u32, height: u32, radiance: impl Fn(Vec3<f64>) -> [f32; 3] + Sync) -> Vec<[f32; 4]> {
     let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize];
     parallel::for_rows(&mut texels, width as usize, |row, texels| {
-        for (column, texel) in texels.iter_mut().enumerate() {
-            let uv = [
-                (column as f64 + 0.5) / f64::from(width),
-                (row as f64 + 0.5) / f64::from(height),
-            ];
-            texel[..3].copy_from_slice(&radiance(environment_direction(uv)));
+        for (column, texel) in (0..).zip(texels) {
+            let direction = texel_direction([column, row as u32], [width, height]);
+            texel[..3].copy_from_slice(&radiance(direction));
         }
     });
     texels

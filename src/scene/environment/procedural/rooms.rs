@@ -16,6 +16,11 @@ struct Walls {
 }
 
 impl Walls {
+    /// The map of a room with these walls.
+    fn with(&self, name: &str, boxes: &[SoftBox]) -> Result<Environment, MapError> {
+        room_with(name, boxes, |direction| self.radiance(direction))
+    }
+
     fn radiance(&self, direction: Vec3<f64>) -> Vec3<f64> {
         let [floor, wall, ceiling] = [self.floor, self.wall, self.ceiling].map(Vec3::from_f64);
         let above = wall.mix(ceiling, smoothstep(0.2, 0.8, direction.y));
@@ -104,42 +109,27 @@ const WAREHOUSE: [SoftBox; 8] = [
 ];
 
 /// A photographer's table: large warm and cool soft boxes in a bright room. 1024 × 512.
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn product() -> Result<Environment, MapError> {
-    room_with("product", &PRODUCT, |direction| PRODUCT_WALLS.radiance(direction))
+    PRODUCT_WALLS.with("product", &PRODUCT)
 }
 
 /// A portrait studio: one large warm lamp near the camera, reflectors, a dim room. 1024 × 512.
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn portrait() -> Result<Environment, MapError> {
-    room_with("portrait", &PORTRAIT, |direction| PORTRAIT_WALLS.radiance(direction))
+    PORTRAIT_WALLS.with("portrait", &PORTRAIT)
 }
 
 /// Two narrow lamps behind the object, warm and cool, in the dark. 1024 × 512.
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn rim() -> Result<Environment, MapError> {
-    room_with("rim", &RIM, |direction| RIM_WALLS.radiance(direction))
+    RIM_WALLS.with("rim", &RIM)
 }
 
 /// A hall: skylights, windows on one side, a gate on the other. 1024 × 512.
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn warehouse() -> Result<Environment, MapError> {
-    room_with("warehouse", &WAREHOUSE, |direction| WAREHOUSE_WALLS.radiance(direction))
+    WAREHOUSE_WALLS.with("warehouse", &WAREHOUSE)
 }
 
 /// An overcast sky with a bright place where the sun is, over dry ground, 512 × 256. Its luminance is that of CIE's standard
 /// overcast sky, (1 + 2 sin elevation)/3 of that at the zenith (Moon and Spencer 1942).
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn overcast() -> Result<Environment, MapError> {
     let sun = vec3(-0.55, 0.62, 0.56).normalize();
     let texels = texels_of(512, 256, |direction| {

@@ -6,7 +6,7 @@ use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
 use serde::{Deserialize, Serialize};
 
 use super::super::distribution::texel_solid_angle;
-use super::super::{Environment, MapError, environment_direction};
+use super::super::{Environment, MapError, environment_direction, texel_direction};
 use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -188,11 +188,8 @@ fn sun_coverage(sun_direction: Vec3<f64>) -> Vec<(usize, f64)> {
     let mut coverage = Vec::new();
     for row in first..=last {
         for column in 0..WIDTH {
-            let centre = [
-                (f64::from(column) + 0.5) / f64::from(WIDTH),
-                (f64::from(row) + 0.5) / f64::from(HEIGHT),
-            ];
-            if (environment_direction(centre) - sun_direction).length() > radius_rad + 2.0 * PI / f64::from(HEIGHT) {
+            let centre = texel_direction([column, row], [WIDTH, HEIGHT]);
+            if (centre - sun_direction).length() > radius_rad + 2.0 * PI / f64::from(HEIGHT) {
                 continue;
             }
             let count = (0..SUN_TAPS * SUN_TAPS)

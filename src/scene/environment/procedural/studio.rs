@@ -18,9 +18,6 @@ const LEFT_RIM: SoftBox = soft_box([-3.5, 1.1, -1.7], [0.28, 1.9], [6.5, 0.5, 0.
 const BOXES: [SoftBox; 5] = [KEY, FILL, TOP, RIGHT_RIM, LEFT_RIM];
 
 /// The studio's map, 1024 × 512.
-///
-/// # Errors
-/// None in practice; the signature is that of the other environments.
 pub fn studio() -> Result<Environment, MapError> {
     room_with("studio", &BOXES, room)
 }

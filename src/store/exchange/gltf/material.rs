@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::document::MaterialSettings;
-use crate::import::gltf_from_widths;
+use crate::document::{MaterialSettings, parameter};
+use crate::import::{FileParameter, GLTF_PARAMETERS, gltf_from_widths};
 use crate::optics::layer::fuzz::sheen_of_fuzz;
 use crate::optics::target::TARGETS;
 use crate::scene::texture::TextureTarget as On;
@@ -13,18 +13,6 @@ use crate::store::exchange::surface::Surface;
 
 /// The extension of stretched highlights.
 pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
-/// The extension of coats.
-const CLEARCOAT: &str = "KHR_materials_clearcoat";
-/// The draft of OpenPBR's coat.
-const COAT: &str = "KHR_materials_coat";
-
-/// The draft of OpenPBR's fuzz.
-const FUZZ: &str = "KHR_materials_fuzz";
-/// The extension that stands for it where the draft is not read.
-const SHEEN: &str = "KHR_materials_sheen";
-
-/// The extension of thin films.
-const IRIDESCENCE: &str = "KHR_materials_iridescence";
 
 /// What a slot's material looks up, as references to textures.
 #[derive(Clone, Debug, Default)]
@@ -39,23 +27,6 @@ pub struct SlotTextures {
     pub alpha: Option<(AlphaMode, f32)>,
     pub is_double_sided: bool,
 }
-
-/// Where the textures of extensions stand.
-const TEXTURES: &[(&str, &str, On)] = &[
-    (CLEARCOAT, "clearcoatTexture", On::Coat),
-    (CLEARCOAT, "clearcoatRoughnessTexture", On::CoatRoughness),
-    (CLEARCOAT, "clearcoatNormalTexture", On::CoatNormal),
-    (COAT, "coatTexture", On::Coat),
-    (COAT, "coatRoughnessTexture", On::CoatRoughness),
-    (COAT, "coatColorTexture", On::CoatColor),
-    (COAT, "coatNormalTexture", On::CoatNormal),
-    (FUZZ, "fuzzTexture", On::Fuzz),
-    (FUZZ, "fuzzColorTexture", On::FuzzColor),
-    (FUZZ, "fuzzRoughnessTexture", On::FuzzRoughness),
-    (SHEEN, "sheenColorTexture", On::FuzzColor),
-    (IRIDESCENCE, "iridescenceTexture", On::Film),
-    (IRIDESCENCE, "iridescenceThicknessTexture", On::FilmThickness),
-];
 
 /// A reference to a texture with the place that it has on the mesh.
 pub fn texture_info(index: usize, place: &TextureRef) -> Json {
@@ -80,35 +51,87 @@ pub fn texture_info(index: usize, place: &TextureRef) -> Json {
 /// A material; `radius` is what lengths inside are counted in.
 pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &SlotTextures, radius: f64) -> Json {
     let mean = textures.roughness_mean.unwrap_or(1.0).max(1e-3);
-    let widths = gltf_from_widths(surface.roughness * mean, surface.anisotropy);
-    let transmission = surface.transmission_weight * (1.0 - surface.metalness);
-    let absorbs = transmission > 0.0 && surface.transmission_depth > 0.0;
-    let [r, g, b] = match (transmission > 0.5, absorbs) {
-        // What is refracted has the base colour there.
-        (true, true) => [1.0; 3],
-        (true, false) => surface.transmission_color,
-        _ => surface.base_color,
-    };
-    let mut pbr = json!({
-        "baseColorFactor": [r, g, b, surface.opacity],
-        "metallicFactor": surface.metalness,
-        "roughnessFactor": if surface.anisotropy == 0.0 { surface.roughness } else { widths.roughness / mean },
+    let is_refracting = surface.transmission_weight * (1.0 - surface.metalness) > 0.0;
+    let shown = numbers_of_format(material, surface, mean, radius);
+    let [r, g, b] = shown.base_color;
+    let mut json = json!({
+        "name": surface.name,
+        "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, surface.opacity] },
     });
-    let mut json = json!({ "name": surface.name });
-    let has = |target| textures.of[target as usize].is_some();
-    let put = |to: &mut Json, key: &str, target, strength: f32| {
-        if let Some(texture) = &textures.of[target as usize] {
-            to[key] = texture.clone();
-            if strength != 1.0 {
-                to[key]["scale"] = strength.into();
+    for rows in GLTF_PARAMETERS.chunk_by(|a, b| part(a) == part(b)) {
+        let numbers = rows
+            .iter()
+            .filter(|row| row.keys()[0] != "base.color")
+            .filter_map(|row| {
+                let default = row.default_value()?;
+                let value = parameter(row.keys()[0]).ok()?.rgb(&shown)?;
+                Some((row, default, value.map(|x| x * row.per)))
+            });
+        let numbers: Vec<_> = numbers.collect();
+        // A layer without weight is left out, as is what has its defaults.
+        let is_written = match numbers.first() {
+            Some((row, _, value)) if row.default == "0" => value[0] != 0.0,
+            _ => numbers.iter().any(|(_, default, value)| value != default),
+        };
+        if is_written && (part(&rows[0]) != COAT || surface.coat_on_base) {
+            for (row, _, value) in numbers {
+                put(
+                    &mut json,
+                    row.place,
+                    if row.is_list() { json!(value) } else { value[0].into() },
+                );
             }
         }
-    };
-    put(&mut pbr, "baseColorTexture", On::BaseColor, 1.0);
-    put(&mut pbr, "metallicRoughnessTexture", On::Roughness, 1.0);
-    put(&mut json, "normalTexture", On::Normal, material.normal_strength);
-    put(&mut json, "emissiveTexture", On::Emission, 1.0);
-    json["pbrMetallicRoughness"] = pbr;
+    }
+    if surface.fuzz_weight > 0.0 && textures.of[On::Fuzz as usize].is_none() {
+        // For readers without the draft. It has no texture of its weight: it would be everywhere.
+        let mut sheen = json!({
+            "sheenColorFactor": surface.fuzz_color.map(|x| x * surface.fuzz_weight),
+            "sheenRoughnessFactor": sheen_of_fuzz(surface.fuzz_roughness),
+        });
+        if let Some(texture) = &textures.of[On::FuzzColor as usize] {
+            sheen["sheenColorTexture"] = texture.clone();
+        }
+        put(&mut json, SHEEN, sheen);
+    }
+    if json.pointer(COAT).is_some() {
+        let widths = gltf_from_widths(surface.coat_roughness, surface.coat_anisotropy);
+        put(
+            &mut json,
+            "/extensions/KHR_materials_coat/coatRoughnessFactor",
+            widths.roughness.into(),
+        );
+    }
+    if is_refracting {
+        let place = "/extensions/KHR_materials_volume/thicknessFactor";
+        put(&mut json, place, (radius as f32).into());
+    }
+    for row in GLTF_PARAMETERS
+        .iter()
+        .filter(|row| row.example.starts_with('{') && part(row) != SHEEN)
+    {
+        let [key, strength] = row.keys();
+        let texture = On::of_key(key, "_texture").and_then(|target| textures.of[target as usize].clone());
+        let is_there = !part(row).starts_with("/extensions") || json.pointer(part(row)).is_some();
+        let Some(mut texture) = texture.filter(|_| is_there) else {
+            continue;
+        };
+        if let Ok(Some([strength, ..])) = parameter(strength).map(|strength| strength.rgb(material))
+            && strength != 1.0
+        {
+            texture["scale"] = strength.into();
+        }
+        put(&mut json, row.place, texture);
+    }
+    let film = "/extensions/KHR_materials_iridescence";
+    if textures.of[On::FilmThickness as usize].is_some() && json.pointer(film).is_some() {
+        let thinnest = 1e3 * surface.film_thickness * textures.thinnest;
+        put(
+            &mut json,
+            &format!("{film}/iridescenceThicknessMinimum"),
+            thinnest.into(),
+        );
+    }
     match textures.alpha {
         Some((AlphaMode::Mask, cutoff)) => {
             json["alphaMode"] = "MASK".into();
@@ -121,127 +144,61 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     if textures.is_double_sided {
         json["doubleSided"] = true.into();
     }
-    let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
-    if has(On::Fuzz) {
-        // A sheen has no texture of its weight: it would be everywhere.
-        extensions.remove(SHEEN);
-    }
-    for (extension, key, target) in TEXTURES {
-        let strength = if *target == On::CoatNormal {
-            material.coat_normal_strength
-        } else {
-            1.0
-        };
-        if let Some(to) = extensions.get_mut(*extension) {
-            put(to, key, *target, strength);
-        }
-    }
-    if let Some(film) = extensions.get_mut(IRIDESCENCE).filter(|_| has(On::FilmThickness)) {
-        let thinnest = 1e3 * surface.film_thickness * textures.thinnest;
-        film["iridescenceThicknessMinimum"] = thinnest.into();
-    }
-    if surface.anisotropy != 0.0 {
-        let (_, rotation_deg) = surface.ratio_and_rotation();
-        let anisotropy = json!({
-            "anisotropyStrength": widths.stretch,
-            "anisotropyRotation": rotation_deg.to_radians(),
-        });
-        extensions.insert(ANISOTROPY.to_owned(), anisotropy);
-    }
-    if !extensions.is_empty() {
-        json["extensions"] = Json::Object(extensions);
-    }
     json["extras"] = json!({ carried::MARK: carried::json(material) });
     json
 }
 
-fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, json: &mut Json) -> Map<String, Json> {
-    let mut all = Map::new();
-    let (strongest, emission) = surface.strength_and_color();
-    if strongest > 0.0 {
-        json["emissiveFactor"] = json!(emission);
-        if strongest != 1.0 {
-            all.insert(
-                "KHR_materials_emissive_strength".to_owned(),
-                json!({ "emissiveStrength": strongest }),
-            );
-        }
+/// The parameters with the numbers that the format has for them, but for units; `mean` is that of the roughness texture.
+fn numbers_of_format(material: &MaterialSettings, surface: &Surface, mean: f32, radius: f64) -> Surface {
+    let transmission = surface.transmission_weight * (1.0 - surface.metalness);
+    let absorbs = transmission > 0.0 && surface.transmission_depth > 0.0;
+    let widths = gltf_from_widths(surface.roughness * mean, surface.anisotropy);
+    let (strength, emission) = surface.strength_and_color();
+    let mut shown = Surface {
+        base_color: match (transmission > 0.5, absorbs) {
+            // What is refracted has the base colour there.
+            (true, true) => [1.0; 3],
+            (true, false) => surface.transmission_color,
+            _ => surface.base_color,
+        },
+        anisotropy: widths.stretch,
+        rotation_deg: surface.ratio_and_rotation().1,
+        coat_anisotropy: gltf_from_widths(surface.coat_roughness, surface.coat_anisotropy).stretch,
+        transmission_depth: (f64::from(surface.transmission_depth) * radius) as f32,
+        emission_color: [0.0; 3],
+        emission_strength: 1.0,
+        normal_strength: material.normal_strength,
+        coat_normal_strength: material.coat_normal_strength,
+        ..surface.clone()
+    };
+    if surface.anisotropy != 0.0 {
+        shown.roughness = widths.roughness / mean;
     }
-    if surface.ior != 1.5 {
-        all.insert("KHR_materials_ior".to_owned(), json!({ "ior": surface.ior }));
+    if strength > 0.0 {
+        (shown.emission_strength, shown.emission_color) = (strength, emission);
     }
-    if surface.specular_weight != 1.0 || surface.specular_color != [1.0; 3] {
-        let specular = json!({
-            "specularFactor": surface.specular_weight,
-            "specularColorFactor": surface.specular_color,
-        });
-        all.insert("KHR_materials_specular".to_owned(), specular);
+    if transmission == 0.0 {
+        shown.transmission_weight = 0.0;
     }
-    if surface.diffuse_roughness > 0.0 {
-        all.insert(
-            "KHR_materials_diffuse_roughness".to_owned(),
-            json!({ "diffuseRoughnessFactor": surface.diffuse_roughness }),
-        );
+    if !absorbs {
+        shown.transmission_depth = 0.0;
     }
-    if surface.coat_weight > 0.0 {
-        let coat = json!({
-            "clearcoatFactor": surface.coat_weight,
-            "clearcoatRoughnessFactor": surface.coat_roughness,
-        });
-        all.insert(CLEARCOAT.to_owned(), coat);
-        if surface.coat_on_base {
-            // Readers without the draft take the other.
-            let widths = gltf_from_widths(surface.coat_roughness, surface.coat_anisotropy);
-            let draft = json!({
-                "coatFactor": surface.coat_weight,
-                "coatRoughnessFactor": widths.roughness,
-                "coatIor": surface.coat_ior,
-                "coatColorFactor": surface.coat_color,
-                "coatDarkeningFactor": surface.coat_darkening,
-                "coatAnisotropyStrength": widths.stretch,
-            });
-            all.insert(COAT.to_owned(), draft);
-        }
-    }
-    if surface.fuzz_weight > 0.0 {
-        all.insert(
-            FUZZ.to_owned(),
-            json!({
-                "fuzzFactor": surface.fuzz_weight,
-                "fuzzColorFactor": surface.fuzz_color,
-                "fuzzRoughnessFactor": surface.fuzz_roughness,
-            }),
-        );
-        // Readers without the draft take the other.
-        all.insert(
-            SHEEN.to_owned(),
-            json!({
-                "sheenColorFactor": surface.fuzz_color.map(|x| x * surface.fuzz_weight),
-                "sheenRoughnessFactor": sheen_of_fuzz(surface.fuzz_roughness),
-            }),
-        );
-    }
-    if surface.film_weight > 0.0 {
-        let film = json!({
-            "iridescenceFactor": surface.film_weight,
-            "iridescenceIor": surface.film_ior,
-            "iridescenceThicknessMaximum": 1e3 * surface.film_thickness,
-        });
-        all.insert(IRIDESCENCE.to_owned(), film);
-    }
-    if transmission > 0.0 {
-        all.insert(
-            "KHR_materials_transmission".to_owned(),
-            json!({ "transmissionFactor": surface.transmission_weight }),
-        );
-        let mut volume = json!({ "thicknessFactor": radius as f32 });
-        if absorbs {
-            volume["attenuationDistance"] = ((f64::from(surface.transmission_depth) * radius) as f32).into();
-            volume["attenuationColor"] = json!(surface.transmission_color);
-        }
-        all.insert("KHR_materials_volume".to_owned(), volume);
-    }
-    all
+    shown
+}
+
+/// The draft of OpenPBR's coat; readers without it take the clearcoat.
+const COAT: &str = "/extensions/KHR_materials_coat";
+/// What stands for fuzz where its draft is not read.
+const SHEEN: &str = "/extensions/KHR_materials_sheen";
+
+/// The object in which a parameter stands.
+fn part(row: &FileParameter) -> &'static str {
+    row.place.rsplit_once('/').map_or("", |(part, _)| part)
+}
+
+/// Puts a value where a pointer says, making the objects on the way.
+fn put(json: &mut Json, place: &str, value: Json) {
+    *place[1..].split('/').fold(json, |at, key| &mut at[key]) = value;
 }
 
 /// The names of the extensions that materials have.

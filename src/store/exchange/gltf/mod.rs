@@ -10,16 +10,13 @@ use serde_json::{Map, Value as Json, json};
 use self::material::{ANISOTROPY, SlotTextures, extensions_used, material_json};
 use super::report::Entry;
 use super::surface::{Law, Surface, Takes};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
 use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::import::{Budget, gltf_from_widths, load, load_with, resource};
+use crate::import::{Budget, gltf_from_widths, limits, load, load_with};
 use crate::scene::texture::{TextureTarget, texture_mean};
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap};
 use crate::store::picture::png_bytes;
-
-/// `.glb` and `.gltf`.
-pub struct Gltf;
 
 /// α is 1 there at most.
 fn shown_widths(surface: &Surface) -> [f32; 2] {
@@ -40,136 +37,115 @@ fn takes(material: &MaterialSettings) -> Takes {
         law: Law::Schlick,
         widths: shown_widths,
         lacks: [
-            &[
-                "specular.eta",
-                "specular.edge_tint",
-                "specular.weight_in_index",
-                "specular.on_metal",
-                "transmission.roughness",
-            ],
-            match material.coat_on_base {
-                true => &[],
-                false => &[
-                    "coat.ior",
-                    "coat.color",
-                    "coat.anisotropy",
-                    "coat.on_base",
-                    "coat.darkening",
-                ],
+            "specular.eta specular.edge_tint specular.weight_in_index specular.on_metal transmission.roughness",
+            if material.coat_on_base {
+                ""
+            } else {
+                "coat.ior coat.color coat.anisotropy coat.on_base coat.darkening"
             },
         ],
     }
 }
 
-impl Format for Gltf {
-    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let mut model = match &subject.document {
-            Some(document) => load_with(&document.model, &document.import)?,
-            None => load(&ModelSource::Sphere)?,
+pub fn write(subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+    let mut model = match &subject.document {
+        Some(document) => load_with(&document.model, &document.import)?,
+        None => load(&ModelSource::Sphere)?,
+    };
+    let budget = Budget::of_import();
+    let _ = budget.take((model.bytes() as u64).min(budget.left()));
+    let used = model
+        .meshes()
+        .flat_map(|mesh| &mesh.slots)
+        .copied()
+        .max()
+        .map_or(1, |slot| slot as usize + 1);
+    let mut file = Builder::default();
+    let mut reports = Vec::new();
+    let mut materials = Vec::new();
+    for slot in 0..used {
+        // A slot beyond the last takes the last one.
+        let Some(material) = subject.materials.get(slot).or(subject.materials.last()) else {
+            continue;
         };
-        let budget = Budget::of_import();
-        let _ = budget.take((model.bytes() as u64).min(budget.left()));
-        let used = model
-            .meshes()
-            .flat_map(|mesh| &mesh.slots)
-            .copied()
-            .max()
-            .map_or(1, |slot| slot as usize + 1);
-        let mut file = Builder::default();
-        let mut reports = Vec::new();
-        let mut materials = Vec::new();
-        for slot in 0..used {
-            // A slot beyond the last takes the last one.
-            let Some(material) = subject.materials.get(slot).or(subject.materials.last()) else {
-                continue;
-            };
-            let mut material = material.clone();
-            let of_own = match model.slots.get(slot) {
-                Some(_) => own::hand_over(&mut model, slot, &mut material, &budget),
-                None => Vec::new(),
-            };
-            let material = &material;
-            let (surface, mut report) = shown(material, &takes(material));
-            report.entries.extend(of_own);
-            let textures = file.textures(&model, slot, material);
-            if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
-                let detail = "the strength is that of the roughness texture's mean";
-                report
-                    .entries
-                    .insert(0, Entry::approximated("anisotropy, which varies", detail, None));
-            }
-            materials.push(material_json(material, &surface, &textures, radius_of(&model)));
-            if subject.document.as_ref().is_some_and(|document| document.ground) && slot == 0 {
-                report
-                    .entries
-                    .insert(0, Entry::dropped("the ground", "the file has the model alone"));
-            }
-            reports.push(report);
-        }
-        let primitives = file.primitives(&model, &materials);
-        let is_binary = !path
-            .extension()
-            .is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
-        let json = file.document(&model.name, primitives, materials);
-        Ok(packed(path, json, file.bytes, is_binary, reports))
-    }
-
-    fn is_text(&self) -> bool {
-        false
-    }
-
-    fn takes_models(&self) -> bool {
-        true
-    }
-
-    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let source = ModelSource::File(path.to_owned());
-        let model = load(&source)?;
-        let mut materials = materials_of(&model, options.lobe);
-        let mut losses: Vec<Vec<Entry>> = materials.iter().map(|_| losses_of(&model, options.lobe)).collect();
-        let written = materials_in(path);
-        for ((slot, material), losses) in model.slots.iter().zip(&mut materials).zip(&mut losses) {
-            let of_file = slot.file_material.and_then(|index| written.get(index));
-            let exact = of_file.and_then(|raw| carried::from_json(raw["extras"][carried::MARK].clone()));
-            let (Some(exact), Some(of_file), false) = (exact, of_file, options.is_plain) else {
-                continue;
-            };
-            let mut shows = material_json(
-                &exact,
-                &shown(&exact, &takes(&exact)).0,
-                &SlotTextures::default(),
-                radius_of(&model),
-            );
-            if let (true, Some(extensions)) = (
-                exact.textures[TextureTarget::Roughness],
-                shows["extensions"].as_object_mut(),
-            ) {
-                // It depends on the texture.
-                extensions.remove(ANISOTROPY);
-                shows["pbrMetallicRoughness"]["roughnessFactor"] =
-                    of_file["pbrMetallicRoughness"]["roughnessFactor"].clone();
-            }
-            if is_near(&shows, of_file) {
-                *material = exact;
-                losses.clear();
-            } else {
-                losses.push(Entry::dropped(
-                    "the exact parameters",
-                    "the file was changed since it was exported",
-                ));
-            }
-        }
-        let document = Document {
-            model: source,
-            materials: materials.clone(),
-            ..Document::default()
+        let mut material = material.clone();
+        let of_own = match model.slots.get(slot) {
+            Some(_) => own::hand_over(&mut model, slot, &mut material, &budget),
+            None => Vec::new(),
         };
-        Ok(Subject {
-            materials,
-            document: Some(Box::new(document)),
-            losses,
-        })
+        let material = &material;
+        let (surface, mut report) = shown(material, &takes(material));
+        report.entries.extend(of_own);
+        let textures = file.textures(&model, slot, material);
+        if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
+            let detail = "the strength is that of the roughness texture's mean";
+            report
+                .entries
+                .insert(0, Entry::approximated("anisotropy, which varies", detail, None));
+        }
+        materials.push(material_json(material, &surface, &textures, radius_of(&model)));
+        if subject.document.as_ref().is_some_and(|document| document.ground) && slot == 0 {
+            report
+                .entries
+                .insert(0, Entry::dropped("the ground", "the file has the model alone"));
+        }
+        reports.push(report);
     }
+    let primitives = file.primitives(&model, &materials);
+    let is_binary = !path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("gltf"));
+    let json = file.document(&model.name, primitives, materials);
+    Ok(packed(path, json, file.bytes, is_binary, reports))
+}
+
+pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+    let source = ModelSource::File(path.to_owned());
+    let model = load(&source)?;
+    let mut materials = materials_of(&model, options.lobe);
+    let mut losses: Vec<Vec<Entry>> = materials.iter().map(|_| losses_of(&model, options.lobe)).collect();
+    let written = materials_in(path);
+    for ((slot, material), losses) in model.slots.iter().zip(&mut materials).zip(&mut losses) {
+        let of_file = slot.file_material.and_then(|index| written.get(index));
+        let exact = of_file.and_then(|raw| carried::from_json(raw["extras"][carried::MARK].clone()));
+        let (Some(exact), Some(of_file), false) = (exact, of_file, options.is_plain) else {
+            continue;
+        };
+        let mut shows = material_json(
+            &exact,
+            &shown(&exact, &takes(&exact)).0,
+            &SlotTextures::default(),
+            radius_of(&model),
+        );
+        if let (true, Some(extensions)) = (
+            exact.textures[TextureTarget::Roughness],
+            shows["extensions"].as_object_mut(),
+        ) {
+            // It depends on the texture.
+            extensions.remove(ANISOTROPY);
+            shows["pbrMetallicRoughness"]["roughnessFactor"] =
+                of_file["pbrMetallicRoughness"]["roughnessFactor"].clone();
+        }
+        if is_near(&shows, of_file) {
+            *material = exact;
+            losses.clear();
+        } else {
+            losses.push(Entry::dropped(
+                "the exact parameters",
+                "the file was changed since it was exported",
+            ));
+        }
+    }
+    let document = Document {
+        model: source,
+        materials: materials.clone(),
+        ..Document::default()
+    };
+    Ok(Subject {
+        materials,
+        document: Some(Box::new(document)),
+        losses,
+    })
 }
 
 /// What lengths inside materials are counted in: from the middle of the model to its farthest vertex.
@@ -205,7 +181,7 @@ fn materials_in(path: &Path) -> Vec<Json> {
         #[serde(default)]
         materials: Vec<Json>,
     }
-    let bytes = resource::read(path, u64::MAX - 1).unwrap_or_default();
+    let bytes = limits::read(path, u64::MAX - 1).unwrap_or_default();
     let json = match bytes.strip_prefix(b"glTF") {
         Some(rest) => {
             let length = rest
@@ -300,7 +276,7 @@ impl Builder {
         let has_opacity = uses[TextureTarget::Opacity];
         let mut textures = SlotTextures {
             roughness_mean: has_roughness.then(|| mean_of_roughness(model, slot)).flatten(),
-            thinnest: slot.film_thickness_min / slot.film_thickness.max(f32::MIN_POSITIVE),
+            thinnest: slot.thinnest,
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| has_opacity),
             is_double_sided: slot.double_sided,
             ..SlotTextures::default()

@@ -70,7 +70,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
             filter: Filter::Linear,
         };
         if target == TextureTarget::FilmThickness {
-            model.slots[slot].film_thickness_min = 0.0;
+            model.slots[slot].thinnest = 0.0;
         }
         // What shares another's image is joined to it.
         if target.home() == target || !in_file.contains(&target.home()) {
@@ -130,15 +130,19 @@ fn changed(target: TextureTarget, texture: &UserTexture, channel: usize, [r, g, 
     }
     let decoded = |code: [u8; 3]| {
         let share = code.map(|code| f64::from(code) / 255.0);
-        match texture.is_srgb(target) {
-            true => linear_from_srgb(vec3(share[0], share[1], share[2])),
-            false => vec3(share[0], share[1], share[2]),
+        if texture.is_srgb(target) {
+            linear_from_srgb(vec3(share[0], share[1], share[2]))
+        } else {
+            vec3(share[0], share[1], share[2])
         }
     };
     let strength = f64::from(texture.strength);
-    let put_on = |x: f64| match texture.inverted {
-        true => 1.0 - strength * x,
-        false => 1.0 - strength + strength * x,
+    let put_on = |x: f64| {
+        if texture.inverted {
+            1.0 - strength * x
+        } else {
+            1.0 - strength + strength * x
+        }
     };
     let code = |x: f64| (255.0 * x).round().clamp(0.0, 255.0) as u8;
     if target.is_color() {

@@ -184,8 +184,9 @@ impl Graph<'_> {
         };
         let mut values = Vec::new();
         let mut found = Worth::of([0.0; 4]);
-        for (name, default) in inputs {
-            let input = self.or(node, name, *default, depth)?;
+        for input in inputs.split(' ') {
+            let (name, default) = input.split_once('=').unwrap_or((input, "0"));
+            let input = self.or(node, name, default.parse().unwrap_or_default(), depth)?;
             values.push(input.value);
             found.pictures.extend(input.pictures);
         }
@@ -236,8 +237,8 @@ fn channel(letter: char) -> Option<usize> {
 type Values<'a> = &'a [[f32; 4]];
 type Compute = Box<dyn Fn(Values<'_>) -> [f32; 4]>;
 
-/// What a node computes: the inputs that it takes with what stands in for each, and how.
-fn operation(source: Source<'_>) -> Option<(&'static [(&'static str, f32)], Compute)> {
+/// What a node computes: the inputs that it takes, with what stands in for each where that is not 0, and how.
+fn operation(source: Source<'_>) -> Option<(&'static str, Compute)> {
     let node = source.node;
     if let Some((_, inputs, compute)) = ELEMENTWISE.iter().find(|(kind, ..)| node.has_tag_name(*kind)) {
         let each = move |values: Values<'_>| {
@@ -254,30 +255,32 @@ fn operation(source: Source<'_>) -> Option<(&'static [(&'static str, f32)], Comp
         let weights = weights.map_or(LUMINANCE, |[r, g, b, _]| [r, g, b]);
         (0..3).map(|i| weights[i] * color[i]).sum::<f32>()
     };
-    const ONE: &[(&str, f32)] = &[("in", 0.0)];
     Some(match node.tag_name().name() {
         "separate2" | "separate3" | "separate4" => {
             let channel = channel_of_output(source.output?)?;
-            (ONE, Box::new(move |values| [values[0][channel]; 4]))
+            ("in", Box::new(move |values| [values[0][channel]; 4]))
         }
         "extract" => {
             let channel = number("index").unwrap_or(0.0).clamp(0.0, 3.0) as usize;
-            (ONE, Box::new(move |values| [values[0][channel]; 4]))
+            ("in", Box::new(move |values| [values[0][channel]; 4]))
         }
         "swizzle" => {
             let letters = child(node, "channels")?.attribute("value")?;
             let channels: Vec<usize> = letters.chars().map(channel).collect::<Option<_>>()?;
             let last = *channels.last()?;
             let pick = move |i: usize| channels.get(i).copied().unwrap_or(last);
-            (ONE, Box::new(move |values| std::array::from_fn(|i| values[0][pick(i)])))
+            (
+                "in",
+                Box::new(move |values| std::array::from_fn(|i| values[0][pick(i)])),
+            )
         }
         "combine2" | "combine3" | "combine4" => (
-            &[("in1", 0.0), ("in2", 0.0), ("in3", 0.0), ("in4", 1.0)],
+            "in1 in2 in3 in4=1",
             Box::new(|values| std::array::from_fn(|i| values[i][0])),
         ),
-        "luminance" => (ONE, Box::new(move |values| [luminance(values[0]); 4])),
+        "luminance" => ("in", Box::new(move |values| [luminance(values[0]); 4])),
         "saturate" => (
-            &[("in", 0.0), ("amount", 1.0)],
+            "in amount=1",
             Box::new(move |values| {
                 let grey = luminance(values[0]);
                 std::array::from_fn(|i| grey + (values[0][i] - grey) * values[1][0])
@@ -287,71 +290,46 @@ fn operation(source: Source<'_>) -> Option<(&'static [(&'static str, f32)], Comp
             let is_in_plane = child(node, "in1")?.attribute("type") == Some("vector2");
             let places = if is_in_plane { 2 } else { 3 };
             let product = move |values: Values<'_>| (0..places).map(|i| values[0][i] * values[1][i]).sum::<f32>();
-            (
-                &[("in1", 0.0), ("in2", 0.0)],
-                Box::new(move |values| [product(values); 4]),
-            )
+            ("in1 in2", Box::new(move |values| [product(values); 4]))
         }
         _ => return None,
     })
 }
 
 /// Kind, inputs with what stands in for each, and what is computed of each place of their values.
-type Elementwise = (&'static str, &'static [(&'static str, f32)], fn(&[f32]) -> f32);
+type Elementwise = (&'static str, &'static str, fn(&[f32]) -> f32);
 
 const ELEMENTWISE: &[Elementwise] = &[
-    ("add", &[("in1", 0.0), ("in2", 0.0)], |x| x[0] + x[1]),
-    ("subtract", &[("in1", 0.0), ("in2", 0.0)], |x| x[0] - x[1]),
-    ("multiply", &[("in1", 0.0), ("in2", 1.0)], |x| x[0] * x[1]),
-    ("divide", &[("in1", 0.0), ("in2", 1.0)], |x| x[0] / x[1]),
-    ("modulo", &[("in1", 0.0), ("in2", 1.0)], |x| {
-        x[0] - x[1] * (x[0] / x[1]).floor()
-    }),
-    ("min", &[("in1", 0.0), ("in2", 0.0)], |x| x[0].min(x[1])),
-    ("max", &[("in1", 0.0), ("in2", 0.0)], |x| x[0].max(x[1])),
-    ("power", &[("in1", 0.0), ("in2", 1.0)], |x| x[0].powf(x[1])),
-    ("safepower", &[("in1", 0.0), ("in2", 1.0)], |x| {
-        x[0].abs().powf(x[1]).copysign(x[0])
-    }),
-    ("invert", &[("in", 0.0), ("amount", 1.0)], |x| x[1] - x[0]),
-    ("absval", &[("in", 0.0)], |x| x[0].abs()),
-    (
-        "sign",
-        &[("in", 0.0)],
-        |x| if x[0] == 0.0 { 0.0 } else { x[0].signum() },
-    ),
-    ("floor", &[("in", 0.0)], |x| x[0].floor()),
-    ("ceil", &[("in", 0.0)], |x| x[0].ceil()),
-    ("round", &[("in", 0.0)], |x| x[0].round()),
-    ("sqrt", &[("in", 0.0)], |x| x[0].sqrt()),
-    ("exp", &[("in", 0.0)], |x| x[0].exp()),
-    ("ln", &[("in", 1.0)], |x| x[0].ln()),
-    ("sin", &[("in", 0.0)], |x| x[0].sin()),
-    ("cos", &[("in", 0.0)], |x| x[0].cos()),
-    ("clamp", &[("in", 0.0), ("low", 0.0), ("high", 1.0)], |x| {
-        x[0].max(x[1]).min(x[2])
-    }),
-    ("mix", &[("bg", 0.0), ("fg", 0.0), ("mix", 0.0)], |x| {
-        x[0] + (x[1] - x[0]) * x[2]
-    }),
-    ("smoothstep", &[("in", 0.0), ("low", 0.0), ("high", 1.0)], |x| {
+    ("add", "in1 in2", |x| x[0] + x[1]),
+    ("subtract", "in1 in2", |x| x[0] - x[1]),
+    ("multiply", "in1 in2=1", |x| x[0] * x[1]),
+    ("divide", "in1 in2=1", |x| x[0] / x[1]),
+    ("modulo", "in1 in2=1", |x| x[0] - x[1] * (x[0] / x[1]).floor()),
+    ("min", "in1 in2", |x| x[0].min(x[1])),
+    ("max", "in1 in2", |x| x[0].max(x[1])),
+    ("power", "in1 in2=1", |x| x[0].powf(x[1])),
+    ("safepower", "in1 in2=1", |x| x[0].abs().powf(x[1]).copysign(x[0])),
+    ("invert", "in amount=1", |x| x[1] - x[0]),
+    ("absval", "in", |x| x[0].abs()),
+    ("sign", "in", |x| if x[0] == 0.0 { 0.0 } else { x[0].signum() }),
+    ("floor", "in", |x| x[0].floor()),
+    ("ceil", "in", |x| x[0].ceil()),
+    ("round", "in", |x| x[0].round()),
+    ("sqrt", "in", |x| x[0].sqrt()),
+    ("exp", "in", |x| x[0].exp()),
+    ("ln", "in=1", |x| x[0].ln()),
+    ("sin", "in", |x| x[0].sin()),
+    ("cos", "in", |x| x[0].cos()),
+    ("clamp", "in low high=1", |x| x[0].max(x[1]).min(x[2])),
+    ("mix", "bg fg mix", |x| x[0] + (x[1] - x[0]) * x[2]),
+    ("smoothstep", "in low high=1", |x| {
         let t = ((x[0] - x[1]) / (x[2] - x[1])).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     }),
-    (
-        "remap",
-        &[
-            ("in", 0.0),
-            ("inlow", 0.0),
-            ("inhigh", 1.0),
-            ("outlow", 0.0),
-            ("outhigh", 1.0),
-        ],
-        |x| x[3] + (x[0] - x[1]) * (x[4] - x[3]) / (x[2] - x[1]),
-    ),
-    ("contrast", &[("in", 0.0), ("amount", 1.0), ("pivot", 0.5)], |x| {
-        (x[0] - x[2]) * x[1] + x[2]
+    ("remap", "in inlow inhigh=1 outlow outhigh=1", |x| {
+        x[3] + (x[0] - x[1]) * (x[4] - x[3]) / (x[2] - x[1])
     }),
+    ("contrast", "in amount=1 pivot=0.5", |x| (x[0] - x[2]) * x[1] + x[2]),
 ];
 
 fn colorspace<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
@@ -373,9 +351,10 @@ pub(super) fn value_of(input: Node<'_, '_>, text: &str) -> Option<[f32; 4]> {
         [r, g, b, ref alpha @ ..] => {
             let is_encoded = input.attribute("type").is_some_and(|kind| kind.starts_with("color"))
                 && colorspace(input).is_some_and(|space| space.starts_with("srgb"));
-            let [r, g, b] = match is_encoded {
-                true => linear_from_srgb(Vec3::<f32>::from_f32([r, g, b])).to_f32(),
-                false => [r, g, b],
+            let [r, g, b] = if is_encoded {
+                linear_from_srgb(Vec3::<f32>::from_f32([r, g, b])).to_f32()
+            } else {
+                [r, g, b]
             };
             [r, g, b, alpha.first().copied().unwrap_or(1.0)]
         }

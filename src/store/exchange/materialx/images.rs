@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::import::Budget;
+use crate::import::limits::Reach;
 use crate::import::picture::mean_of_file;
-use crate::import::resource::Reach;
 use crate::scene::Loading;
 use crate::scene::texture::TextureMean;
 

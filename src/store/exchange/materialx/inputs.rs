@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::document::{Value, parameter};
+use crate::document::parameter;
 use crate::import::{FileParameter, Goes};
 use crate::store::exchange::report::Entry;
-use crate::store::exchange::surface::{Surface, plain};
+use crate::store::exchange::surface::Surface;
 
 /// The inputs of a surface that a file sets, and what is lost of them.
-pub(in crate::store::exchange) struct Inputs {
+pub struct Inputs {
     kind: &'static str,
     rows: &'static [FileParameter],
     values: BTreeMap<String, [f32; 3]>,
@@ -40,7 +40,7 @@ impl Inputs {
         let row = self.row(name);
         debug_assert!(row.is_some(), "{} has no {name} in its table", self.kind);
         let set = self.values.get(name).copied();
-        set.or_else(|| default_of(row?)).unwrap_or_default()
+        set.or_else(|| row?.default_value()).unwrap_or_default()
     }
 
     /// An input as a number.
@@ -50,14 +50,10 @@ impl Inputs {
 
     /// A surface with the parameters that inputs are as they are.
     pub fn direct(&self) -> Surface {
-        let mut surface = plain();
+        let mut surface = Surface::of_file();
         for row in self.rows.iter().filter(|row| !row.default.is_empty()) {
-            if let Goes::To(key) = row.goes
-                && let Ok(parameter) = parameter(key)
-            {
-                let value = self.color(row.place);
-                parameter.put(&mut surface, Value::Color(value));
-                parameter.put(&mut surface, Value::Number(value[0]));
+            if let Ok(parameter) = parameter(row.keys()[0]) {
+                parameter.put_rgb(&mut surface, self.color(row.place).map(|x| x * row.per.recip()));
             }
         }
         surface
@@ -75,7 +71,7 @@ impl Inputs {
                 continue;
             }
             if let Goes::Nowhere(why) = row.goes
-                && Some(value) != default_of(row)
+                && Some(value) != row.default_value()
             {
                 entries.push(Entry::dropped(name, why));
             } else if let Some([least, most]) = row.range {
@@ -88,19 +84,5 @@ impl Inputs {
             }
         }
         self.losses.extend(entries);
-    }
-}
-
-/// What an input is worth that is left out; nothing for directions, which are then the surface's own.
-fn default_of(row: &FileParameter) -> Option<[f32; 3]> {
-    let number = |text: &str| match text.trim() {
-        "false" => Some(0.0),
-        text => text.parse().ok(),
-    };
-    let numbers: Option<Vec<f32>> = row.default.split(',').map(number).collect();
-    match numbers?[..] {
-        [x] => Some([x; 3]),
-        [r, g, b] => Some([r, g, b]),
-        _ => None,
     }
 }

@@ -11,17 +11,17 @@ use super::images::Images;
 use super::include::whole_text;
 use super::inputs::Inputs;
 use super::surfaces::SurfaceKind;
-use super::{CARRIER, MaterialX};
-use crate::document::{MaterialSettings, PARAMETERS, Parameter, Value};
+use super::{CARRIER, write};
+use crate::document::{MaterialSettings, PARAMETERS, Parameter};
 use crate::import::Goes;
 use crate::optics::fresnel::Fresnel;
 use crate::scene::Loading;
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
-use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried, xml};
+use crate::store::exchange::{ExchangeError, ReadOptions, Subject, carried, xml};
 
 /// The materials of a document.
-pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = crate::store::file::read(path)?;
     let wrong = |reason: String| ExchangeError::Contents {
         path: path.to_owned(),
@@ -49,9 +49,10 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
         }
     }
     if subject.materials.is_empty() {
-        let reason = match refused.is_empty() {
-            true => "it has no <surfacematerial>".to_owned(),
-            false => refused.join("; "),
+        let reason = if refused.is_empty() {
+            "it has no <surfacematerial>".to_owned()
+        } else {
+            refused.join("; ")
         };
         return Err(ExchangeError::NoMaterial {
             path: path.to_owned(),
@@ -82,7 +83,7 @@ fn exact_or_shown(
             "the file was changed since it was exported",
         ));
     }
-    let mut material = surface.material(options.lobe);
+    let mut material = surface.clone().with_lobe(options.lobe, 1.0);
     if reflects_exactly(shader) && material.metalness < 1.0 {
         material.fresnel = Fresnel::Dielectric;
     }
@@ -97,8 +98,7 @@ fn reflects_exactly(shader: Node<'_, '_>) -> bool {
 
 /// What a file would show into which a material is written.
 fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
-    let format = MaterialX { is_standard };
-    let written = format.write(&Subject::of(material.clone()), Path::new("")).ok()?;
+    let written = write(&Subject::of(material.clone()), is_standard).ok()?;
     let text = String::from_utf8(written.bytes).ok()?;
     let document = Document::parse(&text).ok()?;
     let (shader, material) = shaders(document.root_element()).into_iter().next()?;
@@ -111,12 +111,11 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
 /// Whether two surfaces are the same but for the digits that other programs write.
 fn is_near(a: &Surface, b: &Surface) -> bool {
     let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs());
-    let are_near = |parameter: &Parameter| match (parameter.get(a), parameter.get(b)) {
-        (Value::Number(a), Value::Number(b)) => near(a, b),
-        (Value::Color(a), Value::Color(b)) => (0..3).all(|i| near(a[i], b[i])),
-        _ => true,
+    let are_near = |parameter: &Parameter| match (parameter.rgb(a), parameter.rgb(b)) {
+        (Some(a), Some(b)) => (0..3).all(|i| near(a[i], b[i])),
+        _ => parameter.get(a) == parameter.get(b),
     };
-    a.coat_on_base == b.coat_on_base && PARAMETERS.iter().all(are_near)
+    PARAMETERS.iter().all(are_near)
 }
 
 fn read_surface(

@@ -1,15 +1,15 @@
 //! The kinds of surfaces that are read, each with its inputs as a surface of Glossmith's.
 
-use super::artistic::edge_tint;
+use super::artistic::{edge_color, edge_tint};
 use super::inputs::Inputs;
 use super::table;
+use crate::document::parameter;
 use crate::import::{FileParameter, widths_from_gltf};
 use crate::optics::fresnel::fresnel_f0;
 use crate::optics::layer::fuzz::fuzz_of_sheen;
 use crate::optics::lobe::anisotropy_from_ratio;
-use crate::store::exchange::open_pbr::{NITS, widening};
 use crate::store::exchange::report::Entry;
-use crate::store::exchange::surface::Surface;
+use crate::store::exchange::surface::{Law, Surface, Takes};
 
 /// A kind of surface that is read.
 #[derive(Debug)]
@@ -18,7 +18,8 @@ pub struct SurfaceKind {
     pub name: &'static str,
     /// Every input that it has, and what becomes of it.
     pub inputs: &'static [FileParameter],
-    read: fn(&mut Inputs) -> Surface,
+    /// Takes what is no number of one parameter over from the inputs.
+    read: fn(&mut Inputs, &mut Surface),
 }
 
 /// Every kind: name, inputs, how it is read.
@@ -31,24 +32,29 @@ pub static SURFACES: &[SurfaceKind] = &[
     kind("surface_unlit", table::SURFACE_UNLIT, surface_unlit),
 ];
 
-const fn kind(name: &'static str, inputs: &'static [FileParameter], read: fn(&mut Inputs) -> Surface) -> SurfaceKind {
+const fn kind(
+    name: &'static str,
+    inputs: &'static [FileParameter],
+    read: fn(&mut Inputs, &mut Surface),
+) -> SurfaceKind {
     SurfaceKind { name, inputs, read }
 }
 
 impl SurfaceKind {
     /// The kind of that name.
-    pub(in crate::store::exchange) fn named(name: &str) -> Option<&'static Self> {
+    pub fn named(name: &str) -> Option<&'static Self> {
         SURFACES.iter().find(|kind| kind.name == name)
     }
 
-    pub(in crate::store::exchange) fn unset(&self) -> Inputs {
+    pub fn unset(&self) -> Inputs {
         Inputs::new(self.name, self.inputs)
     }
 
     /// The surface of these inputs, with what is lost of them.
-    pub(in crate::store::exchange) fn surface(&self, mut inputs: Inputs) -> (Surface, Vec<Entry>) {
+    pub fn surface(&self, mut inputs: Inputs) -> (Surface, Vec<Entry>) {
         inputs.settle();
-        let surface = (self.read)(&mut inputs);
+        let mut surface = inputs.direct();
+        (self.read)(&mut inputs, &mut surface);
         (surface, inputs.losses)
     }
 }
@@ -61,192 +67,187 @@ fn luminance(color: [f32; 3]) -> f32 {
     0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
 }
 
-fn open_pbr(inputs: &mut Inputs) -> Surface {
-    let metalness = inputs.number("base_metalness");
-    let specular_color = inputs.color("specular_color");
-    let (tint, edge_tint) = if metalness > 0.5 {
-        ([1.0; 3], specular_color)
-    } else {
-        (specular_color, [1.0; 3])
-    };
-    let [ratio, coat_ratio] = ["specular_roughness_anisotropy", "coat_roughness_anisotropy"]
-        .map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.999));
+/// The anisotropy for a highlight whose widths differ by the share that a format's number says.
+fn stretched(number: f32, most: f32) -> f32 {
+    anisotropy_from_ratio(f64::from(1.0 - number.clamp(0.0, most))) as f32
+}
+
+fn open_pbr(inputs: &mut Inputs, s: &mut Surface) {
+    if s.metalness > 0.5 {
+        s.edge_tint = std::mem::replace(&mut s.specular_color, [1.0; 3]);
+    }
+    s.specular_in_index = s.specular_weight != 1.0;
+    // The weight is a metal's too, the tint is not: where both are, neither.
+    s.specular_on_metal = s.specular_color == [1.0; 3];
+    for (roughness, anisotropy) in [
+        (&mut s.roughness, &mut s.anisotropy),
+        (&mut s.coat_roughness, &mut s.coat_anisotropy),
+    ] {
+        *roughness /= widening(1.0 - anisotropy.clamp(0.0, 0.999));
+        *anisotropy = stretched(*anisotropy, 0.999);
+    }
+    s.coat_on_base = true;
+    s.opacity = luminance(inputs.color("geometry_opacity"));
+}
+
+/// The numbers that OpenPBR's inputs have for a surface.
+pub fn as_open_pbr(surface: &Surface) -> Surface {
+    let mut s = surface.clone();
+    s.counter_coat();
+    s.specular_color = s.tint();
+    (s.roughness, s.anisotropy) = roughness_and_anisotropy(&s);
+    let coat_ratio = s.coat_ratio();
+    s.coat_roughness = (s.coat_roughness * widening(coat_ratio)).min(1.0);
+    s.coat_anisotropy = 1.0 - coat_ratio;
+    (s.emission_strength, s.emission_color) = s.strength_and_color();
+    s
+}
+
+fn standard_surface(inputs: &mut Inputs, s: &mut Surface) {
+    let root = inputs.number("sheen_roughness").max(0.0).sqrt();
+    let color = weighted(inputs.color("sheen_color"), inputs.number("sheen"));
+    put_sheen(inputs, s, color, root);
+    s.anisotropy = stretched(s.anisotropy, 0.98);
+    s.coat_anisotropy = stretched(s.coat_anisotropy, 0.98);
+    if s.metalness > 0.5 {
+        // A metal has it towards its edge.
+        let color = weighted(s.specular_color, s.specular_weight);
+        s.edge_tint = edge_tint(weighted(s.base_color, s.base_weight), color);
+        (s.specular_weight, s.specular_color) = (1.0, [1.0; 3]);
+    }
+    // Every thickness but 0 is a film.
+    s.film_weight = f32::from(s.film_thickness > 0.0);
+    s.opacity = luminance(inputs.color("opacity"));
+}
+
+/// The numbers that Standard Surface's inputs have for a surface.
+pub(super) fn as_standard_surface(surface: &Surface) -> Surface {
+    let (ratio, rotation_deg) = surface.ratio_and_rotation();
+    let (emission_strength, emission_color) = surface.strength_and_color();
     Surface {
-        base_color: weighted(inputs.color("base_color"), inputs.number("base_weight")),
-        specular_in_index: inputs.number("specular_weight") != 1.0,
-        specular_color: tint,
-        // The weight is a metal's too, the tint is not: where both are, neither.
-        specular_on_metal: tint == [1.0; 3],
-        edge_tint,
-        roughness: inputs.number("specular_roughness") / widening(ratio),
-        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
-        coat_roughness: inputs.number("coat_roughness") / widening(coat_ratio),
-        coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
-        coat_on_base: true,
-        emission_strength: 1.0,
-        emission_color: weighted(
-            inputs.color("emission_color"),
-            inputs.number("emission_luminance") / NITS,
-        ),
-        opacity: luminance(inputs.color("geometry_opacity")),
-        ..inputs.direct()
+        specular_color: if surface.metalness > 0.5 {
+            edge_color(surface.base_color, surface.edge_tint)
+        } else {
+            surface.tint()
+        },
+        anisotropy: 1.0 - ratio,
+        rotation_deg: rotation_deg.rem_euclid(360.0),
+        coat_anisotropy: 1.0 - surface.coat_ratio(),
+        film_thickness: if surface.film_weight > 0.0 {
+            surface.film_thickness
+        } else {
+            0.0
+        },
+        emission_strength,
+        emission_color,
+        ..surface.clone()
     }
 }
 
-fn standard_surface(inputs: &mut Inputs) -> Surface {
-    let (fuzz_weight, fuzz_color, fuzz_roughness) = sheen(
-        inputs,
-        [Some("sheen"), Some("sheen_color"), Some("sheen_roughness")],
-        false,
-    );
-    let [ratio, coat_ratio] =
-        ["specular_anisotropy", "coat_anisotropy"].map(|input| 1.0 - inputs.number(input).clamp(0.0, 0.98));
-    let base_color = weighted(inputs.color("base_color"), inputs.number("base"));
-    let metalness = inputs.number("metalness");
-    let (weight, color) = (inputs.number("specular"), inputs.color("specular_color"));
-    // A metal has it towards its edge.
-    let (specular_weight, specular_color, edge_tint) = match metalness > 0.5 {
-        true => (1.0, [1.0; 3], edge_tint(base_color, weighted(color, weight))),
-        false => (weight, color, [1.0; 3]),
-    };
-    Surface {
-        base_color,
-        specular_weight,
-        specular_color,
-        edge_tint,
-        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
-        rotation_deg: 360.0 * inputs.number("specular_rotation"),
-        coat_anisotropy: anisotropy_from_ratio(f64::from(coat_ratio)) as f32,
-        fuzz_weight,
-        fuzz_color,
-        fuzz_roughness,
-        // Every thickness but 0 is a film.
-        film_weight: f32::from(inputs.number("thin_film_thickness") > 0.0),
-        film_thickness: 1e-3 * inputs.number("thin_film_thickness"),
-        emission_strength: 1.0,
-        emission_color: weighted(inputs.color("emission_color"), inputs.number("emission")),
-        opacity: luminance(inputs.color("opacity")),
-        ..inputs.direct()
-    }
-}
-
-/// Weight, tint and roughness of the fuzz that a sheen looks like, by its strength, colour and the root of its α.
-fn sheen(
-    inputs: &mut Inputs,
-    [strength, color, roughness]: [Option<&str>; 3],
-    is_squared: bool,
-) -> (f32, [f32; 3], f32) {
-    let strength = strength.map_or(1.0, |name| inputs.number(name));
-    let color = color.map_or([1.0; 3], |name| inputs.color(name)).map(|x| x * strength);
-    let root = roughness.map_or(0.5, |name| inputs.number(name));
-    let fuzz = fuzz_of_sheen(color, if is_squared { root } else { root.max(0.0).sqrt() });
-    if fuzz.0 > 0.0 {
+/// Puts on the fuzz that a sheen of a colour and the root of its α looks like.
+fn put_sheen(inputs: &mut Inputs, s: &mut Surface, color: [f32; 3], root_of_alpha: f32) {
+    (s.fuzz_weight, s.fuzz_color, s.fuzz_roughness) = fuzz_of_sheen(color, root_of_alpha);
+    if s.fuzz_weight > 0.0 {
         let detail = "fuzz of about its albedo stands for it";
         inputs.losses.push(Entry::approximated("sheen", detail, None));
     }
-    fuzz
 }
 
-fn gltf_pbr(inputs: &mut Inputs) -> Surface {
-    let (fuzz_weight, fuzz_color, fuzz_roughness) =
-        sheen(inputs, [None, Some("sheen_color"), Some("sheen_roughness")], true);
-    let distance = inputs.number("attenuation_distance");
-    let inside = inputs.color("attenuation_color");
-    let color = inputs.color("base_color");
-    let strength = inputs.number("anisotropy_strength");
-    let widths = widths_from_gltf(inputs.number("roughness"), strength);
+fn gltf_pbr(inputs: &mut Inputs, s: &mut Surface) {
+    let (sheen, root) = (inputs.color("sheen_color"), inputs.number("sheen_roughness"));
+    put_sheen(inputs, s, sheen, root);
+    let widths = widths_from_gltf(s.roughness, s.anisotropy);
     if !widths.is_exact {
         let detail = "the highlight is stretched no more than 19 : 1";
-        inputs
-            .losses
-            .push(Entry::approximated("anisotropy_strength", detail, None));
+        let entry = Entry::approximated("anisotropy_strength", detail, None);
+        inputs.losses.push(entry);
     }
-    Surface {
-        specular_weight: inputs.number("specular"),
-        specular_color: inputs.color("specular_color"),
-        roughness: widths.roughness,
-        anisotropy: widths.stretch,
-        rotation_deg: inputs.number("anisotropy_rotation").to_degrees(),
-        transmission_color: if distance > 0.0 { inside } else { color },
-        fuzz_weight,
-        fuzz_color,
-        fuzz_roughness,
-        film_thickness: 1e-3 * inputs.number("iridescence_thickness"),
-        emission_strength: 1.0,
-        emission_color: weighted(inputs.color("emissive"), inputs.number("emissive_strength")),
-        opacity: gltf_opacity(inputs),
-        ..inputs.direct()
+    (s.roughness, s.anisotropy) = (widths.roughness, widths.stretch);
+    if s.transmission_depth <= 0.0 {
+        s.transmission_color = s.base_color;
     }
-}
-
-/// What is there of a surface by its alpha mode: 0 all of it, 1 all or nothing, 2 the share that alpha says.
-fn gltf_opacity(inputs: &Inputs) -> f32 {
+    // By its alpha mode: 0 all of it is there, 1 all or nothing, 2 the share that alpha says.
     let alpha = inputs.number("alpha");
-    match inputs.number("alpha_mode") {
+    s.opacity = match inputs.number("alpha_mode") {
         0.0 => 1.0,
         1.0 => f32::from(alpha >= inputs.number("alpha_cutoff")),
         _ => alpha,
-    }
+    };
 }
 
-fn disney_principled(inputs: &mut Inputs) -> Surface {
+fn disney_principled(inputs: &mut Inputs, s: &mut Surface) {
     // The node has a sheen of no roughness of its own.
-    let (fuzz_weight, _, fuzz_roughness) = sheen(inputs, [Some("sheen"), None, None], true);
+    let sheen = [inputs.number("sheen"); 3];
+    put_sheen(inputs, s, sheen, 0.5);
     let tint = inputs.number("sheenTint").clamp(0.0, 1.0);
-    let fuzz_color = inputs.color("baseColor").map(|x| 1.0 + tint * (x - 1.0));
-    let base_color = inputs.color("baseColor");
-    let specular = inputs.number("specular");
+    s.fuzz_color = s.base_color.map(|x| 1.0 + tint * (x - 1.0));
+    s.transmission_color = s.base_color;
+    // 0.5 leaves the reflectance of the index as it is.
+    s.specular_in_index = s.specular_weight != 0.5;
+    s.specular_weight *= 2.0;
     // MaterialX has the anisotropy of Standard Surface there.
-    let ratio = 1.0 - inputs.number("anisotropic").clamp(0.0, 0.98);
-    Surface {
-        // 0.5 leaves the reflectance of the index as it is.
-        specular_weight: 2.0 * specular,
-        specular_in_index: specular != 0.5,
-        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
-        transmission_color: base_color,
-        coat_roughness: 1.0 - inputs.number("clearcoatGloss"),
-        fuzz_weight,
-        fuzz_color,
-        fuzz_roughness,
-        ..inputs.direct()
-    }
+    s.anisotropy = stretched(s.anisotropy, 0.98);
+    s.coat_roughness = 1.0 - inputs.number("clearcoatGloss");
 }
 
-fn usd_preview_surface(inputs: &mut Inputs) -> Surface {
-    let ior = inputs.number("ior");
+fn usd_preview_surface(inputs: &mut Inputs, s: &mut Surface) {
     let (opacity, threshold) = (inputs.number("opacity"), inputs.number("opacityThreshold"));
-    let is_presence = inputs.number("opacityMode") > 0.0;
     // What is not stopped is refracted, unless the surface is cut out or is said to be there in part.
-    let (presence, transmission_weight) = match is_presence {
+    (s.opacity, s.transmission_weight) = match inputs.number("opacityMode") > 0.0 {
         _ if threshold > 0.0 => (f32::from(opacity >= threshold), 0.0),
         true => (opacity, 0.0),
         false => (1.0, 1.0 - opacity),
     };
-    let (metalness, specular_color) = match inputs.number("useSpecularWorkflow") {
-        0.0 => (inputs.number("metallic"), [1.0; 3]),
+    if inputs.number("useSpecularWorkflow") == 0.0 {
+        s.specular_color = [1.0; 3];
+    } else {
         // The reflection head-on is a colour by itself: what the index has it is multiplied by.
-        _ => (
-            0.0,
-            weighted(inputs.color("specularColor"), fresnel_f0(ior).max(1e-3).recip()),
-        ),
-    };
-    Surface {
-        metalness,
-        specular_color,
-        emission_strength: 1.0,
-        emission_color: inputs.color("emissiveColor"),
-        transmission_weight,
-        opacity: presence,
-        ..inputs.direct()
+        s.metalness = 0.0;
+        s.specular_color = weighted(s.specular_color, fresnel_f0(s.ior).max(1e-3).recip());
     }
+    s.emission_strength = 1.0;
 }
 
-fn surface_unlit(inputs: &mut Inputs) -> Surface {
-    Surface {
-        base_color: [0.0; 3],
-        specular_weight: 0.0,
-        emission_strength: 1.0,
-        emission_color: weighted(inputs.color("emission_color"), inputs.number("emission")),
-        ..inputs.direct()
-    }
+fn surface_unlit(_inputs: &mut Inputs, s: &mut Surface) {
+    (s.base_color, s.specular_weight) = ([0.0; 3], 0.0);
+}
+
+/// The inputs of a table with a surface's numbers for them.
+pub fn written(
+    rows: &'static [FileParameter],
+    shown: &Surface,
+) -> impl Iterator<Item = (&'static FileParameter, [f32; 3])> {
+    rows.iter().filter(|row| !row.default.is_empty()).filter_map(|row| {
+        let value = parameter(row.keys()[0]).ok()?.rgb(shown)?;
+        Some((row, value.map(|x| x * row.per)))
+    })
+}
+
+/// OpenPBR's roughness and anisotropy a: α's along and across are r² √(2/(1 + (1 − a)²)) and (1 − a) times that.
+fn roughness_and_anisotropy(surface: &Surface) -> (f32, f32) {
+    let (ratio, _) = surface.ratio_and_rotation();
+    let roughness = surface.roughness * widening(ratio);
+    (roughness.min(1.0), 1.0 - ratio)
+}
+
+/// Its roughness over the one of the mean of both widths, by their ratio.
+fn widening(ratio: f32) -> f32 {
+    ((1.0 + ratio * ratio) / (2.0 * ratio)).powf(0.25)
+}
+
+/// The widths that are shown: roughness is 1 at most.
+fn widths(surface: &Surface) -> [f32; 2] {
+    let (roughness, anisotropy) = roughness_and_anisotropy(surface);
+    let ratio = 1.0 - anisotropy;
+    let along = roughness * roughness * (2.0 / (1.0 + ratio * ratio)).sqrt();
+    [along, along * ratio]
+}
+
+impl Takes {
+    /// What OpenPBR has a place for.
+    pub const OPEN_PBR: Self = Self {
+        law: Law::Exact,
+        widths,
+        lacks: ["specular.eta base.color_texture transmission.roughness", ""],
+    };
 }

@@ -6,60 +6,55 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::open_pbr::{Value, inputs};
+use super::materialx::{OPEN_PBR, as_open_pbr, written};
 use super::report::Entry;
 use super::surface::{Surface, Takes};
 use super::xml::{identifier, numbers};
-use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+use super::{ExchangeError, ReadOptions, Subject, Written, carried, shown};
 use crate::document::MaterialSettings;
+use crate::import::FileParameter;
 
-/// Materials in a `.usda`.
-pub struct Usd;
-
-impl Format for Usd {
-    fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
-        let (mut taken, mut reports) = (HashMap::new(), Vec::new());
-        let mut text =
-            "#usda 1.0\n(\n    defaultPrim = \"Materials\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
+pub fn write(subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
+    let (mut taken, mut reports) = (HashMap::new(), Vec::new());
+    let mut text = "#usda 1.0\n(\n    defaultPrim = \"Materials\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
                         def Scope \"Materials\"\n{\n"
-                .to_owned();
-        for material in &subject.materials {
-            let (surface, mut report) = shown(material, &Takes::OPEN_PBR);
-            report.entries.splice(0..0, surface.rotation_loss());
-            let preview = "UsdPreviewSurface, beside OpenPBR";
-            let detail = "without anisotropy, refraction, tints and the coat's index";
-            report.entries.push(Entry::approximated(preview, detail, None));
-            let name = identifier(&material.name, &mut taken);
-            text += &prim(&surface, &name, &carried::line(material));
-            reports.push(report);
-        }
-        text += "}\n";
-        Ok(Written::text(text, reports))
+        .to_owned();
+    for material in &subject.materials {
+        let (surface, mut report) = shown(material, &Takes::OPEN_PBR);
+        report.entries.splice(0..0, surface.rotation_loss());
+        let preview = "UsdPreviewSurface, beside OpenPBR";
+        let detail = "without anisotropy, refraction, tints and the coat's index";
+        report.entries.push(Entry::approximated(preview, detail, None));
+        let name = identifier(&material.name, &mut taken);
+        text += &prim(&surface, &name, &carried::line(material));
+        reports.push(report);
     }
+    text += "}\n";
+    Ok(Written::text(text, reports))
+}
 
-    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let bytes = crate::store::file::read(path)?;
-        let shown_by = |material: &MaterialSettings| {
-            let inputs = preview(&Surface::of(material).0).into_iter();
-            let name = |typed: &str| typed.split_once(' ').map_or(typed, |(_, name)| name).to_owned();
-            inputs.map(|(typed, value)| (name(typed), value)).collect()
-        };
-        let found = read::materials(&String::from_utf8_lossy(&bytes)).into_iter();
-        let (materials, losses): (Vec<_>, _) = found
-            .filter_map(|read| read.material(options.lobe, options.is_plain, shown_by))
-            .unzip();
-        if materials.is_empty() {
-            return Err(ExchangeError::NoMaterial {
-                path: path.to_owned(),
-                reason: "it has no UsdPreviewSurface".to_owned(),
-            });
-        }
-        Ok(Subject {
-            materials,
-            losses,
-            ..Subject::default()
-        })
+pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+    let bytes = crate::store::file::read(path)?;
+    let shown_by = |material: &MaterialSettings| {
+        let inputs = preview(&Surface::of(material).0).into_iter();
+        let name = |typed: &str| typed.split_once(' ').map_or(typed, |(_, name)| name).to_owned();
+        inputs.map(|(typed, value)| (name(typed), value)).collect()
+    };
+    let found = read::materials(&String::from_utf8_lossy(&bytes)).into_iter();
+    let (materials, losses): (Vec<_>, _) = found
+        .filter_map(|read| read.material(options.lobe, options.is_plain, shown_by))
+        .unzip();
+    if materials.is_empty() {
+        return Err(ExchangeError::NoMaterial {
+            path: path.to_owned(),
+            reason: "it has no UsdPreviewSurface".to_owned(),
+        });
     }
+    Ok(Subject {
+        materials,
+        losses,
+        ..Subject::default()
+    })
 }
 
 /// Text in quotation marks.
@@ -92,39 +87,30 @@ fn unquoted(text: &str) -> Option<String> {
 }
 
 fn prim(surface: &Surface, name: &str, exact: &str) -> String {
-    let mut text = format!(
-        "    def Material \"{name}\" (\n        customData = {{\n            string {} = {}\n        }}\n    )\n    {{\n",
-        carried::MARK,
-        quoted(exact)
-    );
-    let path = format!("/Materials/{name}");
-    let _ = writeln!(
-        text,
-        "        uniform string ui:displayName = {}",
-        quoted(&surface.name)
-    );
-    let _ = writeln!(
-        text,
-        "        token outputs:surface.connect = <{path}/Preview.outputs:surface>"
-    );
-    let _ = writeln!(
-        text,
-        "        token outputs:mtlx:surface.connect = <{path}/OpenPbr.outputs:out>\n"
-    );
-    text += &shader(
+    let (mark, exact, label) = (carried::MARK, quoted(exact), quoted(&surface.name));
+    let preview = shader(
         "Preview",
         "UsdPreviewSurface",
         "token outputs:surface",
         &preview(surface),
     );
-    text += &shader(
-        "OpenPbr",
-        "ND_open_pbr_surface_surfaceshader",
-        "token outputs:out",
-        &open_pbr(surface),
-    );
-    text += "    }\n\n";
-    text
+    let id = "ND_open_pbr_surface_surfaceshader";
+    let open_pbr = shader("OpenPbr", id, "token outputs:out", &open_pbr(surface));
+    format!(
+        "    def Material \"{name}\" (
+        customData = {{
+            string {mark} = {exact}
+        }}
+    )
+    {{
+        uniform string ui:displayName = {label}
+        token outputs:surface.connect = </Materials/{name}/Preview.outputs:surface>
+        token outputs:mtlx:surface.connect = </Materials/{name}/OpenPbr.outputs:out>
+
+{preview}{open_pbr}    }}
+
+"
+    )
 }
 
 fn shader(name: &str, id: &str, output: &str, inputs: &[(impl AsRef<str>, String)]) -> String {
@@ -158,9 +144,12 @@ fn preview(surface: &Surface) -> Vec<(&'static str, String)> {
 }
 
 fn open_pbr(surface: &Surface) -> Vec<(String, String)> {
-    let typed = |(name, value): (&str, Value)| match value {
-        Value::Number(x) => (format!("float {name}"), x.to_string()),
-        Value::Color(value) => (format!("color3f {name}"), color(value)),
+    let typed = |(row, value): (&FileParameter, [f32; 3])| {
+        if row.is_list() {
+            (format!("color3f {}", row.place), color(value))
+        } else {
+            (format!("float {}", row.place), value[0].to_string())
+        }
     };
-    inputs(surface).into_iter().map(typed).collect()
+    written(OPEN_PBR, &as_open_pbr(surface)).map(typed).collect()
 }

@@ -170,7 +170,7 @@ impl Read {
         let (mut surface, losses) = surface_of(&preview)?;
         surface.name = self.name;
         lost.extend(losses);
-        Some((surface.material(lobe), lost))
+        Some((surface.with_lobe(lobe, 1.0), lost))
     }
 }
 

@@ -1,0 +1,213 @@
+//! The image, the window and materials as files or on the clipboard.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use std::time::Duration;
+
+use egui::ColorImage;
+
+use crate::app::App;
+use crate::app::handlers::files::finish;
+use crate::app::services::{disk::Task, export::ready, messages::Entry};
+use crate::app::sheets::{dialogs::Purpose, export::Answer};
+use crate::document::MaterialSettings;
+use crate::render::{
+    Progress,
+    output::{self, Layers},
+    worker::Activity,
+};
+use crate::scene::path_text::file_name;
+use crate::store::{
+    exchange::{self, Registered, Subject, report::Outcome},
+    picture::png_bytes,
+    replace::save_atomically,
+};
+
+/// How long an image of the window may take to come.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Where an image goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    File(PathBuf),
+    Clipboard,
+}
+
+impl App {
+    /// Hands the image over as soon as it is whole.
+    pub fn want_picture(&mut self, to: Destination) {
+        if self.worker.snapshot().picture.is_none() {
+            self.warn("there is no image yet");
+        } else {
+            self.files.wanted_pictures.push(to);
+        }
+    }
+
+    /// Delivers the image if one was requested. While something is being changed there are only small previews, which
+    /// do not count, unless rendering was stopped and nothing better will come.
+    pub fn hand_over_pictures(&mut self, ctx: &egui::Context) {
+        if self.files.wanted_pictures.is_empty() {
+            return;
+        }
+        let snapshot = self.worker.snapshot();
+        let Some(picture) = snapshot.picture.clone() else {
+            return;
+        };
+        let is_whole = self.is_whole(&picture);
+        let is_stopped = matches!(snapshot.activity, Activity::Paused | Activity::Idle);
+        if !is_whole && !is_stopped {
+            return;
+        }
+        let [count, wanted] = [picture.samples_per_pixel, picture.document.render.samples];
+        let is_finished = is_whole && (snapshot.activity == Activity::Done || count >= wanted);
+        let size = match picture.reduction {
+            1 => String::new(),
+            reduction => format!("1/{reduction} of the size, "),
+        };
+        let details = size + &samples([count, wanted], is_finished);
+        for to in std::mem::take(&mut self.files.wanted_pictures) {
+            match to {
+                Destination::File(path) => {
+                    let (picture, details) = (picture.clone(), details.clone());
+                    self.write_beside(move || {
+                        output::write(&path, picture.rendered(), &picture.document).map_err(crate::in_words)?;
+                        Ok(Entry::done_with("Saved", &path, &details).finished(is_finished))
+                    });
+                }
+                Destination::Clipboard => {
+                    let size = [picture.width as usize, picture.height as usize];
+                    ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
+                    self.say(Entry::done(format!("Copied the image: {details}")).finished(is_finished));
+                }
+            }
+        }
+    }
+
+    /// Writes the layers that the renderer made.
+    pub fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>, progress: &Progress) {
+        let is_finished = progress.is_done;
+        let samples = samples([progress.samples_per_pixel, progress.samples_wanted], is_finished);
+        self.write_beside(move || {
+            output::write_layers(&path, &layers).map_err(crate::in_words)?;
+            let details = format!("layers, {samples}");
+            Ok(Entry::done_with("Saved", &path, &details).finished(is_finished))
+        });
+    }
+}
+
+/// How many samples an image has, of those wanted if it is not finished.
+fn samples([count, wanted]: [u32; 2], is_finished: bool) -> String {
+    let (of, last) = match is_finished {
+        true => (String::new(), count),
+        false => (format!("{count} of "), wanted),
+    };
+    format!("{of}{last} sample{}", if last == 1 { "" } else { "s" })
+}
+
+impl App {
+    /// Asks for the image that was wanted in the frame before, when a sheet may have lain over the window.
+    pub fn picture_window(&mut self, ctx: &egui::Context) {
+        let Some(path) = self.window_picture.take() else {
+            return;
+        };
+        let (sender, taken) = channel();
+        ctx.request_screenshot(move |image| {
+            // Nobody listens where it took too long.
+            let _ = sender.send(image);
+        });
+        ctx.request_repaint();
+        self.write_beside(move || {
+            let image: Arc<ColorImage> = taken
+                .recv_timeout(PATIENCE)
+                .map_err(|_| format!("{}: the screenshot can't be read back from the GPU", path.display()))?;
+            let [width, height] = image.size.map(|side| side as u32);
+            // The window is opaque, even if its surface has an alpha.
+            let opaque = |pixel: &egui::Color32| [pixel.r(), pixel.g(), pixel.b(), 255];
+            let rgba: Vec<u8> = image.pixels.iter().flat_map(opaque).collect();
+            save_atomically(&path, &png_bytes([width, height], &rgba, None)?).map_err(crate::in_words)?;
+            Ok(Entry::done_with("Saved", &path, &format!("{width} × {height} pixels")))
+        });
+    }
+
+    /// Asks for the file that a preset is exported to, or the selected material.
+    pub fn ask_export(&mut self, ctx: &egui::Context, preset: Option<MaterialSettings>) {
+        self.files.exported = preset;
+        self.ask(ctx, Purpose::Export);
+    }
+
+    /// Makes the file beside the window, to be shown before it is written: of a format that takes a model all of it, else
+    /// the selected material; or the preset that was chosen.
+    pub fn prepare_export(&mut self, path: PathBuf) {
+        let Some(format) = self.taken(exchange::by_ending(&path)) else {
+            return;
+        };
+        let preset = self.files.exported.take();
+        let takes_model = format.takes_models() && preset.is_none();
+        let material = preset.unwrap_or_else(|| self.desk_material());
+        let name = material.name.clone();
+        let file = file_name(&path);
+        self.note(format!("{file}: rendering balls to show what it loses …"));
+        let subject = if takes_model {
+            Subject {
+                materials: self.document.materials.clone(),
+                document: Some(Box::new(self.document.clone())),
+                losses: Vec::new(),
+            }
+        } else {
+            Subject::of(material)
+        };
+        self.files.disk.beside(Task::List, move || {
+            let ready = ready(&subject, &name, &path, format);
+            finish(move |app, ctx| {
+                let ready = app.taken(ready);
+                ready.into_iter().for_each(|ready| app.export.ask(ctx, ready));
+                true
+            })
+        });
+    }
+
+    /// Makes the text of a material in a format beside the window, for the clipboard.
+    pub fn copy_as(&mut self, material: MaterialSettings, format: &str) {
+        let Some(format) = exchange::by_name(format) else {
+            return;
+        };
+        self.files.disk.beside(Task::List, move || {
+            let copied = as_text(material, format);
+            finish(move |app, ctx| {
+                let copied = copied.map(|(text, done)| {
+                    ctx.copy_text(text);
+                    done
+                });
+                app.report_outcome(copied)
+            })
+        });
+    }
+
+    /// Shows what is lost, and writes where that was agreed to.
+    pub fn show_export(&mut self, ctx: &egui::Context) {
+        let Some(answer) = self.export.show(ctx) else { return };
+        let prepared = self.export.take();
+        let Some(prepared) = prepared.filter(|_| answer == Answer::Write) else {
+            return;
+        };
+        self.write(move || {
+            prepared.save().map_err(crate::in_words)?;
+            Ok(Entry::done_with("Exported", &prepared.report.output, ""))
+        });
+    }
+}
+
+/// A material as a format's text, and what to say about it.
+fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, Entry), String> {
+    let name = material.name.clone();
+    let path = PathBuf::from(&name).with_extension(format.extensions[0]);
+    let prepared = exchange::prepare(&Subject::of(material), &name, &path, format).map_err(crate::in_words)?;
+    let count = |outcome: Outcome| prepared.report.count(outcome);
+    let words = match [count(Outcome::Approximated), count(Outcome::Dropped)] {
+        [0, 0] => format!("Copied {name}: {}, nothing is lost", format.label),
+        [near, gone] => format!("Copied {name}: {}, {near} approximated, {gone} dropped", format.label),
+    };
+    let text = prepared.text().ok_or("this format is no text; export it to a file")?;
+    Ok((text.to_owned(), Entry::done(words)))
+}

@@ -1,0 +1,75 @@
+//! Panoramas and cubes in the formats of textures: PNG, JPEG, TIFF, WebP, KTX2, DDS.
+
+use super::canvas::{Canvas, Picture, Source};
+use super::error::EnvironmentError;
+use crate::endings::has_ending;
+use crate::optics::tone::linear_from_srgb;
+use crate::optics::vector::Vec3;
+use crate::picture::{Decoded, Encoded, Numbers, Refusal, decode, is_container, rgba};
+use crate::scene::environment::{EnvironmentEncoding, MAX_WIDTH};
+
+/// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
+const FACE_MAX: u32 = MAX_WIDTH / 4;
+
+/// Reads a cube as a strip of its six faces, a flat image unchanged. Whole numbers are sRGB codes or linear, as the source's
+/// encoding says; numbers with a point are linear.
+pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let encoded = Encoded {
+        name: source.path.to_string_lossy().into_owned(),
+        bytes: source.bytes()?.into(),
+    };
+    if has_ending(source.path, &["ktx2", "dds"]) && !is_container(&encoded.bytes) {
+        return Err(source.wrong("a KTX2 or DDS"));
+    }
+    source.within(source.budget.check(encoded.cost()))?;
+    source.loading.step("decoding the image")?;
+    let decoded = decode(&encoded.name, &encoded.bytes, [MAX_WIDTH, FACE_MAX]);
+    let images = decoded.map_err(|refusal| match refusal {
+        Refusal::Damaged(detail) => source.damaged(detail),
+        Refusal::NotRead(feature) => source.unsupported(feature, "re-save it as a PNG, .hdr or .exr"),
+    })?;
+    drop(encoded);
+    let first = &images[0];
+    let is_display = source.encoding == EnvironmentEncoding::Display;
+    // Linear values of 16-bit codes, which include those of 8 bits.
+    let linear = |code: u16| match f32::from(code) / 65535.0 {
+        value if is_display => linear_from_srgb(Vec3::splat(value)).x,
+        value => value,
+    };
+    let codes: Vec<f32> = (0..=u16::MAX).map(linear).collect();
+    let is_light = matches!(first.numbers, Numbers::Light(_));
+    let mut picture = if images.len() == 1 {
+        let mut canvas = Canvas::new(source, first.width.into(), first.height.into())?;
+        let mut place = 0;
+        for_each_color(first, &codes, |color| {
+            canvas.add_color(place % first.width, place / first.width, color);
+            place += 1;
+        });
+        canvas.finish()
+    } else {
+        let mut texels = Vec::with_capacity(6 * first.width as usize * first.height as usize);
+        for face in &images {
+            for_each_color(face, &codes, |[r, g, b]| texels.push([r, g, b, 1.0]));
+        }
+        Picture::new(first.width, 6 * first.height, texels)
+    };
+    if is_display && !is_light {
+        let warning = "An image for screens: nothing in it is brighter than 1, so lamps and the sun are too dark.";
+        picture.warnings.push(warning.to_owned());
+    }
+    Ok(picture)
+}
+
+/// The linear colours of an image, row by row.
+fn for_each_color(image: &Decoded, codes: &[f32], take: impl FnMut([f32; 3])) {
+    let channels = image.channels;
+    match &image.numbers {
+        Numbers::Codes8(texels) => rgba(texels, channels, 255)
+            .map(|[r, g, b, _]| [r, g, b].map(|code| codes[257 * usize::from(code)]))
+            .for_each(take),
+        Numbers::Codes16(texels) => rgba(texels, channels, u16::MAX)
+            .map(|[r, g, b, _]| [r, g, b].map(|code| codes[usize::from(code)]))
+            .for_each(take),
+        Numbers::Light(texels) => rgba(texels, channels, 1.0).map(|[r, g, b, _]| [r, g, b]).for_each(take),
+    }
+}
